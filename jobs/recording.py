@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
     from morfax.motion.motion import Motion
     from morfax.motion.placement import Placement
-    from morfax.recorder.gcode.machine import Lines, Machine
+    from morfax.recorder.gcode.machine import Machine, UsualLines
     from morfax.recorder.gcode.made import Made
     from morfax.recorder.media import Report
     from morfax.recorder.tape.tape import TapeFormat
@@ -121,7 +121,7 @@ class RecordingUnit:
             return None
         return self.chosen(program).milling
 
-    def usual_lines(self, program: FilePath | None) -> Lines | None:
+    def usual_lines(self, program: FilePath | None) -> UsualLines | None:
         """Which lines the machine is for, if it says so; None where no machine is named."""
         if program is None or self.machine is None or not medium.has_machine(program):
             return None

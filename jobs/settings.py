@@ -21,7 +21,7 @@ from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
     from morfax.jobs.zero import Zero
-    from morfax.recorder.gcode.machine import Lines
+    from morfax.recorder.gcode.machine import UsualLines
     from morfax.tracer.cutter.cutter import Cutter, CutterSide
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.drawing.ruling import PaperKind
@@ -197,7 +197,7 @@ class TraceSettings:
     depths: DepthSettings = field(default_factory=DepthSettings)
     contour: ContourSettings = field(default_factory=ContourSettings)
 
-    def with_usual_lines(self, of_machine: Lines | None = None) -> TraceSettings:
+    def with_usual_lines(self, of_machine: UsualLines | None = None) -> TraceSettings:
         """The same, with the lines that a cutter or the machine is for, where nobody asks for some of them.
 
         Beside lines a cutter runs round all contours: a part is cut with its holes. A card is for one drawn

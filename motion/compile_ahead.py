@@ -31,7 +31,7 @@ import numpy as np
 from morfax.motion.kernel_folder import kernel_folder
 
 LIST = Path(__file__).with_name("kernels.tsv")
-MOST = 3  # processes beside the one that runs; each takes about 0.25 GB
+MOST = 3  # processes beside the one that runs; each took up to 0.56 GB
 SWITCH = "MORFAX_COMPILE_AHEAD"
 
 

@@ -32,9 +32,8 @@ from morfax.motion.arrays import Array
 LEAST_ACCELERATION = 1e-12  # cycles/row²: of an axis at rest; keeps it from dividing by zero
 # 1.5 ms at 6 kHz, odd: the band filter spans eight, so that fewer tell a speed no better
 END_ROWS = 9
-PLACE_NOISE = (
-    1 / 2
-)  # of six standard deviations of a row: rows within a filter's span are noisy together
+# of six standard deviations of a row: rows within a filter's span are noisy together
+PLACE_NOISE = 1 / 2
 
 
 def upper_edge(ends: Array, rows: int, acceleration: float, speed: float) -> Array:

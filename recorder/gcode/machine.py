@@ -33,7 +33,7 @@ CALLED = "the machine"
 
 
 Axes = tuple[float, float, float]  # X, Y, Z
-Lines = Literal["all", "contours"]
+UsualLines = Literal["all", "contours"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class Machine:
     line_numbers: int = 0  # step from one to the next; 0: none are written
     milling: Literal["climb", "conventional"] | None = None  # direction of closed lines
     # of a drawing, where nobody asks for some: of a pen all the ink, of a torch what it cuts; None: one line
-    lines: Lines | None = None
+    lines: UsualLines | None = None
     feeds: bool = True  # whether the program says F
     rapids_have_feed: bool = False  # whether a rapid bears F
     rapid_mm_s: Axes = (50.0, 50.0, 20.0)

@@ -14,6 +14,7 @@ import math
 
 import numpy as np
 
+from morfax.motion.arrays import median
 from morfax.motion.compiled import njit
 from morfax.tracer.sensing.photocell import LEVEL, Cells, darkness_at
 from morfax.tracer.sensing.ray import edges
@@ -38,7 +39,7 @@ def gauge(cells, pose, widths_mm, step_mm, follows):  # type: ignore[no-untyped-
     for k in range(PLACES):
         ahead_mm = 2 * k * step_mm
         found[k] = darkness_at(cells, x_mm + ahead_mm * c, y_mm + ahead_mm * s)
-    ink = _middle(found)
+    ink = median(found)
     level = LEVEL * min(max(ink, cells.level), DARKEST * cells.level)
     here = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles)
     # 2. the width at that level
@@ -49,19 +50,7 @@ def gauge(cells, pose, widths_mm, step_mm, follows):  # type: ignore[no-untyped-
         found[k] = left - right
         if math.isnan(found[k]):  # no edge in reach
             return math.nan, math.nan, math.nan
-    width_mm = _middle(found)
+    width_mm = median(found)
     if not NARROWEST < width_mm / usual_mm < WIDEST:
         return math.nan, math.nan, math.nan
     return level, width_mm, usual_mm + follows * (width_mm - usual_mm)
-
-
-@njit(cache=True)
-def _middle(values):  # type: ignore[no-untyped-def]
-    """The median of an odd number of values, which are put in order."""
-    for i in range(1, len(values)):
-        value, k = values[i], i
-        while k > 0 and values[k - 1] > value:
-            values[k] = values[k - 1]
-            k -= 1
-        values[k] = value
-    return values[len(values) // 2]
