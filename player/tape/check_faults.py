@@ -37,6 +37,15 @@ def wrong_track(track: int, says: int, names: Names, time_s: float) -> TapeFault
     )
 
 
+def demand_tracks(says: Sequence[int | None], names: Names) -> None:
+    """Raise TapeFault unless each track says to be the one that it is."""
+    for track, said in enumerate(says):
+        if said is None:
+            raise silent_track(track, names)
+        if said != track:
+            raise wrong_track(track, said, names, 0.0)
+
+
 def silent_track(track: int, names: Names) -> TapeFault:
     """The fault of a track that says nothing at the start, while others do."""
     return TapeFault(

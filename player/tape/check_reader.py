@@ -27,10 +27,18 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.player.tape.erasures import Erasures
+from morfax.player.tape.frame_report import FrameReport, frame_report
+from morfax.player.tape.quiet_frame import MIDDLES, QuietFrames
 from morfax.player.tape.slips import slip
 from morfax.player.tape.standstill import REFERENCE_BAND, strongest_hz
 from morfax.player.tape.subcarrier import Subcarrier
-from morfax.player.tape.symbols import PARTS, QUARTER, count_on, likeness, read_symbols
+from morfax.player.tape.symbols import (
+    FIGURES,
+    QUARTER,
+    count_on,
+    likeness,
+    read_symbols,
+)
 from morfax.recorder.tape.check_frame import (
     SYMBOLS,
     CheckFrame,
@@ -51,8 +59,6 @@ MOST_AHEAD = (
 # of the power of 24 symbols: noise as strong as the symbols has a share of 1/24
 SYNC_LIKENESS = 0.5
 CENTRING = 3  # times: what is left after each is a tenth
-# the start of a frame and the middle of each part, in cycles of the reference
-MIDDLES = np.r_[0, (np.arange(PARTS) + 0.5) * SYMBOLS / PARTS - 0.5] * CYCLES_PER_SYMBOL
 # behind a frame before it is read, in cycles: the windows of its last symbol
 REACH_CYCLES = 2 * CYCLES_PER_SYMBOL
 
@@ -64,29 +70,6 @@ class Found:
     theta: float
     turns: float
     said: CheckFrame
-
-
-@dataclass(frozen=True, slots=True)
-class FrameReport:
-    """A frame of all tracks: its number, its first row, rows in the middle of its parts.
-
-    `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
-    reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
-    where a track says nothing. `error_s` is the standard error of each told delay of a track, and `swing_s`
-    how far a delay swings within its parts, RMS; `damaged` are tracks that say nothing though their level is
-    right, `weak_rows` where each is weak.
-    """
-
-    number: int
-    row: float
-    part_rows: list[float]
-    said: tuple[CheckFrame | None, ...]
-    late_s: list[float]
-    delay_s: list[list[float]]
-    error_s: list[float]
-    swing_s: list[float]
-    damaged: tuple[int, ...]
-    weak_rows: list[list[float]]
 
 
 def read_ahead(blocks: Iterator[Stored], fmt: TapeFormat) -> list[Stored]:
@@ -139,6 +122,7 @@ class CheckReader:
         self._zero_turns = np.zeros(fmt.tracks)
         self._number, self._theta = 0, 0.0  # the next frame, and where it begins
         self._erasures = Erasures(fmt.tracks)
+        self._quiet = QuietFrames(fmt.tracks, reference_hz, self._erasures)
         self._clock_lost = False  # whether the reference said nothing in the last frame
         self._sound_from = -1.0  # the last point before which the reference is counted right
         if self.is_checked:
@@ -176,8 +160,9 @@ class CheckReader:
         while len(theta) and self._theta + CYCLES_PER_FRAME + self._reach <= theta[-1]:
             told.append(self._report())
             self._number, self._theta = self._number + 1, self._theta + CYCLES_PER_FRAME
+            theta = self._points.theta  # may have been put right
+        if told:
             self._points.forget(self._theta - REACH_CYCLES)
-            theta = self._points.theta
         return told
 
     def _search(self, track: int, *, backwards: bool = False) -> list[Found]:
@@ -186,7 +171,7 @@ class CheckReader:
         if len(theta) < 2 or not np.isfinite(theta).all():
             return []
         grid = np.arange(theta[0], theta[-1], QUARTER)
-        seen = np.interp(grid, theta, self._points.points[track])
+        seen = np.interp(grid, theta, self._points.points[:, track])
         if backwards:
             seen = seen[::-1]
         alike, like = likeness(seen)
@@ -198,7 +183,7 @@ class CheckReader:
                 continue
             turn = np.angle(alike[start])
             bits = np.sign((seen[start : start + 4 * SYMBOLS : 4] * np.exp(-1j * turn)).real)
-            said = from_bits(bits[None])[0]
+            said = from_bits(bits[None].astype(np.int8))[0]
             if said is None:
                 continue
             begins = (
@@ -242,31 +227,26 @@ class CheckReader:
     def _report(self) -> FrameReport:
         """Read the next frame of all tracks."""
         self._put_right()
-        gates = read_symbols(self._points, self._theta)
+        held = (self._turns, self._zero_turns)
+        quiet = self._quiet.read(self._points, self._theta, held)
+        if quiet is not None:
+            self._clock_lost = False
+            rows = self._rows_of(quiet.frames)
+            return frame_report(self._number, rows, quiet.said, quiet.figures)
+        gates = self._quiet.gates
         said = self._erasures.read(gates, self._number)
         is_read = np.array([frame is not None for frame in said])
-        apart = np.empty(gates.turns.shape)
-        count_on((gates.turns, gates.late), is_read, self._turns, self._zero_turns, apart)
+        figures = np.empty((len(said), FIGURES))
+        count_on(gates, is_read, held, 1 / self._reference_hz, figures)
         if self._clock_lost and len(self._erasures.weak[0]):
-            apart[:] = (
-                np.nan
-            )  # the clock was put right within this frame only: all seemed late by as much
+            # the clock was put right within this frame only: all seemed late by as much
+            figures[:, 1:-2] = np.nan
         self._clock_lost = said[0] is None
-        errors = np.hypot(gates.errors, gates.errors[0])
         rows = self._rows(self._theta + MIDDLES)
-        turn_s = CYCLES_PER_SUBCARRIER / self._reference_hz
-        return FrameReport(
-            self._number,
-            rows[0],
-            rows[1:],
-            tuple(frame if read else None for frame, read in zip(said, is_read, strict=True)),
-            (gates.late / self._reference_hz).tolist(),
-            (apart * turn_s).tolist(),
-            (errors * turn_s).tolist(),
-            (gates.swings * turn_s).tolist(),
-            tuple(self._erasures.damaged),
-            [self._rows(self._theta + CYCLES_PER_SYMBOL * at) for at in self._erasures.weak],
-        )
+        read = tuple(one if sure else None for one, sure in zip(said, is_read, strict=True))
+        weak = [self._rows(self._theta + CYCLES_PER_SYMBOL * at) for at in self._erasures.weak]
+        damaged = tuple(self._erasures.damaged)
+        return frame_report(self._number, rows, read, figures.tolist(), damaged, weak)
 
     def _put_right(self) -> None:
         """Put right what was miscounted of the reference while it failed, at the first frame behind that."""
@@ -282,10 +262,8 @@ class CheckReader:
 
     def _rows(self, theta: Array) -> list[float]:
         """The rows of the tape at some counts of the reference."""
-        if not len(theta):
-            return []
-        frames = self._points.frames_at(theta)
-        rows: list[float] = (
-            self._first_row + frames / self._format.samples_per_motion
-        ).tolist()
-        return rows
+        return self._rows_of(self._points.frames_at(theta).tolist()) if len(theta) else []
+
+    def _rows_of(self, frames: list[float]) -> list[float]:
+        """The rows of the tape at some of its frames."""
+        return [self._first_row + frame / self._format.samples_per_motion for frame in frames]

@@ -197,7 +197,7 @@ def _wrap(rows, scale, taps, turns_re, turns_im, phase, levels):  # type: ignore
             _amplitude(track_re, track_im, level)
             levels[first:last, track] = level[: last - first]
         for axis in range(tracks - 1):
-            _turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[axis, first:last])
+            turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[axis, first:last])
 
 
 @njit(cache=True, nogil=True)
@@ -253,7 +253,7 @@ def _amplitude(re, im, level):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"}, error_model="numpy")
-def _turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
+def turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
     """Phase of a track against the reference, -0.5 to 0.5 cycle: a vectorised arc tangent, true to 1e-8."""
     for k in range(len(phase)):
         along = float(re[k]) * float(ref_re[k]) + float(im[k]) * float(ref_im[k])

@@ -37,8 +37,8 @@ class Erasures:
     """Reads the frames of the tracks of one tape; holds how strong the symbols of each usually are."""
 
     def __init__(self, tracks: int) -> None:
-        self._usual = np.full(tracks, np.nan)
-        self._size = np.full(tracks, np.nan)  # of a symbol, at the median
+        self.usual = np.full(tracks, np.nan)
+        self.size = np.full(tracks, np.nan)  # of a symbol, at the median
         self.damaged: list[int] = []
         self.weak: list[Array] = []
 
@@ -52,8 +52,8 @@ class Erasures:
         self.damaged, self.weak = [], []
         counts = np.empty((len(said), 3), np.int64)
         least, usual = np.empty((2, len(said), 2))
-        held = (self._usual, self._size)
-        _weigh((gates.strengths, gates.sizes, gates.shares), held, usual, least, counts)
+        held = (self.usual, self.size)
+        weigh((gates.strengths, gates.sizes, gates.shares), held, usual, least, counts)
         most_small = counts[0, 1] > MOST_WEAK
         for track, (weak, small, faint) in enumerate(counts.tolist()):
             if most_small or small > MOST_WEAK:
@@ -73,12 +73,12 @@ class Erasures:
             if said[track] is None:
                 self.damaged.append(track)
             else:
-                self._usual[track], self._size[track] = usual[track]
+                self.usual[track], self.size[track] = usual[track]
         return said
 
 
 @njit(cache=True, nogil=True)
-def _weigh(seen, held, usual, least, counts):  # type: ignore[no-untyped-def]
+def weigh(seen, held, usual, least, counts):  # type: ignore[no-untyped-def]
     """Weigh the strengths, sizes and shares of each track's symbols.
 
     `held`: usual strength and size so far, nan where none is; `usual` (tracks, 2): those of this frame, at

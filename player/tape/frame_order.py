@@ -23,7 +23,7 @@ import numpy as np
 
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
-from morfax.player.tape.check_reader import FrameReport
+from morfax.player.tape.frame_report import FrameReport
 from morfax.recorder.tape.check_frame import NUMBERS, CheckFrame
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
@@ -68,7 +68,7 @@ class FrameOrder:
             found = found or self._misplaced(track, said, expected, report)
             found = found or self._too_late(track, report)
             told = report.delay_s[track]
-            if all(map(math.isfinite, told)):
+            if math.isfinite(sum(told)):
                 self._told[track] = told[-STEP_PARTS:]
         return found
 
@@ -111,13 +111,16 @@ class FrameOrder:
     def _too_late(self, track: int, report: FrameReport) -> Fault | None:
         """The fault of a track whose delay is too long, or makes a step: samples were lost or repeated."""
         time_s, late_s = report.row / self._rate_hz, report.late_s[track]
-        told = self._told[track] + [
-            delay for delay in report.delay_s[track] if math.isfinite(delay)
-        ]
-        longest_s = max(map(abs, told), default=0.0)
+        delays_s = report.delay_s[track]
+        if not math.isfinite(sum(delays_s)):
+            delays_s = [delay for delay in delays_s if math.isfinite(delay)]
+        told = self._told[track] + delays_s
+        longest_s = max(max(told), -min(told)) if told else 0.0
         if abs(late_s) > LARGEST_LATE_S or longest_s > LARGEST_DELAY_S + TOLD_WITHIN_S:
             late_s = late_s if abs(late_s) > LARGEST_LATE_S else longest_s
             return faults.too_late(track, self._names, late_s, LARGEST_DELAY_S, time_s)
+        if 2 * longest_s <= LARGEST_STEP_S:
+            return None
         step_s = max((abs(b - a) for a, b in zip(told, told[2:], strict=False)), default=0.0)
         if step_s <= LARGEST_STEP_S:
             return None

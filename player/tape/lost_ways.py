@@ -56,6 +56,10 @@ class LostWays:
         for gap in gaps:
             self._open[gap.axis].append(gap.moved(float(self.shift_cycles[gap.axis])))
 
+    def any_open(self, axis: int) -> bool:
+        """Whether an axis has a gap that no count has settled yet."""
+        return bool(self._open[axis])
+
     def covers(self, axis: int, row: float) -> bool:
         """Whether a row lies within a gap."""
         return any(gap.first - 1 <= row <= gap.last for gap in self._open[axis])

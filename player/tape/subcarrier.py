@@ -24,6 +24,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.player.tape.discriminator import turn
+from morfax.recorder.tape.carrier import _sine
 from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER
 from morfax.recorder.tape.tape import Stored
 
@@ -32,6 +34,8 @@ LEVEL_SHARE = 0.05  # of the way to the level found, per point: 20 ms, as for dr
 LOST_SHARE = 0.002  # the same while it is lost, so that another level is found in the end
 RATE_SHARE = 0.2  # of the way to the rate found, per point: five points of wow
 
+ROOM = 4  # times what is held: then what is held is moved for every third block only
+
 Complexes = NDArray[np.complex128]
 
 
@@ -39,22 +43,39 @@ class Subcarrier:
     """Frames in, points out; points that are no longer needed are dropped by `forget`."""
 
     def __init__(self, sample_rate_hz: float, reference_hz: float, tracks: int) -> None:
-        self._step = reference_hz / sample_rate_hz  # cycles of the reference in a frame
-        self.hop = round(CYCLES_PER_SUBCARRIER / self._step)
-        cycles = self._step / CYCLES_PER_SUBCARRIER
+        # of the reference, in a frame of the tape
+        self.cycles_per_frame = reference_hz / sample_rate_hz
+        self.hop = round(CYCLES_PER_SUBCARRIER / self.cycles_per_frame)
+        cycles = self.cycles_per_frame / CYCLES_PER_SUBCARRIER
         # a row of taps is as long as all tracks of a hop, and zero for the others than its own
         taps = np.zeros((tracks + 1, 4, self.hop, tracks), np.float32)
         for track in range(tracks):
             taps[track, :, :, track] = _taps(self.hop, cycles)
-        taps[tracks, :, :, 0] = _taps(self.hop, self._step)  # the carrier of the reference
+        taps[tracks, :, :, 0] = _taps(
+            self.hop, self.cycles_per_frame
+        )  # the carrier of the reference
         self._rows_of_taps = taps.reshape(4 * (tracks + 1), -1)
         self._tail: Stored = np.zeros((0, tracks), np.float32)  # frames of the next hops
         self._next = 0  # the next point
         # turns, turns per point, level; the first and last point of the last loss of the reference
         self._state = np.array([math.nan, 0.0, 0.0, -1.0, -1.0])
         self.first = 0  # the first point that is held
-        self.points: Complexes = np.zeros((tracks, 0), complex)
-        self.theta: Array = np.zeros(0)
+        self._held = slice(
+            0, 0
+        )  # of the room for points, which is moved or enlarged where it ends
+        self._points: Complexes = np.zeros((0, tracks), complex)
+        self._theta: Array = np.zeros(0)
+        self._halves = np.zeros((tracks + 1, 4, 0), np.float32)
+
+    @property
+    def points(self) -> Complexes:
+        """The points that are held (points, tracks)."""
+        return self._points[self._held]
+
+    @property
+    def theta(self) -> Array:
+        """The cycles of the reference at these points."""
+        return self._theta[self._held]
 
     def feed(self, frames: Stored) -> None:
         """Take the next frames of the tape."""
@@ -68,7 +89,9 @@ class Subcarrier:
         early = -(-len(self._tail) // self.hop)
         own = early * self.hop - len(self._tail)  # frames that complete them
         scale = np.float32(1 / 32768 if frames.dtype == np.int16 else 1)
-        halves = np.empty((frames.shape[1] + 1, 4, hops), np.float32)
+        if self._halves.shape[2] < hops:
+            self._halves = np.empty((frames.shape[1] + 1, 4, hops), np.float32)
+        halves = self._halves
         begun = np.concatenate([self._tail, frames[:own]]) if early else frames[:0]
         rest = frames[own : own + (hops - early) * self.hop]
         for part, at in ((begun, slice(early)), (rest, slice(early, None))):
@@ -77,18 +100,21 @@ class Subcarrier:
         last = own + (hops - 1 - early) * self.hop
         self._tail = frames[last:].copy() if last >= 0 else begun[-self.hop :].copy()
         # 2. a point for each hop and the next
-        points, turns = np.empty((frames.shape[1], hops - 1), complex), np.empty(hops - 1)
-        per_point = np.array([self._step * self.hop, CYCLES_PER_SUBCARRIER])
-        _turn_back(halves, self._next, per_point, self._state, turns, points)
-        numbers = self._next + np.arange(hops - 1)
-        theta = self._step * self.frame_of(numbers) + turns
-        self.theta = np.concatenate([self.theta, theta])
-        self.points = np.concatenate([self.points, points], axis=1)
-        self._next += hops - 1
+        new = self._room(hops - 1)
+        clock = (self._next, self.hop, self.cycles_per_frame)
+        _turn_back(halves, clock, self._state, self._theta[new], self._points[new])
+        self._held, self._next = slice(self._held.start, new.stop), self._next + hops - 1
 
-    def frame_of(self, points: Array | NDArray[np.int64]) -> Array:
-        """The frame of the tape in the middle of a point's window."""
-        return np.asarray(self.hop * (points + 1) - 0.5, np.float64)
+    def _room(self, count: int) -> slice:
+        """Room for so many further points, behind those that are held."""
+        begins, ends = self._held.start, self._held.stop
+        if ends + count > len(self._theta):
+            held, size = ends - begins, ROOM * (ends - begins + count)
+            theta, points = np.empty(size), np.empty((size, self._points.shape[1]), complex)
+            theta[:held], points[:held] = self.theta, self.points
+            self._theta, self._points, self._held = theta, points, slice(0, held)
+            ends = held
+        return slice(ends, ends + count)
 
     def theta_at(self, point: float) -> float:
         """The cycles of the reference at a point; before the first that is held, those of that."""
@@ -98,7 +124,7 @@ class Subcarrier:
     def frames_at(self, theta: Array) -> Array:
         """The frames of the tape at some counts of the reference."""
         frames = np.empty(len(theta))
-        _interpolate(theta, self.theta, (self.first, self.hop, self._step), frames)
+        interpolate(theta, self.theta, (self.first, self.hop, self.cycles_per_frame), frames)
         return frames
 
     @property
@@ -111,15 +137,15 @@ class Subcarrier:
         first, last = self.lost
         numbers = self.first + np.arange(len(self.theta))
         share = np.clip((numbers - first + 1) / (last - first + 2), 0.0, 1.0)
-        self.theta = self.theta - cycles * share
+        self.theta[:] -= cycles * share
         turn = np.exp(2j * np.pi * cycles * (numbers > last) / CYCLES_PER_SUBCARRIER)
-        self.points = self.points * turn
+        self.points[:] *= turn[:, None]
         self._state[0] -= cycles
 
     def forget(self, theta: float) -> None:
         """Drop the points before a count of the reference."""
         gone = max(int(np.searchsorted(self.theta, theta)) - 2, 0)
-        self.points, self.theta = self.points[:, gone:].copy(), self.theta[gone:].copy()
+        self._held = slice(self._held.start + gone, self._held.stop)
         self.first += gone
 
 
@@ -132,23 +158,39 @@ def _taps(hop: int, cycles_per_frame: float) -> NDArray[np.float32]:
 
 
 # The order of the sum is free (reassoc, contract), so that it runs in vectors. The zeros cost less than
-# picking out the samples of each track.
+# picking out the samples of each track. Four sums of two hops at a time take samples and taps out of memory
+# once for all eight.
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
 def _sum(rows, scale, taps, halves):  # type: ignore[no-untyped-def]
     """Fill the sums of both halves of the window (tracks and the reference's carrier, 4, hops)."""
-    samples = np.empty(rows.shape[1], np.float32)
-    for hop in range(len(rows)):
-        for k in range(len(samples)):
-            samples[k] = rows[hop, k]
-        for tap in range(len(taps)):
-            total = np.float32(0)
-            for k in range(len(samples)):
-                total += taps[tap, k] * samples[k]
-            halves[tap // 4, tap % 4, hop] = total * scale
+    x, y = np.zeros((2, rows.shape[1]), np.float32)
+    for hop in range(0, len(rows), 2):
+        other = min(hop + 1, len(rows) - 1)
+        for k in range(len(x)):
+            x[k] = rows[hop, k]
+        for k in range(len(x)):
+            y[k] = rows[other, k]
+        for track in range(len(halves)):
+            a, b = taps[4 * track], taps[4 * track + 1]
+            c, d = taps[4 * track + 2], taps[4 * track + 3]
+            a_x = b_x = c_x = d_x = a_y = b_y = c_y = d_y = np.float32(0)
+            for k in range(len(x)):
+                a_x += a[k] * x[k]
+                b_x += b[k] * x[k]
+                c_x += c[k] * x[k]
+                d_x += d[k] * x[k]
+                a_y += a[k] * y[k]
+                b_y += b[k] * y[k]
+                c_y += c[k] * y[k]
+                d_y += d[k] * y[k]
+            halves[track, 0, other], halves[track, 1, other] = a_y * scale, b_y * scale
+            halves[track, 2, other], halves[track, 3, other] = c_y * scale, d_y * scale
+            halves[track, 0, hop], halves[track, 1, hop] = a_x * scale, b_x * scale
+            halves[track, 2, hop], halves[track, 3, hop] = c_x * scale, d_x * scale
 
 
 @njit(cache=True, nogil=True)
-def _interpolate(sought, theta, numbers, frames):  # type: ignore[no-untyped-def]
+def interpolate(sought, theta, numbers, frames):  # type: ignore[no-untyped-def]
     """Fill the frames of the tape at some counts of the reference, straight from point to point.
 
     `numbers`: the first point, frames from point to point, cycles of the reference in a frame. Beyond the
@@ -164,22 +206,27 @@ def _interpolate(sought, theta, numbers, frames):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True, nogil=True)
-def _turn_back(halves, first, per_point, state, turns, points):  # type: ignore[no-untyped-def]
+def _turn_back(halves, clock, state, theta, points):  # type: ignore[no-untyped-def]
     """Count the turns of the reference against its nominal frequency; turn the tracks' points back by them.
 
-    `per_point`: cycles of the reference from point to point, and to one of the subcarrier.
+    `clock`: the first point, frames from point to point, cycles of the reference in a frame.
     """
+    first, hop, step = clock
     place, rate, level, first_lost, last_lost = state
-    tracks = len(points)
-    for k in range(len(turns)):
-        nominal = (first + k) * per_point[0]
-        # 1. the phase of the reference
-        re = float(halves[tracks, 0, k]) + halves[tracks, 2, k + 1]
-        im = float(halves[tracks, 1, k]) + halves[tracks, 3, k + 1]
-        strength, turn = math.hypot(re, im), math.atan2(im, re) / (2 * math.pi) - nominal
-        # 2. counted on; as fast as before where the reference fails
+    count, tracks = len(theta), points.shape[1]
+    # 1. the phase of the reference, and how strong it is
+    re, im, strengths, turns = np.empty((4, count))
+    for k in range(count):
+        re[k] = float(halves[tracks, 0, k]) + halves[tracks, 2, k + 1]
+        im[k] = float(halves[tracks, 1, k]) + halves[tracks, 3, k + 1]
+        strengths[k] = math.sqrt(re[k] * re[k] + im[k] * im[k])
+    turn(re, im, np.ones(count), np.zeros(count), turns)
+    # 2. counted on; as fast as before where the reference fails
+    for k in range(count):
+        nominal = (first + k) * (step * hop)
+        strength, seen = strengths[k], turns[k] - nominal
         if math.isnan(place):
-            place, rate, level = turn - np.floor(turn), 0.0, strength
+            place, rate, level = seen - np.floor(seen), 0.0, strength
         elif not strength >= LEVEL_HELD * level:
             place += rate
             first_lost = first_lost if last_lost == first + k - 1 else first + k
@@ -187,19 +234,21 @@ def _turn_back(halves, first, per_point, state, turns, points):  # type: ignore[
             if strength >= 0:  # and is a number
                 level += LOST_SHARE * (strength - level)
         else:
-            off = turn - place - rate
-            off -= np.rint(off)
+            off = seen - place - rate
+            off -= np.floor(off + 0.5)
             place += rate + off
             rate += RATE_SHARE * off
             level += LEVEL_SHARE * (strength - level)
-        turns[k] = place
-        # 3. the subcarriers, turned back by a sixth of it
-        back = (nominal + place) / per_point[1]
-        back = -2 * math.pi * (back - np.floor(back))
-        turned = complex(math.cos(back), math.sin(back))
-        for track in range(tracks):
-            re = float(halves[track, 0, k]) + halves[track, 2, k + 1]
-            im = float(halves[track, 1, k]) + halves[track, 3, k + 1]
-            points[track, k] = complex(re, im) * turned
+        # the frame of the tape in the middle of the window
+        theta[k] = step * (hop * (first + k + 1) - 0.5) + place
+        turns[k] = (nominal + place) / CYCLES_PER_SUBCARRIER
+    # 3. the subcarriers, turned back by a sixth of it
+    for k in range(count):
+        re[k], im[k] = _sine(0.25 + turns[k]), -_sine(turns[k])
+    for track in range(tracks):
+        for k in range(count):
+            along = float(halves[track, 0, k]) + halves[track, 2, k + 1]
+            across = float(halves[track, 1, k]) + halves[track, 3, k + 1]
+            points[k, track] = complex(along, across) * complex(re[k], im[k])
     state[0], state[1], state[2] = place, rate, level
     state[3], state[4] = first_lost, last_lost

@@ -65,15 +65,22 @@ class Surprises:
         self._gauge_rows = GAUGE_S * fmt.motion_rate_hz
         self._slow = SLOW * fmt.reference_hz / fmt.motion_rate_hz
         self._gain_rows2 = acceleration_gain(gains)
-        self._noise_cycles: Array = np.zeros(len(fmt.axes))
+        self._held_noise: Array = np.zeros(len(fmt.axes))
+        # some of the last rows that were enough, as long as nobody has asked how noisy they are
+        self._untold: NDArray[np.float32] | None = None
 
     def rows(self, rows: Phases, bounds: Sequence[ToldBounds]) -> NDArray[np.bool_] | None:
         """Which rows of the axes (n, axes) are lost, or None; `bounds`: what the tape tells of each axis."""
-        noise = _noise(np.abs(rows.surprise[::STRIDE]))
-        enough = len(rows) >= ENOUGH_ROWS
-        self._noise_cycles = noise if enough else np.maximum(noise, self._noise_cycles)
+        some = rows.surprise[::STRIDE].copy()
+        if len(rows) >= ENOUGH_ROWS:
+            self._untold = some
+        else:
+            self._held_noise = np.maximum(_noise(np.abs(some)), self._noise_cycles)
+        may_jump = self._may_jump(bounds)
+        if not may_jump and not _loud(rows.surprise.ravel(), LEAST_CYCLES):
+            return None
         least = np.maximum(self._noise_cycles, LEAST_CYCLES).astype(np.float64)
-        if not _any_beyond(rows.surprise, least) and not self._may_jump(bounds):
+        if not may_jump and not _any_beyond(rows.surprise, least):
             return None
         told = np.empty((2, *rows.cycles.shape))
         for axis, bound in enumerate(bounds):
@@ -85,6 +92,13 @@ class Surprises:
             lost |= jumps & (np.maximum(dips[:, :1], dips[:, 1:]) > own)
         return np.asarray(lost)
 
+    @property
+    def _noise_cycles(self) -> Array:
+        """How far the rows of each axis lie off by noise; told only where somebody asks."""
+        if self._untold is not None:
+            self._held_noise, self._untold = _noise(np.abs(self._untold)), None
+        return self._held_noise
+
     def _may_jump(self, bounds: Sequence[ToldBounds]) -> bool:
         """Whether any axis was told of accelerations that hide a jump."""
         return any(self._gain_rows2 * bound.largest > HIDDEN_CYCLES for bound in bounds)
@@ -92,6 +106,15 @@ class Surprises:
     def noise(self, axis: int) -> float:
         """How far a row of an axis may lie off by noise, or by what a sound tape does itself, cycles."""
         return max(float(self._noise_cycles[axis]), LEAST_CYCLES)
+
+
+@njit(cache=True, nogil=True)
+def _loud(surprise, least):  # type: ignore[no-untyped-def]
+    """How many surprises are larger than those of any sound tape; counted, so that it runs in vectors."""
+    loud = 0
+    for k in range(len(surprise)):
+        loud += abs(surprise[k]) > least
+    return loud
 
 
 @njit(cache=True, nogil=True)

@@ -25,14 +25,15 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.player.tape.subcarrier import Complexes, Subcarrier
 from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, SYNC_SYMBOLS, Bits
-from morfax.recorder.tape.check_signal import CYCLES_PER_SYMBOL
+from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER, CYCLES_PER_SYMBOL
 
 QUARTER = CYCLES_PER_SYMBOL / 4  # of a symbol, in cycles of the reference
 GATES = 3  # of a symbol: early, on, late
 # of the full strength, a quarter of a symbol beside one that passes over to the other sign: cos pi/4
 PASSING = math.sqrt(0.5)
 PARTS = 4  # of a frame, each with its own phase
-_WORD = SYNC.astype(np.float64)
+FIGURES = PARTS + 3  # of a track's times
+WORD = SYNC.astype(np.float64)
 
 
 class Gates(NamedTuple):
@@ -68,8 +69,14 @@ def likeness(seen: Complexes) -> tuple[Complexes, Array]:
 
 def read_symbols(points: Subcarrier, begins: float) -> Gates:
     """Read the symbols of the frame of all tracks that begins at a count of the reference."""
-    tracks = len(points.points)
-    gates = Gates(
+    gates = gates_of(points.points.shape[1])
+    read_gates(points.points, points.theta, begins, WORD, gates)
+    return gates
+
+
+def gates_of(tracks: int) -> Gates:
+    """Room for the symbols of a frame of so many tracks."""
+    return Gates(
         np.empty((tracks, SYMBOLS), np.int8),
         np.empty((tracks, SYMBOLS)),
         np.empty((tracks, SYMBOLS)),
@@ -79,8 +86,6 @@ def read_symbols(points: Subcarrier, begins: float) -> Gates:
         np.empty(tracks),
         np.empty(tracks),
     )
-    _read(np.ascontiguousarray(points.points), points.theta, begins, _WORD, *gates)
-    return gates
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -90,10 +95,9 @@ def _power(point):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _read(  # type: ignore[no-untyped-def]
-    points, theta, begins, word, bits, strengths, sizes, shares, late, turns, swings, errors
-):
+def read_gates(points, theta, begins, word, frame):  # type: ignore[no-untyped-def]
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
+    bits, strengths, sizes, shares, late, turns, swings, errors = frame
     gates = _gates(points, theta, begins, bits.shape[1])
     part = bits.shape[1] // turns.shape[1]
     for track in range(len(bits)):
@@ -120,7 +124,7 @@ def _read(  # type: ignore[no-untyped-def]
 @njit(cache=True, nogil=True)
 def _gates(points, theta, begins, symbols):  # type: ignore[no-untyped-def]
     """Early, on and late of each symbol of all tracks, between the two points beside it."""
-    tracks = len(points)
+    tracks = points.shape[1]
     gates = np.empty((tracks, GATES, symbols), np.complex128)
     for gate in range(GATES):
         at = 0
@@ -131,7 +135,7 @@ def _gates(points, theta, begins, symbols):  # type: ignore[no-untyped-def]
             share = (place - theta[at]) / (theta[at + 1] - theta[at])
             share = min(max(share, 0.0), 1.0)
             for track in range(tracks):
-                before, after = points[track, at], points[track, at + 1]
+                before, after = points[at, track], points[at + 1, track]
                 gates[track, gate, symbol] = before + share * (after - before)
     return gates
 
@@ -166,13 +170,14 @@ def _share(gates, alike, bits, shares):  # type: ignore[no-untyped-def]
     """How strong each gate is along `alike`, for what the symbols on both sides of it let expect."""
     symbols = len(bits)
     for symbol in range(symbols):
+        sign = float(bits[symbol])
         for gate in range(GATES):
             beside = symbol + gate - 1
             same = beside == symbol
             if 0 <= beside < symbols and not same:
                 same = bits[beside] == bits[symbol]
             seen = gates[gate, symbol]
-            along = (seen.real * alike.real + seen.imag * alike.imag) * bits[symbol]
+            along = (seen.real * alike.real + seen.imag * alike.imag) * sign
             shares[gate, symbol] = along if same else along / PASSING
 
 
@@ -203,12 +208,15 @@ def _across(seen, bits, turns, part):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def count_on(gates, is_read, last, zero, apart):  # type: ignore[no-untyped-def]
-    """Count the turns of each track's parts on from its last frame; fill how far they are from track 1's.
+def count_on(gates, is_read, held, cycle_s, figures):  # type: ignore[no-untyped-def]
+    """Count the turns of each track's parts on from its last frame, and tell its times, s.
 
-    `gates`: turns (tracks, parts) and how late; nan where a track is not read, or has no number.
+    `is_read`: whether each track was read; no more where its phase is no number. `held`: turns of the last
+    part so far, and at a delay of zero. `figures` (tracks, 7): how late; the delay of each part against track
+    1; the standard error of a delay; the swing. nan where a track is not read.
     """
-    turns, late = gates
+    turns, late, (last, zero) = gates.turns, gates.late, held
+    turn_s = CYCLES_PER_SUBCARRIER * cycle_s
     for track in range(len(turns)):
         is_read[track] &= np.isfinite(turns[track]).all()
         if not is_read[track]:
@@ -219,6 +227,9 @@ def count_on(gates, is_read, last, zero, apart):  # type: ignore[no-untyped-def]
         last[track] = turns[track, -1]
     for track in range(len(turns)):
         turns[track] -= zero[track]
+        figures[track, 0] = late[track] * cycle_s
         for part in range(turns.shape[1]):
             first = turns[0, part] if track else 0.0
-            apart[track, part] = first - turns[track, part]
+            figures[track, 1 + part] = (first - turns[track, part]) * turn_s
+        figures[track, -2] = math.hypot(gates.errors[track], gates.errors[0]) * turn_s
+        figures[track, -1] = gates.swings[track] * turn_s

@@ -20,7 +20,7 @@ from itertools import pairwise
 
 from morfax.motion.arrays import Array
 from morfax.player.tape.bridges import Bound
-from morfax.player.tape.check_reader import FrameReport
+from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.symbols import PARTS
 
 KEPT = 8  # frames: a gap of 1.1 s, and those that a row is held for

@@ -27,10 +27,12 @@ from morfax.motion.arrays import Array, between
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
 from morfax.player.tape.bridges import Gap
-from morfax.player.tape.check_reader import CheckReader, FrameReport
+from morfax.player.tape.check_reader import CheckReader
 from morfax.player.tape.delays import Delay
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
+from morfax.player.tape.frame_report import FrameReport
+from morfax.player.tape.held_rows import HeldRows
 from morfax.player.tape.lost_ways import COUNT_CYCLES, Laid, LostWays, laid
 from morfax.player.tape.standstill import ALLOWED_CYCLES
 from morfax.player.tape.told_bounds import ToldBounds
@@ -67,7 +69,7 @@ class Vouching:
         self._weak: list[list[float]] = [[] for _ in fmt.axes]
         self._lost: dict[int, Gap] = {}  # by axis: a gap at which the machine stops
         self.mended: list[Laid] = []
-        self._held: Phases | None = None
+        self._rows = HeldRows()
         self._given = 0  # rows that were given out and are still held, to lend their speed
         # row, and by axis the cycles that it tells there: not yet checked
         self._counts: list[tuple[float, dict[int, float]]] = []
@@ -101,12 +103,8 @@ class Vouching:
 
     def _demand_tracks_and_figures(self) -> None:
         """Raise TapeFault unless each track is what it should be, and the text states what they say."""
-        fmt, names = self._format, self._format.axes
-        for track, says in enumerate(self._check.tracks):
-            if says is None:
-                raise faults.silent_track(track, names)
-            if says != track:
-                raise faults.wrong_track(track, says, names, 0.0)
+        fmt = self._format
+        faults.demand_tracks(self._check.tracks, fmt.axes)
         if fmt.stated is not None:
             used = Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm)
             demand_agreement(self._check.found[0][0].said, fmt.stated, used)
@@ -136,8 +134,7 @@ class Vouching:
         self._check_counts(stands_mm)
         if last:
             self._check_end(certain)
-        ended = last and certain.fault is None and self._fault is None
-        held = self._rows
+        held, ended = self._rows, last and certain.fault is None and self._fault is None
         upto = len(held) if ended else min(int(self._vouched) - held.first_row, len(held))
         upto = max(upto, self._given)
         out = self._cut(held, upto)
@@ -145,7 +142,8 @@ class Vouching:
         if fault is not None:
             return out, (len(out), fault)
         keep = max(upto - self._delays[0].span, 0)
-        self._held, self._given = held.cut(keep, len(held)), upto - keep
+        held.drop(keep)
+        self._given = upto - keep
         return out, None
 
     def _hold(self, certain: Certain) -> None:
@@ -154,13 +152,8 @@ class Vouching:
         rows = certain.rows
         if self._ways.shift_cycles.any():
             rows = replace(rows, cycles=rows.cycles + self._ways.shift_cycles)
-        self._held = rows if self._held is None else self._held.joined(rows)
-
-    @property
-    def _rows(self) -> Phases:
-        """The rows that are held."""
-        assert self._held is not None, "no rows were taken yet"
-        return self._held
+        # the levels of the tracks have said what they say
+        self._rows.add(replace(rows, levels=rows.levels[:0]))
 
     def _check_end(self, certain: Certain) -> None:
         """Note the fault of a tape that ends where it does not say so, or in a dropout."""
@@ -182,7 +175,8 @@ class Vouching:
         last = held.first_row + len(held) - 1
         first = max(int(delay.told_row), held.first_row)
         bound = self._bounds[axis].between(first, last)
-        way = delay.corrected(held.cycles[:, axis], held.first_row)[first - held.first_row :]
+        places = held.axis(axis, 0, len(held))
+        way = delay.corrected(places, held.first_row)[first - held.first_row :]
         allowed = TAIL_CYCLES + (bound.speed * len(way) if bound else 0.0)
         off, doubt_s = float(np.ptp(way)) - allowed, delay.doubt_s(last)
         if off <= 0 and doubt_s * self._format.reference_hz <= ALLOWED_CYCLES:
@@ -190,7 +184,7 @@ class Vouching:
         off_s = max(off / self._format.reference_hz, doubt_s)
         return faults.swings(axis + 1, self._format.axes, off_s, last / self._rate_hz)
 
-    def _cut(self, held: Phases, upto: int) -> Phases:
+    def _cut(self, held: HeldRows, upto: int) -> Phases:
         """The rows up to one that are not yet given out, put right; those around them lend their speed."""
         if upto <= self._given:
             return held.cut(upto, upto)
@@ -210,13 +204,14 @@ class Vouching:
             return
         self._counts.append((report.row, {}))
         for axis in range(len(self._delays)):
-            self._weak[axis] += sorted(report.weak_rows[0] + report.weak_rows[axis + 1])
+            if weak := report.weak_rows[0] + report.weak_rows[axis + 1]:
+                self._weak[axis] += sorted(weak)
             self._note(axis, report)
 
     def _note(self, axis: int, report: FrameReport) -> None:
         """Note the count, the bounds and the delays of one axis."""
         delays_s, said = report.delay_s[axis + 1], report.said[axis + 1]
-        if said is None or not all(map(math.isfinite, delays_s)):
+        if said is None or not math.isfinite(sum(delays_s)):
             return  # the reference says nothing
         self._counts[-1][1][axis] = said.cycles
         self._bounds[axis].add(report, axis + 1)
@@ -250,13 +245,18 @@ class Vouching:
     def _place(self, axis: int, row: float) -> float:
         """Where an axis is at a row that is held, cycles, without the delay of its track."""
         held, delay, span = self._rows, self._delays[axis], 2 * self._delays[axis].span
+        if not delay.moves:
+            return held.place(axis, row - held.first_row)
         at = max(int(row) - held.first_row, 0)
         first = max(at - span, 0)
-        near = delay.corrected(held.cycles[first : at + span + 1, axis], held.first_row + first)
+        near = delay.corrected(held.axis(axis, first, at + span + 1), held.first_row + first)
         return between(near, row - held.first_row - first)
 
     def _settle(self, axis: int, row: float, off: float, stands_mm: StandsMm) -> None:
         """Let a count vouch for the way until there; or note which gap lost it, or lay that gap anew."""
+        if abs(off) <= COUNT_CYCLES and not self._weak[axis] and not self._ways.any_open(axis):
+            self._counted[axis] = row
+            return
         before = [weak for weak in self._weak[axis] if weak < row]
         self._weak[axis] = self._weak[axis][len(before) :]
         replaced = self._ways.bare(axis, before)
@@ -282,7 +282,7 @@ class Vouching:
 
     def _lay(self, axis: int, gap: Gap, more: int) -> None:
         """Lay the way over a gap anew, so that so many cycles more lie behind it."""
-        self._held = laid(self._rows, gap, more)
+        self._rows.become(laid(self._rows.cut(0, len(self._rows)), gap, more))
         near = self._bounds[axis].around(gap.first, gap.last)
         self.mended.append(Laid(gap.ending(more), more, near or gap.bound))
 

@@ -27,6 +27,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.compiled import njit
+
 VERSION = 1
 SYMBOLS = 120  # of a frame
 SYNC_SYMBOLS = 24
@@ -64,8 +66,17 @@ def _whitening() -> NDArray[np.uint8]:
     return np.array(bits, np.uint8)
 
 
+def _crc_of_bytes() -> NDArray[np.uint32]:
+    """The CRC-32 of each byte, by which that of more bytes is made."""
+    crcs = np.arange(256, dtype=np.uint32)
+    for _ in range(8):
+        crcs = np.where(crcs & 1, crcs >> 1 ^ 0xEDB88320, crcs >> 1).astype(np.uint32)
+    return crcs
+
+
 _WHITE = _whitening()
-_WHITE_BITS = _WHITE > 0
+# the whitening, and the CRC-32 of each byte, for `tell`
+TABLES = (_WHITE, _crc_of_bytes())
 SYNC: Bits = np.array(
     [1 if _SYNC >> bit & 1 else -1 for bit in range(SYNC_SYMBOLS - 1, -1, -1)], np.int8
 )
@@ -96,16 +107,37 @@ def to_bits(frame: CheckFrame) -> Bits:
 
 def from_bits(bits: Bits) -> list[CheckFrame | None]:
     """What rows of 120 symbols of +1 and -1 say; None where the check sum is wrong."""
-    data = np.packbits((bits[:, SYNC_SYMBOLS:] > 0) ^ _WHITE_BITS, axis=1).tobytes()
-    size = _TOLD_BYTES + _CRC_BYTES
-    return [_frame(data[at : at + size]) for at in range(0, len(data), size)]
+    told = np.empty(len(bits), np.int64)
+    is_right = np.empty(len(bits), bool)
+    tell(bits, *TABLES, told, is_right)
+    if not is_right.any():  # as nearly all that are tried by chance
+        return [None] * len(bits)
+    return [
+        said_by(one) if right else None
+        for one, right in zip(told.view(np.uint64).tolist(), is_right.tolist(), strict=True)
+    ]
 
 
-def _frame(data: bytes) -> CheckFrame | None:
-    """What told and CRC say."""
-    if zlib.crc32(data[:_TOLD_BYTES]) != int.from_bytes(data[_TOLD_BYTES:], "big"):
-        return None
-    told = int.from_bytes(data[:_TOLD_BYTES], "big")
+@njit(cache=True, nogil=True)
+def tell(bits, white, byte_crcs, told, is_right):  # type: ignore[no-untyped-def]
+    """Fill the 64 bits that each row of symbols tells, and whether its check sum is right."""
+    for row in range(len(bits)):
+        word, crc, own = 0, 0xFFFFFFFF, 0
+        for byte in range(len(white) // 8):
+            value = 0
+            for at in range(8 * byte, 8 * byte + 8):
+                value = 2 * value + int((bits[row, SYNC_SYMBOLS + at] > 0) != (white[at] > 0))
+            if byte < _TOLD_BYTES:
+                word = word << 8 | value
+                crc = int(byte_crcs[(crc ^ value) & 0xFF]) ^ crc >> 8
+            else:
+                own = own << 8 | value
+        told[row] = word
+        is_right[row] = own == crc ^ 0xFFFFFFFF
+
+
+def said_by(told: int) -> CheckFrame | None:
+    """What the told bits say, behind a right check sum."""
     if told >> 61 != VERSION:
         return None
     codes, code_mask = told & ((1 << 2 * _CODE_BITS) - 1), (1 << _CODE_BITS) - 1

@@ -192,7 +192,7 @@ def test_stages_agree_with_themselves_as_plain_python(monkeypatch: pytest.Monkey
         "_translate",
         "_group",
         "_amplitude",
-        "_turn",
+        "turn",
         "count_turns",
     ):
         monkeypatch.setattr(organ, name, getattr(organ, name).py_func)
@@ -201,7 +201,7 @@ def test_stages_agree_with_themselves_as_plain_python(monkeypatch: pytest.Monkey
     assert np.abs(fast.levels - slow.levels).max() < 1e-6
 
 
-@pytest.mark.parametrize("kernel", [organ._turn, organ._turn.py_func])
+@pytest.mark.parametrize("kernel", [organ.turn, organ.turn.py_func])
 def test_the_arc_tangent_goes_all_the_way_round(kernel: Callable[..., None]) -> None:
     cycles = np.r_[np.linspace(-0.499, 0.499, 997), 0.25, -0.25, 0.0]
     axis, ref = (
@@ -217,7 +217,7 @@ def test_the_arc_tangent_goes_all_the_way_round(kernel: Callable[..., None]) -> 
 
 def test_the_arc_tangent_of_nothing_is_nothing_and_of_no_number_is_none() -> None:
     phase = np.empty(2)
-    organ._turn(*np.array([[0, np.nan], [0, 1], [0, 1], [0, 1]], np.float32), phase)
+    organ.turn(*np.array([[0, np.nan], [0, 1], [0, 1], [0, 1]], np.float32), phase)
     assert phase[0] == 0
     assert np.isnan(phase[1])
 

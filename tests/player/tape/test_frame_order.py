@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from morfax.player.tape.check_reader import FrameReport
 from morfax.player.tape.frame_order import FrameOrder
+from morfax.player.tape.frame_report import FrameReport
 from morfax.recorder.tape.check_frame import CheckFrame
 from morfax.recorder.tape.format import TapeFormat
 

@@ -1,0 +1,58 @@
+"""The report of a frame of the check signal: what each track says in it, and how late it is.
+
+Signals in: what was read of a frame of all tracks. Signals out: the report, with rows of the tape and s.
+
+Source: our own. Questions: none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from morfax.recorder.tape.check_frame import CheckFrame
+
+
+@dataclass(frozen=True, slots=True)
+class FrameReport:
+    """A frame of all tracks: its number, its first row, rows in the middle of its parts.
+
+    `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
+    reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
+    where a track says nothing. `error_s` is the standard error of each told delay of a track, and `swing_s`
+    how far a delay swings within its parts, RMS; `damaged` are tracks that say nothing though their level is
+    right, `weak_rows` where each is weak.
+    """
+
+    number: int
+    row: float
+    part_rows: list[float]
+    said: tuple[CheckFrame | None, ...]
+    late_s: list[float]
+    delay_s: list[list[float]]
+    error_s: list[float]
+    swing_s: list[float]
+    damaged: tuple[int, ...]
+    weak_rows: list[list[float]]
+
+
+def frame_report(
+    number: int,
+    rows: list[float],
+    said: tuple[CheckFrame | None, ...],
+    figures: list[list[float]],
+    damaged: tuple[int, ...] = (),
+    weak_rows: list[list[float]] | None = None,
+) -> FrameReport:
+    """The report of a frame, from what `count_on` tells of its times."""
+    return FrameReport(
+        number,
+        rows[0],
+        rows[1:],
+        said,
+        [told[0] for told in figures],
+        [told[1:-2] for told in figures],
+        [told[-2] for told in figures],
+        [told[-1] for told in figures],
+        damaged,
+        [[]] * len(said) if weak_rows is None else weak_rows,
+    )
