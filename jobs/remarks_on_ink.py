@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 # chosen by trial on the test drawings
 LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
-TINY_MM = 1e-9  # so that a sheet of nothing but filled shapes has a share
 # of the ink that is joined to a line: if the line is less, the rest is worth a remark
 FEW_SHARE = 0.7
 
@@ -38,15 +37,23 @@ def _of_all(trace: Trace) -> Iterator[str]:
     """Ink that was left out, where all of it was asked for."""
     if trace.ink is None:
         return
-    all_mm = max(trace.ink.followed_mm + trace.ink.left_mm + trace.ink.pale_mm, TINY_MM)
-    left = trace.ink.left_mm / all_mm
+    left = trace.ink.left_mm / trace.ink.all_mm
     if left > LEFT_SHARE:
         yield (
             f"{trace.ink.left_mm:.0f} mm of ink ({100 * left:.0f} %) could not be followed: stretches that "
             "are too short or too unclear to put the head down; the figures list their places, and "
             "--picture marks them; scan at a higher resolution"
         )
-    pale = trace.ink.pale_mm / all_mm
+    single = trace.ink.single_mm / trace.ink.all_mm
+    if single > LEFT_SHARE:
+        x, y, long_mm = trace.ink.single[0]
+        yield (
+            f"{trace.ink.single_mm:.0f} mm of ink ({100 * single:.0f} %) look like two lines nearer to each "
+            f"other than a pen's width, and one stroke runs there (the longest, {long_mm:.0f} mm, about "
+            f"{x:.1f},{y:.1f} mm; --picture marks them): if two lines are meant, draw them further apart or "
+            "with a finer pen"
+        )
+    pale = trace.ink.pale_mm / trace.ink.all_mm
     if pale > LEFT_SHARE:
         x, y, _ = trace.ink.pale[0]
         yield (

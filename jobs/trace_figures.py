@@ -52,6 +52,7 @@ def ink(trace: Trace) -> dict[str, Any]:
         "ink_followed_mm": balance.followed_mm,
         "specks_left_out_mm": balance.specks_mm,
         "pale_lines_left_out_mm": balance.pale_mm,
+        "doubled_ink_run_once_mm": balance.single_mm,
         "filled_shapes_left_out_mm": balance.solid_mm,
         "lettering_followed_mm": balance.lettering_mm,
         "lettering_left_out_mm": balance.letters_mm,
@@ -76,6 +77,11 @@ def ink(trace: Trace) -> dict[str, Any]:
         "places_left_out": [
             {"left_out_place_mm": (x, y), "left_out_mm": length_mm}
             for x, y, length_mm in balance.lost
+        ]
+        or None,
+        "places_run_once": [
+            {"doubled_place_mm": (x, y), "doubled_mm": length_mm}
+            for x, y, length_mm in balance.single
         ]
         or None,
     }

@@ -76,6 +76,8 @@ class Traced:
         if self.trace.ink is not None:
             lost = self.trace.ink.lost[:MARKED]
             stops_mm |= {f"left {k}": (x, y) for k, (x, y, _) in enumerate(lost, 1)}
+            single = self.trace.ink.single[:MARKED]
+            stops_mm |= {f"two lines {k}": (x, y) for k, (x, y, _) in enumerate(single, 1)}
             pale = self.trace.ink.pale[:PALE_MARKED]
             stops_mm |= {f"pale {k}": (x, y) for k, (x, y, _) in enumerate(pale, 1)}
         beside = enumerate(self.trace.unexplained[:MARKED], 1)

@@ -55,7 +55,10 @@ def solved(sheet: FeltSheet) -> Junctions:
     for _ in range(SOLVED_AGAIN):
         junctions = Junctions(net_of(sheet, two | bare), sheet.settings)
         lines = [line.stretch for line in junctions.net.lines]
-        together = {
+        together = dict.fromkeys(
+            (sheet.doubled.stations.keys() & set(lines)) - parted - bare, sheet.doubled.pen_mm
+        )
+        together |= {
             stretch: width_mm
             for n, stretch in enumerate(lines)
             if stretch not in parted | bare and (width_mm := junctions.single_mm(n)) is not None

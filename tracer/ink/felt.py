@@ -165,24 +165,6 @@ def is_steady(run: Run, width_mm: float) -> bool:
     return bool(wide_mm - narrow_mm < STEADY * wide_mm)
 
 
-def strands(stations: Run, width_mm: float) -> list[Run]:
-    """The two lines of a width whose ink runs together along some stations: half a width within its rims."""
-    known = np.isfinite(stations.widths_mm)
-    if known.sum() < FEWEST_STATIONS:
-        return []
-    first, last = np.flatnonzero(known)[[0, -1]]
-    part = stations.part(int(first), int(last) + 1)
-    at = np.arange(len(part))
-    widths = np.interp(at, at[known[first : last + 1]], part.widths_mm[known[first : last + 1]])
-    aside = 0.5 * np.maximum(widths - width_mm, 0.0)
-    normals = np.column_stack([-np.sin(part.headings_rad), np.cos(part.headings_rad)])
-    own = replace(part, widths_mm=np.full(len(part), width_mm))
-    return [
-        smooth(replace(own, places_mm=part.places_mm + side * aside[:, None] * normals))
-        for side in (1, -1)
-    ]
-
-
 def whole(stations: Run) -> Run:
     """All the stations as one run, though the line is clean nowhere."""
     usual_mm = stations.view.width_mm

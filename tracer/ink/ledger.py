@@ -3,13 +3,15 @@
 Signals: the sheet as it was felt, and the ways of the head, (n, 2) sheet mm, in; the balance out, mm of line
 by the area of its ink, and what was left out, by reason.
 
-The thinned ink says where the middles of all lines are: those near to a way have been followed.
+The thinned ink says where the middles of all lines are: those near to a way have been followed. Ink that two
+lines share is followed by two strokes.
 
 Source: our own; the patent has one contour to a tape.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import cv2
@@ -24,6 +26,7 @@ from morfax.tracer.ink.graph import Graph
 from morfax.tracer.ink.hatching import Hatching, hatching
 from morfax.tracer.ink.left_out import Area, InkLeft
 from morfax.tracer.ink.pale import Pale, pale_lines
+from morfax.tracer.ink.stretches import FeltSheet
 
 EVERY_MM = 0.1  # ways are held against the ink so often
 BESIDE_WIDTHS = 0.7  # ink nearer to a way than this is that way's; by trial on drawings of nets
@@ -31,6 +34,10 @@ SPECK_MM = 2.0  # a shorter patch of ink on which no stroke runs is a speck ...
 DOT_WIDTHS = 2.5  # ... and one that is no longer in its own widths a dot; 1.8 is a round one
 LOST_MM = 1.0  # a stretch that is left is told if it is as long
 HALF = 0.5
+TWO_LINES = 1.0  # pen's widths: a way no further from the middle of doubled ink runs in it
+ONCE_SHARE = (
+    0.1  # of doubled ink: its lines bend, and are a little longer or shorter than its middle
+)
 TINY = 1e-9  # so that a sheet of nothing but filled shapes has a share
 
 
@@ -43,6 +50,7 @@ class Balance(NamedTuple):
     `lost`: stretches on which no stroke runs, (place X, place Y, length) mm, the longest first. `letters_mm`
     of lettering were left out, `lettering_mm` followed. `areas`: solid areas and letters that were left out.
     `hatching`: families of strokes that are hatching, and were followed. `pale`: lines too pale to be ink.
+    `single`: stretches of doubled ink (see `doubled`) along which only one stroke runs, likewise.
     """
 
     followed_mm: float
@@ -55,6 +63,7 @@ class Balance(NamedTuple):
     areas: tuple[Area, ...] = ()
     hatching: tuple[Hatching, ...] = ()
     pale: tuple[Pale, ...] = ()
+    single: tuple[Patch, ...] = ()
     outlines_asked: bool = False  # round the solid areas
 
     @property
@@ -63,23 +72,32 @@ class Balance(NamedTuple):
         return sum(line.length_mm for line in self.pale)
 
     @property
+    def single_mm(self) -> float:
+        """The length of lines that share their ink with another, along which no stroke of their own runs."""
+        return sum(length_mm for _, _, length_mm in self.single)
+
+    @property
+    def all_mm(self) -> float:
+        """The length of the lines' ink: what was left out on purpose apart."""
+        return max(self.followed_mm + self.left_mm + self.pale_mm + self.single_mm, TINY)
+
+    @property
     def solids(self) -> list[Area]:
         """The solid areas, the largest first."""
         return [area for area in self.areas if area.what == "solid area"]
 
     @property
     def followed_share(self) -> float:
-        """Share of the lines' ink, pale lines too, along which strokes run; what was left out on purpose
-        apart.
-        """
-        return self.followed_mm / max(self.followed_mm + self.left_mm + self.pale_mm, TINY)
+        """Share of the lines' ink, pale and doubled lines too, along which strokes run."""
+        return self.followed_mm / self.all_mm
 
 
-def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Balance:
+def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> Balance:
     """What has been followed along some ways (n, 2) mm, and what is left."""
     from scipy.spatial import cKDTree
 
     # 1. which of the thinned pixels are a way's
+    graph = felt.graph
     places = graph.places_mm(sheet.drawing)
     patch = _patches_at(sheet, graph.rows, graph.columns)
     usual_mm = _usual_mm(sheet, left)
@@ -105,6 +123,7 @@ def balance(sheet: Sheet, graph: Graph, left: InkLeft, ways: list[Array]) -> Bal
         left.areas,
         tuple(hatching(ways)),
         tuple(pale_lines(sheet.drawing)),
+        tuple(_single(felt, places, run)),
     )
 
 
@@ -134,6 +153,28 @@ def _patches_at(sheet: Sheet, rows: Indices, columns: Indices) -> Indices:
     begins = patches.row.astype(np.int64) * width + patches.begin
     runs = np.searchsorted(begins, rows * width + columns, side="right") - 1
     return np.asarray(patches.patch[np.maximum(runs, 0)], np.int64)
+
+
+def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[Patch]:
+    """The stretches of doubled ink along which no second stroke runs, the longest first."""
+    from scipy.spatial import cKDTree
+
+    doubled, found = felt.doubled, list[Patch]()
+    if not doubled.stations:
+        return
+    # 1. how much of the ways, places `EVERY_MM` apart, each thinned pixel has
+    away, nearest = cKDTree(places).query(run)
+    come = np.bincount(nearest[away < TWO_LINES * doubled.pen_mm], minlength=len(places))
+    for n, flags in doubled.stations.items():
+        # 2. along the doubled part of a stretch
+        pixels = felt.graph.stretches[n].pixels
+        at = np.round(np.linspace(0, len(flags) - 1, len(pixels))).astype(int)
+        there, long_mm = pixels[flags[at]], doubled.length_mm(felt.felt, n)
+        left_mm = float(np.clip(2 * long_mm - come[there].sum() * EVERY_MM, 0.0, long_mm))
+        if len(there) and left_mm > ONCE_SHARE * long_mm:
+            x, y = places[there[len(there) // 2]]
+            found.append((round(float(x), 1), round(float(y), 1), round(left_mm, 1)))
+    yield from sorted(found, key=lambda patch: -patch[2])
 
 
 def _lost(graph: Graph, places: Array, is_near: Array) -> list[Patch]:

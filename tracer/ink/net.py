@@ -17,11 +17,10 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-import numpy as np
-
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.felt import Parted, strands, whole
+from morfax.tracer.ink.doubled import strands
+from morfax.tracer.ink.felt import Parted, whole
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet, felt_mm, with_width
@@ -32,7 +31,6 @@ from morfax.tracer.sensing.view import View
 # All limits below were chosen by trial on drawings of nets.
 INNER_WIDTHS = 40.0  # a stretch between forks that is no longer may lie within a junction
 CLEAN_SHARE = 0.5  # of its length: more of it is clean line of its own
-SHARED = 1.15  # times the line's width: ink that two lines share is wider
 OWN_WIDTHS = 1.2  # a shorter one has no ink that is not the junction's
 COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
 # the middle of a line that hangs together with nothing: a shorter one is a speck or a dot; the larger
@@ -90,10 +88,14 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
         # 1. specks, and stretches within a junction: they make one of the nodes at their ends
         if not is_ring and ends == [1, 1] and short:
             net.left_mm += felt_mm(run)
-        elif n not in own and not is_ring and _is_inner(run, some, width_mm, min(ends)):
+        elif (
+            n not in own
+            and not is_ring
+            and _is_inner(run, some, sheet.is_shared(n, run), min(ends))
+        ):
             same.join(*stretch.nodes)
             inner.append(n)
-        elif n in own and _is_shared(run, width_mm) and (two := strands(run, width_mm)):
+        elif n in own and sheet.is_shared(n, run) and (two := strands(run, width_mm)):
             kept += [(n, ([strand], [])) for strand in two]
         else:
             kept.append((n, (some, parted) if some else ([whole(run)], [])))
@@ -117,21 +119,14 @@ def _line_of(sheet: FeltSheet, n: int, parted: Parted, same: _Same) -> FeltLine:
     return FeltLine(*parted, ends, sheet.widths_mm[n], felt_mm(sheet.felt[n]), n)
 
 
-def _is_inner(run: Run, clean: list[Run], width_mm: float, fewest: int) -> bool:
+def _is_inner(run: Run, clean: list[Run], shared: bool, fewest: int) -> bool:
     """Whether a stretch lies within a junction; `fewest` stretches meet at one of its ends."""
-    length_mm = felt_mm(run)
+    length_mm, width_mm = felt_mm(run), run.view.width_mm
     clean_mm = sum(some.length_mm for some in clean)
     if length_mm > INNER_WIDTHS * width_mm or clean_mm > CLEAN_SHARE * length_mm:
         return False
-    shared = _is_shared(run, width_mm)
     # one that ends in no other is the tip of two lines that run together, or a stub
     return shared if fewest == 1 else shared or length_mm < 3 * width_mm
-
-
-def _is_shared(run: Run, width_mm: float) -> bool:
-    """Whether the ink along a run is that of two lines."""
-    known = run.widths_mm[np.isfinite(run.widths_mm)]
-    return len(known) < 0.5 * len(run) or float(np.median(known)) > SHARED * width_mm
 
 
 class _Same:

@@ -26,7 +26,8 @@ LEAST_PLACES = 5  # for a parabola of their own; by trial
 class Run:
     """Clean stations of a line in the order of travel: places (n, 2) mm, headings rad, bends 1/mm, widths mm.
 
-    The view is the head's of that line.
+    The view is the head's of that line. A strand is one of two lines that share their ink, in which no cell
+    feels its edges.
     """
 
     places_mm: Array
@@ -35,6 +36,7 @@ class Run:
     widths_mm: Array
     view: View
     legs_mm: float = 0.0  # how long the legs at its ends are, if longer than the view's
+    is_strand: bool = False
     about: Run | None = None  # the same run the other way, if that was there first
     _legs: dict[bool, Leg] = field(
         default_factory=dict
@@ -58,6 +60,7 @@ class Run:
             self.widths_mm[::-1],
             self.view,
             self.legs_mm,
+            self.is_strand,
             self,
         )
 
@@ -71,6 +74,7 @@ class Run:
             self.widths_mm[part],
             self.view,
             self.legs_mm,
+            self.is_strand,
         )
 
     def stations(self) -> Array:
@@ -109,7 +113,7 @@ def smooth(run: Run) -> Run:
     places, headings, bends = _parabolas(run.places_mm, half_mm, run.view.step_mm)
     # a speck within a run has no width of its own
     widths = np.where(np.isfinite(run.widths_mm), run.widths_mm, run.view.width_mm)
-    return Run(places, headings, bends, widths, run.view, run.legs_mm)
+    return Run(places, headings, bends, widths, run.view, run.legs_mm, run.is_strand)
 
 
 @njit(cache=True)

@@ -19,6 +19,7 @@ from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.doubled import SHARED, Doubled
 from morfax.tracer.ink.felt import Ends, Parted, feel_along, is_steady, judged, usual_width_mm
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
@@ -33,6 +34,7 @@ SHORT_WIDTHS = 30.0  # a shorter stretch is judged by the widths of those beside
 ENOUGH_WIDTHS = 6.0
 FAR = 6  # stretches straight on to either side
 STRAIGHT_COS = 0.85  # 32 degrees
+HALF = 0.5  # of a stretch's stations
 AWAY_WIDTHS = 3.0  # from a node, over which a stretch shows where it leads
 
 
@@ -45,6 +47,7 @@ class FeltSheet:
     widths_mm: list[float]
     settings: Settings
     ends: list[Ends]  # of each stretch, whether the ink ends there
+    doubled: Doubled = field(default_factory=Doubled)
     _runs: dict[tuple[int, float], Parted] = field(default_factory=dict)
 
     def runs(self, number: int) -> Parted:
@@ -56,6 +59,13 @@ class FeltSheet:
         runs, parted = self._runs[key]
         return list(runs), list(parted)
 
+    def is_shared(self, number: int, run: Run) -> bool:
+        """Whether the ink along a stretch is that of two lines, each as wide as a run's view says."""
+        known = run.widths_mm[np.isfinite(run.widths_mm)]
+        if number in self.doubled.stations or len(known) < HALF * len(run):
+            return True
+        return float(np.median(known)) > SHARED * run.view.width_mm
+
     @classmethod
     def of(cls, drawing: Drawing, settings: Settings, ink: Mask) -> FeltSheet:
         """Find and feel the stretches of some ink of a drawing."""
@@ -64,8 +74,9 @@ class FeltSheet:
         felt = _felt(graph, seen)
         at = graph.at_nodes()
         widths = _line_widths(graph, felt, at, settings)
+        doubled = Doubled() if settings.line_width_mm else Doubled.of(felt)
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
-        return cls(graph, felt, widths, settings, ends)
+        return cls(graph, felt, widths, settings, ends, doubled)
 
 
 def _is_end(node: int, at: dict[int, list[int]]) -> bool:

@@ -157,7 +157,10 @@ class InkHead:
             left_mm = (len(run) - 1 - at) * view.step_mm - carriage.tuning.lead_mm
             if left_mm < BEYOND_LEADS * carriage.tuning.lead_mm:
                 return
-            view, at = self._chunk(run, view, at, left_mm)
+            if run.is_strand:
+                at = self._along(run, at, math.floor(left_mm / view.step_mm), view)
+            else:
+                view, at = self._chunk(run, view, at, left_mm)
             if self.told is not None:
                 self.told(carriage.travel_mm)
 
@@ -176,10 +179,7 @@ class InkHead:
             carriage.retune(view)
             return view, at
         at = self._station(run, at)
-        on = min(len(run) - 1, at + round(view.leg_mm / view.step_mm))
-        self._from_memory(run, at, on)
-        carriage.aim(view, _leg_at(run, on))
-        return view, on
+        return view, self._along(run, at, round(view.leg_mm / view.step_mm), view)
 
     def _strayed(self, run: Run, at: int, mark: Mark) -> bool:
         """Whether the newest positions have left what was felt."""
@@ -221,10 +221,13 @@ class InkHead:
         """From a run's end to the end of the stroke."""
         self.carriage.run([self._course(run, self._station(run, self.at), end)])
 
-    def _from_memory(self, run: Run, first: int, last: int) -> None:
-        """Run along what was felt from one station to another."""
-        end = run.places_mm[last], float(run.headings_rad[last])
-        self.carriage.run([self._course(run, first, end)], self.settings.speed_mm_s, STATIONS)
+    def _along(self, run: Run, at: int, stations: int, view: View) -> int:
+        """Run along so many stations from memory, aimed at what follows; the station come to."""
+        on = min(len(run) - 1, at + stations)
+        end = run.places_mm[on], float(run.headings_rad[on])
+        self.carriage.run([self._course(run, at, end)], self.settings.speed_mm_s, STATIONS)
+        self.carriage.aim(view, _leg_at(run, on))
+        return on
 
     def _course(self, run: Run, at: int, end: tuple[Array, float]) -> Array:
         """From where the head stands along a run's stations to a place and heading, (n, 2) mm."""

@@ -61,7 +61,7 @@ def _of_strokes(
     # 1. the lines and their junctions, and the head along each
     felt = FeltSheet.of(left.drawing, settings, left.ink)
     junctions = solved(felt)
-    strokes = list(_strokes(junctions, settings, progress))
+    strokes = _long_enough(list(_strokes(junctions, settings, progress)))
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
@@ -70,7 +70,7 @@ def _of_strokes(
     # 2. the longest first, and in an order with short idle ways
     strokes.sort(key=lambda stroke: -length_mm(stroke.way_mm))
     lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
-    ink = balance(sheet, felt.graph, left, [stroke.way_mm for stroke in strokes])
+    ink = balance(sheet, felt, left, [stroke.way_mm for stroke in strokes])
     return Trace(tuple(lines), Operator(), left_out_mm=ink.left_mm, ink=ink)
 
 
@@ -89,6 +89,17 @@ def _strokes(
         before_mm += length_mm(stroke.way_mm)
         told(0.0)
         yield stroke
+
+
+def _long_enough(strokes: list[InkStroke]) -> list[InkStroke]:
+    """The strokes without those that are shorter than the lines are wide: they lie within others' ink."""
+    lengths_mm = np.array([length_mm(stroke.way_mm) for stroke in strokes])
+    if not len(strokes):
+        return strokes
+    widths_mm = np.array([stroke.width_mm for stroke in strokes])
+    usual_mm = float(np.average(widths_mm, weights=lengths_mm))
+    long = [stroke for stroke, mm in zip(strokes, lengths_mm, strict=True) if mm > usual_mm]
+    return long or strokes
 
 
 def _line(stroke: InkStroke, number: int) -> Line:

@@ -1,0 +1,89 @@
+"""Two lines nearer to each other than a pen's width all along: two strokes, or told."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+
+from morfax.jobs.remarks_on_ink import of_ink
+from morfax.jobs.trace_figures import ink as figures_of
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.doubled import Doubled
+from morfax.tracer.ink.ledger import balance
+from morfax.tracer.ink.left_out import ink_left
+from morfax.tracer.ink.stretches import FeltSheet
+from morfax.tracer.program.trace_ink import trace_ink
+from tests.tracer.inked import WIDTH_MM, Points, inked, polyline, together
+
+LONG_MM = 40.0
+CLEAR = polyline((5, 40), (55, 40))  # a line by itself
+
+
+def near_lines(crossed: bool) -> tuple[Points, Points]:
+    """Two lines apart by three widths at their ends, by 0.8 widths and less for 25 mm in between.
+
+    They change sides in the middle, or they touch there.
+    """
+    along = np.linspace(-1, 1, 400)
+    apart_mm = WIDTH_MM * (2.4 * along**5 + 0.8 * along)
+    if not crossed:
+        apart_mm = WIDTH_MM * (2.2 * along**6 + 0.8 * along**2)
+    x = 30 + 0.5 * LONG_MM * along
+    return (
+        np.column_stack([x, 20 + 0.5 * apart_mm]),
+        np.column_stack([x, 20 - 0.5 * apart_mm]),
+    )
+
+
+@pytest.mark.parametrize("crossed", [True, False])
+def test_two_lines_nearer_than_a_width_are_two_strokes(crossed: bool) -> None:
+    one, other = near_lines(crossed)
+    found = trace_ink(inked(one, other, CLEAR, seed=1))
+    assert found.ink is not None and found.ink.followed_share > 0.999
+    # each of the lines is one stroke from end to end, and on its own side all along
+    assert len(found.lines) == 3
+    for line in (one, other):
+        away_mm = min(
+            float(shapely.hausdorff_distance(*map(shapely.LineString, (line, stroke.xy_mm))))
+            for stroke in found.lines
+        )
+        assert away_mm < 0.25 * WIDTH_MM  # the other line is up to three widths away
+
+
+def test_the_ledger_counts_the_line_that_no_second_stroke_follows() -> None:
+    drawing = inked(*near_lines(crossed=True), CLEAR, seed=1)
+    left = ink_left(drawing.sheet)
+    felt = FeltSheet.of(left.drawing, Settings(), left.ink)
+    ways = [polyline((10, 20), (50, 20)), CLEAR]  # once through the middle of both
+    counted = balance(drawing.sheet, felt, left, ways)
+    assert counted.followed_share < 0.9
+    ((x, y, long_mm),) = counted.single
+    assert abs(x - 30) < 12 and abs(y - 20) < 1 and 10 < long_mm < LONG_MM
+
+
+def test_it_is_told_with_its_place_and_in_the_figures() -> None:
+    found = trace_ink(inked(CLEAR, seed=1))
+    assert found.ink is not None
+    told = replace(found, ink=found.ink._replace(single=((30.0, 20.0, 12.0),)))
+    (said,) = [text for text in of_ink(told, several=True) if "nearer" in text]
+    assert "12 mm of ink (19 %)" in said and "30.0,20.0" in said
+    assert figures_of(told)["doubled_ink_run_once_mm"] == 12.0
+    assert told.ink is not None and told.ink.followed_share < 0.82
+
+
+def test_a_line_of_a_broader_pen_is_one_line() -> None:
+    drawn = together((CLEAR, WIDTH_MM), (polyline((5, 20), (55, 20)), 1.6 * WIDTH_MM), seed=1)
+    found = trace_ink(drawn)
+    assert len(found.lines) == 2 and found.ink is not None and not found.ink.single
+
+
+def test_rough_lines_do_not_tell() -> None:
+    """The width of a rough line says nothing of a second one."""
+    rng, x = np.random.default_rng(1), np.linspace(5, 55, 400)
+    rough = np.column_stack([np.r_[x, x[::-1]], np.r_[20 + rng.uniform(-0.1, 0.1, 800)]])
+    drawing = inked(rough, CLEAR, seed=1)
+    left = ink_left(drawing.sheet)
+    assert not Doubled.of(FeltSheet.of(left.drawing, Settings(), left.ink).felt).stations

@@ -1,0 +1,215 @@
+"""Doubled ink: stretches that two lines share, nearer to each other than a pen's width all along.
+
+Signals: the stations along each stretch (places mm, widths mm) in; out the pen's width and, of each stretch,
+which stations lie in ink that two lines share; and the stations of both lines, half a pen's width within the
+rims of their ink.
+
+    ════════════════      a pen's lines are as wide everywhere; two of them that run together show ink
+    ══════──────────      between one and about two widths wide, which swells and shrinks slowly
+
+Only a clean sheet tells that: one whose lines have smooth edges and on which much of the ink is as narrow as
+the narrowest. Ink of one even width is a line of a broader pen.
+
+Source: our own. Questions: a brush that is pressed evenly to just such widths looks the same.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.thinning import Indices
+from morfax.tracer.ink.felt import FEWEST_STATIONS
+from morfax.tracer.ink.run import Run, smooth
+
+Flags = NDArray[np.bool_]
+
+# All limits below were chosen by trial on drawings of nets and on line art.
+SHARED = 1.15  # times the line's width: ink that two lines share is wider
+TWO = 2.5  # times the pen's width: ink that is wider is no two lines of it
+AVERAGED = 2.0  # widths over which a width is averaged
+BESIDE = 1.5  # widths from the ends of a stretch: there others cross it
+NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
+# of the pen's width about it; of the ink, which is as narrow
+SO_NARROW, LEAST_NARROW = 0.05, 0.05
+SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
+EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is one line
+ABOUT = 3.0  # widths of a pen: two stretches whose ends are so near meet at one crossing
+# of its way: ink of two lines that becomes wider by more has come to others that cross it
+FLARE = 0.15
+TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
+CROSSED = (
+    3.0,
+    6.0,
+)  # widths from there: the slope of the ink's width up to the nearer place ...
+# ... is so much of that between the two, or more: of lines that only touch, as a parabola does, a third
+LEVEL_OFF = 0.45
+FEWEST, LEAST_WIDTHS = (
+    10,
+    8.0,
+)  # stations that tell a width; widths of a pen that are a long way
+
+
+class Doubled(NamedTuple):
+    """The pen's width, mm, and the stretches that two lines share: which of the stations of each."""
+
+    pen_mm: float = math.nan
+    stations: dict[int, Flags] = {}  # noqa: RUF012 - a NamedTuple's default, never written to
+
+    @classmethod
+    def of(cls, felt: Sequence[Run]) -> Doubled:
+        """Find the doubled stretches of a sheet; none of one that is not clean."""
+        # 1. how wide the ink is along each stretch, without its ends
+        found = {
+            n: widths for n, run in enumerate(felt) if (widths := _widths(run)) is not None
+        }
+        pen_mm = _pen_mm([(some.averaged, some.rough, felt[n]) for n, some in found.items()])
+        if not math.isfinite(pen_mm):
+            return cls()
+        # 2. those that swell and shrink, and even ones where these go on
+        broad = {
+            n: flags
+            for n, some in found.items()
+            if (flags := _broad(felt[n], some.averaged, pen_mm)) is not None
+        }
+        doubled = {n for n in broad if not _is_even(found[n].averaged)}
+        while more := {n for n in broad.keys() - doubled if _goes_on(felt, n, doubled, pen_mm)}:
+            doubled |= more
+        return cls(pen_mm, {n: broad[n] for n in sorted(doubled)})
+
+    def length_mm(self, felt: Sequence[Run], number: int) -> float:
+        """The length of the ink of a stretch that two lines share, mm."""
+        flags = self.stations.get(number)
+        return 0.0 if flags is None else float(flags.sum()) * felt[number].view.step_mm
+
+
+class _Widths(NamedTuple):
+    """Widths along a stretch, averaged, mm (NaN near its ends), and how they differ from that, of a width."""
+
+    averaged: Array
+    rough: float
+
+
+def _widths(run: Run) -> _Widths | None:
+    """The averaged widths of a stretch; None if it is too short."""
+    known = np.isfinite(run.widths_mm)
+    if known.sum() < FEWEST:
+        return None
+    usual_mm = float(np.median(run.widths_mm[known]))
+    off = math.ceil(BESIDE * usual_mm / run.view.step_mm)
+    inside = known.copy()
+    inside[:off] = inside[len(run) - off :] = False
+    if inside.sum() < FEWEST:
+        return None
+    at = np.arange(len(run))
+    filled = np.interp(at, at[inside], run.widths_mm[inside])
+    reach = max(1, round(0.5 * AVERAGED * usual_mm / run.view.step_mm))
+    padded = np.pad(filled, reach, mode="edge")
+    averaged = np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
+    rough = float(np.sqrt(np.mean((run.widths_mm - averaged)[inside] ** 2))) / usual_mm
+    return _Widths(np.where(inside, averaged, np.nan), rough)
+
+
+def _pen_mm(some: Sequence[tuple[Array, float, Run]]) -> float:
+    """The width of a sheet's pen, mm; NaN if the sheet is not clean."""
+    if not some:
+        return math.nan
+    lengths = np.array(
+        [np.isfinite(averaged).sum() * run.view.step_mm for averaged, _, run in some]
+    )
+    rough = float(np.average([rough for _, rough, _ in some], weights=lengths))
+    widths = np.sort(
+        np.concatenate([averaged[np.isfinite(averaged)] for averaged, _, _ in some])
+    )
+    pen_mm = float(widths[round(NARROWEST * (len(widths) - 1))])
+    are_narrow = np.abs(widths / pen_mm - 1) < SO_NARROW
+    is_clean = rough < SMOOTH_EDGES and float(np.mean(are_narrow)) > LEAST_NARROW
+    return float(np.median(widths[are_narrow])) if is_clean else math.nan
+
+
+def _broad(run: Run, averaged: Array, pen_mm: float) -> Flags | None:
+    """Which stations of a stretch lie in ink as broad as that of two lines; None if it is no long way."""
+    if np.nanmax(averaged) > TWO * pen_mm:
+        return None
+    flags = averaged > SHARED * pen_mm  # NaN is not
+    is_long = float(flags.sum()) * run.view.step_mm > LEAST_WIDTHS * pen_mm
+    return flags if is_long else None
+
+
+def _is_even(averaged: Array) -> bool:
+    """Whether a stretch is as wide all along."""
+    low_mm, high_mm = np.nanpercentile(averaged, (10, 90))
+    return bool(high_mm - low_mm < EVEN * high_mm)
+
+
+def _goes_on(felt: Sequence[Run], number: int, doubled: set[int], pen_mm: float) -> bool:
+    """Whether a doubled stretch begins or ends about where a stretch does."""
+    ends = felt[number].places_mm[[0, -1]]
+    others = np.array([felt[n].places_mm[[0, -1]] for n in doubled]).reshape(-1, 2)
+    apart = ends[:, None] - others[None]
+    return bool(np.any(np.hypot(apart[..., 0], apart[..., 1]) < ABOUT * pen_mm))
+
+
+def strands(stations: Run, width_mm: float) -> list[Run]:
+    """The two lines of a width whose ink runs together along some stations: half a width within its rims.
+
+    Where the ink is as narrow as one line they touch, or change sides:
+
+        width │ ╲  ╱  crosses: it comes and goes at a slope     ╲_  _╱  touches: the slope fades
+              │  ╲╱                                               ╲╱
+    """
+    known = np.flatnonzero(np.isfinite(stations.widths_mm))
+    if len(known) < FEWEST_STATIONS:
+        return []
+    at = np.arange(len(stations))
+    widths = np.interp(at, known, stations.widths_mm[known])
+    reach = max(1, round(0.5 * width_mm / stations.view.step_mm))
+    first, last = _without_flares(widths, known, reach, FLARE * reach * stations.view.step_mm)
+    part, widths = stations.part(first, last), widths[first:last]
+    aside = 0.5 * np.maximum(widths - width_mm, 0.0)
+    aside *= _sides(aside, width_mm, stations.view.step_mm)
+    normals = np.column_stack([-np.sin(part.headings_rad), np.cos(part.headings_rad)])
+    own = replace(part, widths_mm=np.full(len(part), width_mm), is_strand=True)
+    return [
+        smooth(replace(own, places_mm=part.places_mm + side * aside[:, None] * normals))
+        for side in (1, -1)
+    ]
+
+
+def _sides(aside: Array, width_mm: float, step_mm: float) -> Array:
+    """On which side one of two lines is at each station, 1 or -1: it changes where they cross."""
+    near, far = (round(share * width_mm / step_mm) for share in CROSSED)
+    sides = np.ones(len(aside))
+    narrow = np.flatnonzero(aside < TOUCHING * width_mm)
+    for some in np.split(narrow, np.flatnonzero(np.diff(narrow) > near) + 1):
+        if not len(some) or some[0] < far or some[-1] + far >= len(aside):
+            continue
+        at = round(float(some.mean()))
+        slopes = [
+            (aside[at + side * far] - aside[at + side * near]) / (far - near)
+            for side in (-1, 1)
+        ]
+        chords = [aside[at + side * near] / near for side in (-1, 1)]
+        if min(chords) > LEVEL_OFF * max(slopes) and min(slopes) > 0:
+            sides[at:] *= -1
+    return sides
+
+
+def _without_flares(
+    widths: Array, known: Indices, reach: int, most_mm: float
+) -> tuple[int, int]:
+    """The first station and the one after the last between which ink of two lines does not flare out into
+    what crosses it, by more than a width over some stations; all that are known where it never lies still.
+    """
+    first, last = int(known[0]), int(known[-1]) + 1
+    steps = np.abs(widths[first + reach : last] - widths[first : last - reach])
+    quiet = np.flatnonzero(steps < most_mm)
+    if len(quiet) < FEWEST_STATIONS:
+        return first, last
+    return first + int(quiet[0]), first + int(quiet[-1]) + reach + 1
