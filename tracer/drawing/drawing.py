@@ -73,7 +73,8 @@ class Drawing:
     shapes are, on the picture reduced by a whole number. `notes` on the file are for the operator;
     `flattening` is how well a photograph was made flat; `corrected` what the operator has put right, and
     `bare` the drawing before its ink was put right. The pixels of a coarse scan are made so many times
-    `finer`. Of `both` solid areas are as dark as lines (see `shapes_among_lines`).
+    `finer`. Of `both` solid areas are as dark as lines (see `shapes_among_lines`). Lines look `seen_px` wide
+    on the picture's own pixels.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -89,6 +90,7 @@ class Drawing:
     bare: Drawing | None = None
     finer: int = 1
     both: bool = False
+    seen_px: float = math.inf
 
     def times_at(self, place_mm: NDArray[np.float64]) -> int:
         """How many times enlarged the head follows the edge nearest to a place; 1 on a drawing of lines.
@@ -228,7 +230,13 @@ class Drawing:
         if finer > 1:
             darkness = coarse.finer(np.asarray(darkness), finer)
         return cls(
-            darkness, pitch[0] / finer, scan.file, shapes=shapes, notes=notes, finer=finer
+            darkness,
+            pitch[0] / finer,
+            scan.file,
+            shapes=shapes,
+            notes=notes,
+            finer=finer,
+            seen_px=seen_px,
         )
 
 

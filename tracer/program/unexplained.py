@@ -11,7 +11,8 @@ A line that comes round may still be another than the one that was drawn, where 
 than two lines.
 
 On a coarse scan, whose pixels were made finer, lines look a pixel wider than they are, and a way that cuts
-off a spike or a bay runs over ink that is paler than a line, not over paper.
+off a spike or a bay runs over ink that is paler than a line, not over paper. Where lines are about a pixel
+wide, the ink that a pen would leave on the way is held against the sheet's (see `redrawn`).
 
 Source: our own; the operator of patent ES 361967 looks at the drawing and at the part. Questions: whether ink
 beside a line belongs to it, or is another line that touches it, the pen cannot know.
@@ -31,6 +32,7 @@ from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
+from morfax.tracer.program.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.photocell import darkness_along, without_aperture
 
@@ -39,6 +41,9 @@ BARE = 0.25  # darkness: paler places are paper
 # darkness: on a coarse scan a line's middle is darker; of 135 right paths on lines of 1 to 2 pixels 3 come
 # below it, in blurred corners, and all of 10 wrong ones; by trial
 PALE = 0.6
+# darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
+# less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
+ASTRAY = 0.2
 
 
 class Unexplained(NamedTuple):
@@ -64,6 +69,7 @@ def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
         return ()
     sheet, gap_mm = setup.sheet, setup.settings.gap_mm
     found = [*_ink_beside(sheet, closed, lines), *_bare_ways(sheet, closed, gap_mm)]
+    found = found or list(_astray(sheet, closed))
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
@@ -109,8 +115,7 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
             continue
         for middle, long_mm in _stretches(dark < PALE, come_mm, 0.0):
             x, y = places[middle]
-            dpi = coarse.wanted_dpi(_pixel_mm(sheet))
-            yield Unexplained((float(x), float(y)), long_mm, False, dpi)
+            yield Unexplained((float(x), float(y)), long_mm, False, _wanted_dpi(sheet))
 
 
 def _stretches(
@@ -122,6 +127,20 @@ def _stretches(
         long_mm = float(come_mm[end - 1] - come_mm[begin])
         if long_mm > least_mm:
             yield int(begin + end) // 2, long_mm
+
+
+def _astray(sheet: Sheet, closed: Sequence[Line]) -> Iterator[Unexplained]:
+    """Where the ink of closed lines of about a pixel is not what a pen would leave on their ways."""
+    is_finest = _is_coarse(sheet) and sheet.drawing.seen_px < coarse.SEEN_PX
+    for line in closed if is_finest else ():
+        most = most_astray(sheet.drawing, line.loop_mm)
+        if most.darkness > ASTRAY:
+            yield Unexplained(most.place_mm, _pixel_mm(sheet), False, _wanted_dpi(sheet))
+
+
+def _wanted_dpi(sheet: Sheet) -> int:
+    """The resolution that would show what is there."""
+    return coarse.wanted_dpi(_pixel_mm(sheet))
 
 
 def _is_coarse(sheet: Sheet) -> bool:

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from morfax.motion.polyline import at_lengths, length_mm, nearest_mm
+from morfax.tracer.drawing.coarse import SEEN_PX
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
@@ -108,3 +110,27 @@ def test_a_coarse_line_counts_a_pixel_less_wide_than_it_looks() -> None:
     (left,) = unexplained(Setup(drawing.sheet), [circle])
     assert left.is_ink and left.length_mm == pytest.approx(1.4, abs=0.5)  # a pixel
     assert unexplained(Setup(replace(drawing, finer=1).sheet), [circle]) == ()
+
+
+def aside(off_mm: float) -> Points:
+    """The way round `ACROSS`, so far aside along 1.5 mm of its upper edge: three pixels."""
+    up = 26 + off_mm
+    bend = [(24.5, 26), (24.2, up), (22.7, up), (22.4, 26)]
+    return polyline((6, 6), (40, 6), (40, 26), *bend, (6, 26), (6, 6))
+
+
+def test_a_way_beside_the_pixels_of_a_line_of_one_pixel_is_told() -> None:
+    """Such a way is over grey pixels, and over no bare paper."""
+    drawing = scanned(ACROSS, COARSE_DPI)
+    assert unexplained(Setup(drawing.sheet), [coarse(ACROSS)]) == ()
+    far = 0.35  # mm, of a pixel of 0.5: nearer by 0.1 mm it is within what right paths are off
+    (told,) = unexplained(Setup(drawing.sheet), [coarse(aside(far))])
+    assert told.wants_dpi == 200 and np.hypot(*(np.array(told.place_mm) - (23.5, 26))) < 1.5
+    broader = replace(drawing, seen_px=SEEN_PX)  # a line of two pixels has a flat top
+    assert unexplained(Setup(broader.sheet), [coarse(aside(far))]) == ()
+
+
+def test_what_differs_grows_with_the_distance() -> None:
+    drawing = scanned(ACROSS, COARSE_DPI)
+    differ = [most_astray(drawing, aside(off_mm)).darkness for off_mm in (0.0, 0.2, 0.4, 0.6)]
+    assert differ == sorted(differ) and differ[0] < 0.1 and differ[-1] > 0.25
