@@ -37,11 +37,10 @@ from morfax.tracer.junctions.rings import corner_at, fork_at
 from morfax.tracer.sensing.gauge import gauge
 from morfax.tracer.sensing.leg import FEWEST_STATIONS
 from morfax.tracer.sensing.photocell import Cells
-from morfax.tracer.sensing.scout import scout
-from morfax.tracer.sensing.view import LEG_MM, LEG_PX, LEG_WIDTHS, View
+from morfax.tracer.sensing.scout import felt, leg_mm
+from morfax.tracer.sensing.view import View
 
 CHUNKS = 4  # seconds of motion in one call at the most
-FEWEST = 4  # stations that a line is felt along at the least, as `View.feel` has it
 USUAL_FOLLOWS = 0.1  # as `View.like` has it
 
 
@@ -130,8 +129,8 @@ def _felt_clean(cells, head, known, gauged):  # type: ignore[no-untyped-def]
     """How far ahead the line is clean for the cell, mm, and its new gauge; 0 if the head has to see to it."""
     (state, t), (line, marks) = head, known
     # 1. the line from behind the axis on
-    leg_mm = _leg_mm(gauged[1], cells.pitch_mm)
-    back_mm, come_mm = FROM_BEHIND[0] * leg_mm, state.travel_mm - line.clean_from_mm
+    own_mm = leg_mm(gauged[1], cells.pitch_mm)
+    back_mm, come_mm = FROM_BEHIND[0] * own_mm, state.travel_mm - line.clean_from_mm
     pose = line.clean_x_mm, line.clean_y_mm, line.clean_rad
     if come_mm > back_mm:
         pose = place_back(marks, back_mm)
@@ -143,40 +142,26 @@ def _felt_clean(cells, head, known, gauged):  # type: ignore[no-untyped-def]
     if math.isnan(level):
         level, width_mm, usual_mm = cells.level, gauged[1], gauged[2]
     now = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles)
-    leg_mm = _leg_mm(width_mm, cells.pitch_mm)
-    long_mm = back_mm + t.guard_lead_mm + leg_mm
-    seen = _felt(now, pose, width_mm, (line.step_mm, long_mm))
+    own_mm = leg_mm(width_mm, cells.pitch_mm)
+    long_mm = back_mm + t.guard_lead_mm + own_mm
+    seen = felt(now, pose, width_mm, (line.step_mm, long_mm))
     here = _on_its_way(state, t, seen)
-    if here < 0 or (len(seen) - here) * line.step_mm <= leg_mm:
+    if here < 0 or (len(seen) - here) * line.step_mm <= own_mm:
         return 0.0
     # 2. no fork, no ink beside it, no corner
     if fork_at(now, width_mm, seen, here) >= 0:
         return 0.0
     if max(state.guard_left, state.guard_right) > kernel.BESIDE:
         return 0.0
-    if _turns_ahead(now, (width_mm, leg_mm, line.step_mm), seen, here):
+    if _turns_ahead(now, (width_mm, own_mm, line.step_mm), seen, here):
         return 0.0
     # 3. the cell stands on it
-    clean_mm = _agreed_mm(state, t, seen, width_mm) - LEFT_LEGS * leg_mm
+    clean_mm = _agreed_mm(state, t, seen, width_mm) - LEFT_LEGS * own_mm
     is_doubtful = state.travel_mm < max(state.trusted_mm, line.memory_to_mm)
-    if is_doubtful or clean_mm <= LEAST_LEGS * leg_mm or corner_at(seen, here) >= 0:
+    if is_doubtful or clean_mm <= LEAST_LEGS * own_mm or corner_at(seen, here) >= 0:
         return 0.0
     gauged[0], gauged[1], gauged[2], gauged[3] = level, width_mm, usual_mm, 1.0
     return clean_mm
-
-
-@njit(cache=True)
-def _leg_mm(width_mm, pitch_mm):  # type: ignore[no-untyped-def]
-    """How much of a leg is felt for its direction (see `View.leg_mm`)."""
-    return max(LEG_MM, LEG_PX * pitch_mm, LEG_WIDTHS * width_mm)
-
-
-@njit(cache=True)
-def _felt(cells, pose, width_mm, along_mm):  # type: ignore[no-untyped-def]
-    """Stations (n, 3) from a pose, by the step and for the length of `along_mm` (see `View.feel`)."""
-    step_mm, length_mm = along_mm
-    stations = max(FEWEST, round(length_mm / step_mm) + 1)
-    return scout(cells, pose, width_mm, step_mm, stations)
 
 
 @njit(cache=True)
@@ -206,10 +191,10 @@ def _nearest(seen, x, y):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _turns_ahead(cells, sizes_mm, seen, here):  # type: ignore[no-untyped-def]
     """Whether a corner is in what is felt ahead, and a leg's length beyond (see `felt_corner`)."""
-    width_mm, leg_mm, step_mm = sizes_mm
+    width_mm, own_mm, step_mm = sizes_mm
     heading = math.atan2(seen[3, 1] - seen[0, 1], seen[3, 0] - seen[0, 0])
     pose = seen[0, 0], seen[0, 1], heading
-    more = _felt(cells, pose, width_mm, (step_mm, len(seen) * step_mm + leg_mm))
+    more = felt(cells, pose, width_mm, (step_mm, len(seen) * step_mm + own_mm))
     corner = corner_at(more if len(more) > len(seen) else seen, here + AHEAD)
     return 0 <= corner <= len(seen) - LEG_STATIONS
 

@@ -23,7 +23,7 @@ from morfax.tracer.following.plain_places import local_view
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.marks.reference import LARGEST_MM, Reference, references
+from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.sensing.leg import Leg, leg_of, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end, strokes_on
 from morfax.tracer.sensing.view import View
@@ -61,9 +61,7 @@ def at_ends(
         if leading is not None:
             return [leading]
     # 2. from one that is drawn; one further away has neither a lead line here nor an end of this line near it
-    about_mm = (
-        1.5 * LARGEST_MM + view.leg_mm + 4 * view.width_mm
-    )  # to where its lead line is felt
+    about_mm = view.leg_mm + 4 * view.width_mm  # to where its lead line is felt
     about_mm += LEAD_MM + NAMED_MM if ends else 0.0
     drawn = references(sheet, view, stroke, about_mm)
     for place_mm, lead in _named_first(drawn, reference_mm):

@@ -13,19 +13,22 @@ Source: patent ES 361967, section on use: the operator brings the head over the 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import Leg, centre_at, turn
-from morfax.tracer.sensing.photocell import LEVEL
+from morfax.tracer.sensing.leg import Leg, bend_at, centre_at, turn
+from morfax.tracer.sensing.photocell import LEVEL, Cells, darkness_at, ring
+from morfax.tracer.sensing.ray import edges
+from morfax.tracer.sensing.scout import felt, leg_mm
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on the test drawings.
@@ -42,14 +45,6 @@ FEWEST_STATIONS = 6  # felt to either side
 FELT = 1.5  # leg's lengths are felt to either side
 CENTRED = 0.6  # of a leg's length to either side makes the leg about the place
 BENT = 0.8  # rad in a leg's length: a line that bends by more is no parabola over that length
-
-
-class Scored(NamedTuple):
-    """A stance, and how plain its place is: length felt to the shorter side (mm), then less bend."""
-
-    length_mm: float
-    straightness: float
-    stance: Stance
 
 
 def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
@@ -87,13 +82,8 @@ def local_view(view: View, place: Array) -> View:
 
 def stance_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> Stance | None:
     """The plainest stance near a place of a line; None if the line is clean nowhere there."""
-    found = stances(view, places_of(stroke, place_mm, ABOUT_WIDTHS * stroke.width_mm))
-    return max(found, key=plainness).stance if found else None
-
-
-def plainness(scored: Scored) -> tuple[float, float]:
-    """By what stances are sorted, the plainest last."""
-    return scored.length_mm, scored.straightness
+    about_mm = ABOUT_WIDTHS * stroke.width_mm
+    return next(plainest_first(view, places_of(stroke, place_mm, about_mm)), None)
 
 
 def places_of(
@@ -107,19 +97,37 @@ def places_of(
     return places[:: max(1, len(places) // PLACES)]
 
 
-def stances(view: View, places: Array) -> list[Scored]:
-    """Stances at those places where the line is clean."""
-    found = []
-    for place in places:
-        local = view if view.on_edge else local_view(view, place)
-        heading = _heading(local, place)
-        felt = None if heading is None else _both_ways(local, place, heading)
-        if felt is not None:
-            middle, length_mm = felt
-            local = replace(local, width_mm=middle.width_mm)
-            stance = Stance(middle.end_mm, middle.heading_rad, local)
-            found.append(Scored(length_mm, -abs(middle.bend_per_mm), stance))
-    return found
+def plainest_first(view: View, places: Array) -> Iterator[Stance]:
+    """Stances at those places where the line is clean, the plainest first.
+
+    A place is the plainer, the further the line was felt to the shorter side; then, the less it bends.
+    """
+    if view.on_edge:
+        found = [each for place in places if (each := _stance_at(view, place)) is not None]
+        found.sort(key=lambda each: each[1:], reverse=True)
+        yield from (stance for stance, _, _ in found)
+        return
+    # the kernel only tells in which order they come
+    scores = np.empty((len(places), 2))
+    _score(view.cells, np.ascontiguousarray(places), (view.width_mm, view.step_mm), scores)
+    felt_mm, bends = np.round(scores[:, 0], 1).tolist(), scores[:, 1].tolist()
+    clean = np.flatnonzero(scores[:, 0] > 0).tolist()
+    for k in sorted(clean, key=lambda k: (felt_mm[k], -bends[k]), reverse=True):
+        if (found_there := _stance_at(view, places[k])) is not None:
+            yield found_there[0]
+
+
+def _stance_at(view: View, place: Array) -> tuple[Stance, float, float] | None:
+    """The stance at a place, how far the line was felt to the shorter side (mm), and less its bend."""
+    local = view if view.on_edge else local_view(view, place)
+    heading = _heading(local, place)
+    felt_there = None if heading is None else _both_ways(local, place, heading)
+    if felt_there is None:
+        return None
+    middle, length_mm = felt_there
+    own = replace(local, width_mm=middle.width_mm)
+    stance = Stance(middle.end_mm, middle.heading_rad, own)
+    return stance, length_mm, -abs(middle.bend_per_mm)
 
 
 def _heading(view: View, place: Array) -> float | None:
@@ -154,3 +162,53 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
     if abs(middle.bend_per_mm) * view.leg_mm > BENT:
         middle = centre_at(both, shorter - 1, FELT_LEGS * view.leg_mm)
     return middle, round((shorter - 1) * view.step_mm, 1)
+
+
+@njit(cache=True)
+def _score(cells, places, sizes_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` with how far the line is felt to the shorter side of each place, mm, and its bend there,
+    1/mm; 0 where it is not clean. `sizes_mm`: the line's width, and the distance of stations.
+    """
+    for k in range(len(places)):
+        x, y = places[k, 0], places[k, 1]
+        level = LEVEL * max(darkness_at(cells, x, y), FAINTEST)
+        now = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles)
+        out[k, 0], out[k, 1] = _felt_about(now, places[k], sizes_mm)
+
+
+@njit(cache=True)
+def _felt_about(cells, place, sizes_mm):  # type: ignore[no-untyped-def]
+    """The same of one place, with the steps of `_heading` and `_both_ways`."""
+    (usual_mm, step_mm), pitch_mm = sizes_mm, cells.pitch_mm
+    # 1. two arcs of ink opposite each other
+    arcs = ring(cells, place, max(RING_WIDTHS * usual_mm, RING_PX * pitch_mm))
+    if len(arcs) != 2:
+        return 0.0, 0.0
+    there, back = 0.5 * (arcs[0, 0] + arcs[0, 1]), 0.5 * (arcs[1, 0] + arcs[1, 1])
+    turned = back + math.pi - there
+    turned -= math.tau * round(turned / math.tau)
+    if abs(turned) > OPPOSITE:
+        return 0.0, 0.0
+    heading = there + 0.5 * turned
+    # 2. the line felt both ways
+    right, left = edges(cells, place[0], place[1], heading, 2.0 * usual_mm)
+    width_mm = left - right
+    if not NARROWEST < width_mm / usual_mm < WIDEST:
+        return 0.0, 0.0
+    own_mm = leg_mm(width_mm, pitch_mm)
+    along_mm = step_mm, FELT * own_mm
+    ahead = felt(cells, (place[0], place[1], heading), width_mm, along_mm)
+    behind = felt(cells, (place[0], place[1], heading + math.pi), width_mm, along_mm)
+    shorter = min(len(ahead), len(behind))
+    if shorter < FEWEST_STATIONS:
+        return 0.0, 0.0
+    # 3. its bend
+    both = np.empty((2 * shorter - 1, 3))
+    for n in range(shorter):
+        for column in range(3):
+            both[shorter - 1 - n, column] = behind[n, column]
+            both[shorter - 1 + n, column] = ahead[n, column]
+    bend = abs(bend_at(both, shorter - 1, CENTRED * own_mm))
+    if bend * own_mm > BENT:
+        bend = abs(bend_at(both, shorter - 1, FELT_LEGS * own_mm))
+    return (shorter - 1) * step_mm, bend

@@ -23,8 +23,7 @@ from morfax.tracer.following.plain_places import (
     ABOUT_WIDTHS,
     edge_view_of,
     places_of,
-    plainness,
-    stances,
+    plainest_first,
     view_of,
 )
 from morfax.tracer.following.unchanged import changed_of, is_far, on_ink
@@ -85,9 +84,11 @@ def _stances(
         view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
         ends = _ends(view, sheet, stroke, start_mm, settings, reference_mm)
     yield from ends
-    plain = _plain(view, stroke, start_mm, _catch_mm(sheet))
-    yield from plain
-    if not plain and not ends:
+    is_clean = bool(ends)
+    for stance in _plain(view, stroke, start_mm, _catch_mm(sheet)):
+        is_clean = True
+        yield stance
+    if not is_clean:
         is_solid = bool(sheet.are_solid[stroke.patch])
         raise _nowhere_clean(view.width_mm, is_solid, settings.line_width_mm)
 
@@ -138,13 +139,16 @@ def _as_before(
 
 def _plain(
     view: View, stroke: Stroke, start_mm: tuple[float, float] | None, catch_mm: float
-) -> list[Stance]:
+) -> Iterator[Stance]:
     """Stances at plain places of a line, the plainest first; the plainest alone of those near a place."""
-    plain = stances(view, places_of(stroke, start_mm, ABOUT_WIDTHS * stroke.width_mm))
-    if not plain and start_mm is not None:
-        plain = stances(view, places_of(stroke, start_mm, catch_mm))
-    plain.sort(key=plainness, reverse=True)
-    return [scored.stance for scored in (plain if start_mm is None else plain[:1])]
+    if start_mm is None:
+        yield from plainest_first(view, places_of(stroke, None))
+        return
+    for about_mm in (ABOUT_WIDTHS * stroke.width_mm, catch_mm):
+        near = plainest_first(view, places_of(stroke, start_mm, about_mm))
+        if (plainest := next(near, None)) is not None:
+            yield plainest
+            return
 
 
 def ends_of(

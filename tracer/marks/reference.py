@@ -62,7 +62,7 @@ def references(
 ) -> Iterator[Reference]:
     """The reference points that stand alone on the sheet, and those that touch a line.
 
-    Of those that stand alone only such as are within `about_mm` of the box about the line.
+    Of those that stand alone only such as the line comes within `about_mm` of, to all sides of their ink.
     """
     found: list[Reference] = []
     for reference in _every(sheet, view, stroke, about_mm):
@@ -105,10 +105,20 @@ def _small_patches(
     patches = np.flatnonzero(small)
     middles_mm = sheet.middles_mm(patches)
     if stroke is not None:
-        low_mm, high_mm = stroke.middles_mm.min(axis=0), stroke.middles_mm.max(axis=0)
-        away_mm = np.hypot(*(middles_mm - np.clip(middles_mm, low_mm, high_mm)).T)
-        patches, middles_mm = patches[away_mm <= about_mm], middles_mm[away_mm <= about_mm]
+        near = _passed(stroke.middles_mm, middles_mm, 0.5 * sides_mm[patches] + about_mm)
+        patches, middles_mm = patches[near], middles_mm[near]
     yield from zip(patches.tolist(), middles_mm, strict=True)
+
+
+def _passed(line_mm: Array, middles_mm: Array, reach_mm: NDArray[Any]) -> NDArray[np.int64]:
+    """The numbers of the squares, by middle and reach to each side, that a line enters."""
+    low_mm, high_mm = line_mm.min(axis=0), line_mm.max(axis=0)
+    away_mm = np.abs(middles_mm - np.clip(middles_mm, low_mm, high_mm)).max(axis=1)
+    near = np.flatnonzero(away_mm <= reach_mm).tolist()
+    enters = [
+        k for k in near if (np.abs(line_mm - middles_mm[k]).max(axis=1) <= reach_mm[k]).any()
+    ]
+    return np.array(enters, np.int64)
 
 
 def _is_square(high: Any, wide: Any) -> Any:

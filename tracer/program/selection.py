@@ -64,11 +64,12 @@ class Contour:
         places, filled = stroke.middles_mm[some], stroke.filled[some]
         odd = places[np.abs(filled / np.median(filled) - 1) > PLAIN]
         clear_mm = nearest_mm(places, odd) if len(odd) else np.zeros(len(places))
-        apart_mm, kept = STARTS_WIDTHS * stroke.width_mm, list[Array]()
-        for place in places[np.argsort(-clear_mm, kind="stable")]:
-            if len(kept) < STARTS and all(np.hypot(*(place - k)) > apart_mm for k in kept):
-                kept.append(place)
-        return [(float(x), float(y)) for x, y in kept]
+        apart_mm, kept = STARTS_WIDTHS * stroke.width_mm, list[tuple[float, float]]()
+        places = places[np.argsort(-clear_mm, kind="stable")]
+        while len(places) and len(kept) < STARTS:
+            kept.append((float(places[0, 0]), float(places[0, 1])))
+            places = places[np.hypot(*(places - places[0]).T) > apart_mm]
+        return kept
 
     def lies_on(self, line_mm: Array) -> bool:
         """Whether a followed line (n, 2) mm runs along most of this stroke, as along a line with gaps."""

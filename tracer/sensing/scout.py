@@ -20,6 +20,10 @@ REACH, REACH_PX = 0.8, 3.0
 CLEAN, CLEAN_PX = 0.2, 0.5
 LEAP, LEAP_PX = 1 / 6, 0.4
 FOLLOWS_PER_MM = 0.2  # of the difference: a line may swell, and the expected width follows it
+LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
+LEG_PX = 12  # and at least so many pixels
+LEG_WIDTHS = 1.5  # and so many widths of a wide line
+FEWEST = 4  # stations that a line is felt along at the least
 SPECK_MM, SPECK_PX = (
     0.16,
     2.5,
@@ -66,6 +70,20 @@ def scout(cells, pose, width_mm, step_mm, stations):  # type: ignore[no-untyped-
                 break
         x, y = x + step_mm * math.cos(heading), y + step_mm * math.sin(heading)
     return seen[: count if since_speck > passed_over else before_speck].copy()
+
+
+@njit(cache=True)
+def leg_mm(width_mm, pitch_mm):  # type: ignore[no-untyped-def]
+    """How much of a leg is felt for its direction, for kernels (see `View.leg_mm`)."""
+    return max(LEG_MM, LEG_PX * pitch_mm, LEG_WIDTHS * width_mm)
+
+
+@njit(cache=True)
+def felt(cells, pose, width_mm, along_mm):  # type: ignore[no-untyped-def]
+    """Stations (n, 3) from a pose, by the step and for the length of `along_mm` (see `View.feel`)."""
+    step_mm, length_mm = along_mm
+    stations = max(FEWEST, round(length_mm / step_mm) + 1)
+    return scout(cells, pose, width_mm, step_mm, stations)
 
 
 @njit(cache=True)

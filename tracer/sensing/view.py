@@ -19,11 +19,18 @@ from morfax.motion.polyline import lengths_mm
 from morfax.tracer.sensing import edge_scout, photocell, ray
 from morfax.tracer.sensing.gauge import gauge
 from morfax.tracer.sensing.photocell import Cells
-from morfax.tracer.sensing.scout import CLEAN, REACH, REACH_PX, scout
+from morfax.tracer.sensing.scout import (
+    CLEAN,
+    FEWEST,
+    LEG_MM,
+    LEG_PX,
+    LEG_WIDTHS,
+    REACH,
+    REACH_PX,
+    scout,
+)
 
-LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
-LEG_PX, EDGE_LEG_PX = 12, 4  # and at least so many pixels
-LEG_WIDTHS = 1.5  # and so many widths of a wide line
+EDGE_LEG_PX = 4  # of a leg along an edge, at least
 EDGE_STEP_PX = 0.35  # stations along an edge go round corners that are as sharp as the lens
 GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages its grain
 GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
@@ -97,7 +104,7 @@ class View:
 
     def feel(self, place: Array, heading: float, length_mm: float) -> Array:
         """Centres and widths (n, 3) of the line from a place on it along a heading, while it is clean."""
-        stations = max(4, round(length_mm / self.step_mm) + 1)
+        stations = max(FEWEST, round(length_mm / self.step_mm) + 1)
         pose = float(place[0]), float(place[1]), float(heading)
         if self.on_edge:
             seen = edge_scout.along_edge(self.cells, pose, self.step_mm, stations)
@@ -108,7 +115,7 @@ class View:
     def feel_edge(self, place: Array, heading: float, length_mm: float) -> Array:
         """Places of an edge and how steep it is there (n, 3), from a place near it along a heading."""
         pose = float(place[0]), float(place[1]), float(heading)
-        stations = max(4, round(length_mm / self.step_mm) + 1)
+        stations = max(FEWEST, round(length_mm / self.step_mm) + 1)
         return np.asarray(edge_scout.along_edge(self.cells, pose, self.step_mm, stations))
 
     def edge_at(self, place: Array) -> tuple[Array, float] | None:
