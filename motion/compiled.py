@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from morfax.motion import compile_ahead, machine_code
+from morfax.motion import compile_ahead, machine_code, shape_faults
 
 _C, _F, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400  # numpy's flags of an array
 _FLAGS = _C | _F | _ALIGNED | _WRITEABLE
@@ -108,6 +108,7 @@ class Kernel:
         if self._dispatcher is None:
             from numba import njit as numba_njit
 
+            shape_faults.short()
             options = dict(self.options)
             if machine_code.can_be_kept():
                 options["cache"] = False

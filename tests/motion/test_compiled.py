@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from morfax.motion import machine_code
-from morfax.motion.compiled import Kernel, hear
+from morfax.motion.compiled import Kernel, hear, njit
 from morfax.motion.drive import drive_step
 
 PART = """
@@ -164,3 +164,17 @@ def test_what_goes_into_a_kernel_is_known_by_its_makings(
     monkeypatch.setenv("NUMBA_OPT", "0")
     assert machine_code._makings(drive_step) != before
     machine_code._surroundings.cache_clear()
+
+
+def test_a_slice_of_another_shape_is_refused_and_one_that_fits_is_filled() -> None:
+    filled = np.zeros(4)
+    _put(filled, np.ones(2))
+    assert filled.tolist() == [0.0, 1.0, 1.0, 0.0]
+    with pytest.raises(ValueError, match="cannot assign slice from input of different size"):
+        _put(filled, np.ones(3))
+
+
+@njit(cache=True)
+def _put(out, values):  # type: ignore[no-untyped-def]
+    """Put an array into a slice of another."""
+    out[1:3] = values

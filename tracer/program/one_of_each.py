@@ -22,6 +22,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
+from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
@@ -30,6 +31,8 @@ from morfax.tracer.program.trace import SHORT, followed, followed_from_an_end
 # from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of
 # `following.open_ends`, and as much again
 ABOUT_MM, ABOUT_WIDTHS = 40.0, 20.0
+# the same for a patch without ends: only a reference point whose lead line touches it can matter
+ENDLESS_ABOUT_MM = 1.5 * LARGEST_MM
 
 
 def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[Line], int]:
@@ -112,7 +115,8 @@ def _follow_in_window(setup: Setup, contour: Contour) -> Line | None:
     """
     sheet, settings = setup.sheet, setup.settings
     patch, width_mm = contour.stroke.patch, contour.stroke.width_mm
-    around_mm = ABOUT_MM + settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * width_mm
+    around_mm = ABOUT_MM if len(contour.stroke.ends_mm()) else ENDLESS_ABOUT_MM
+    around_mm += settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * width_mm
     near = sheet.about(patch, around_mm)
     if near is sheet:
         return _follow(setup, contour)

@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,10 +40,11 @@ def in_order(starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_]) -> lis
     """The order of lines that keeps the idle way short; `before[i, j]`: i is cut before j."""
     across_mm = np.asarray(ends_mm)[:, None] - np.asarray(starts_mm)[None]
     idle_mm = np.hypot(*across_mm.transpose(2, 0, 1))
+    idle_back_mm, pairs = idle_mm.T.copy(), np.ascontiguousarray(np.argwhere(before))
     there = _from_firsts(idle_mm, before)
-    back = _from_firsts(idle_mm.T.copy(), before.T.copy())
-    ways = [_improved(way, idle_mm, before) for way in there]
-    ways += [_improved(way[::-1].copy(), idle_mm, before) for way in back]
+    back = _from_firsts(idle_back_mm, before.T.copy())
+    ways = [_improved(way, idle_mm, idle_back_mm, pairs) for way in there]
+    ways += [_improved(way[::-1].copy(), idle_mm, idle_back_mm, pairs) for way in back]
     return [int(i) for i in min(ways, key=lambda way: idle_way_mm(way, idle_mm))]
 
 
@@ -56,12 +58,15 @@ def in_order_and_turned(
     for _ in range(TURNINGS):
         begin, finish = _turned_ends(ends, turned)
         order = in_order(begin, finish, before)
-        turned = turned ^ _to_turn(begin, finish, order, may_turn)
+        to_turn = _to_turn(begin, finish, order, may_turn)
+        turned = turned ^ to_turn
         begin, finish = _turned_ends(ends, turned)
         idle_mm = float(np.hypot(*(begin[order[1:]] - finish[order[:-1]]).T).sum())
         if best is not None and idle_mm >= best[0] - GAIN_MM:
             break
         best = idle_mm, order, turned
+        if not to_turn.any():  # the next order would be the same
+            break
     assert best is not None
     return best[1], best[2]
 
@@ -129,81 +134,127 @@ def _on_to_nearest(first, idle_mm, before):  # type: ignore[no-untyped-def]
     return way
 
 
+class _Legs(NamedTuple):
+    """Idle ways from line to line and back, and `onward[b]`, the way to place b of the order from the one
+    before it, and `homeward[b]`, the way back, mm.
+
+    `back[i, j]` is `there[j, i]`: what is asked one after the other lies side by side in memory.
+    """
+
+    there: Array
+    back: Array
+    onward: Array
+    homeward: Array
+
+
 @njit(cache=True)
-def _improved(way, idle_mm, before):  # type: ignore[no-untyped-def]
-    """The order made shorter by turning stretches and moving up to three lines, until neither helps."""
+def _improved(way, idle_mm, idle_back_mm, pairs):  # type: ignore[no-untyped-def]
+    """The order made shorter by turning stretches and moving up to three lines, until neither helps.
+
+    `idle_back_mm[i, j]` is `idle_mm[j, i]`; of each of `pairs` the first line is cut before the second.
+    """
+    legs = _Legs(idle_mm, idle_back_mm, np.zeros(len(way) + 1), np.zeros(len(way) + 1))
+    may = np.empty_like(way), np.empty_like(way), pairs
+    _lay_out(way, legs)
     better = True
     while better:
-        better = _turn_stretches(way, idle_mm, before) | _move_lines(way, idle_mm, before)
+        better = _turn_stretches(way, legs, may)
+        better = _move_lines(way, legs, may) or better
     return way
 
 
 @njit(cache=True)
-def _turn_stretches(way, idle_mm, before):  # type: ignore[no-untyped-def]
+def _lay_out(way, legs):  # type: ignore[no-untyped-def]
+    """Fill in the idle ways from place to place of an order."""
+    for b in range(1, len(way)):
+        legs.onward[b] = legs.there[way[b - 1], way[b]]
+        legs.homeward[b] = legs.there[way[b], way[b - 1]]
+
+
+@njit(cache=True)
+def _turn_stretches(way, legs, may):  # type: ignore[no-untyped-def]
     """Turn round every stretch of the order where that is a gain; whether there was any."""
-    better = False
-    for i in range(len(way) - 1):
+    lines, better, other = len(way), False, may[0]
+    for i in range(lines - 1):
         there = back = 0.0
-        for j in range(i + 1, len(way)):
-            there += idle_mm[way[j - 1], way[j]]
-            back += idle_mm[way[j], way[j - 1]]
-            was = _leg(way, idle_mm, i - 1, i) + there + _leg(way, idle_mm, j, j + 1)
-            if (
-                was - _leg(way, idle_mm, i - 1, j) - back - _leg(way, idle_mm, i, j + 1)
-                > GAIN_MM
-            ):
-                turned = np.concatenate((way[:i], way[i : j + 1][::-1], way[j + 1 :]))
-                if _allowed(turned, before):
-                    way[:] = turned
+        for j in range(i + 1, lines):
+            there += legs.onward[j]
+            back += legs.homeward[j]
+            was = legs.onward[i] + there + legs.onward[j + 1]
+            into = legs.there[way[i - 1], way[j]] if i > 0 else 0.0
+            out = legs.there[way[i], way[j + 1]] if j + 1 < lines else 0.0
+            if was - into - back - out > GAIN_MM:
+                for k in range(lines):
+                    other[k] = way[i + j - k] if i <= k <= j else way[k]
+                if _taken(way, legs, may):
                     there, back, better = back, there, True
     return better
 
 
 @njit(cache=True)
-def _move_lines(way, idle_mm, before):  # type: ignore[no-untyped-def]
+def _move_lines(way, legs, may):  # type: ignore[no-untyped-def]
     """Move up to three lines to where they are better off in the order; whether there was any gain."""
-    for i in range(len(way)):
-        for j in range(i, min(i + MOVED, len(way))):
-            out = (
-                _leg(way, idle_mm, i - 1, i)
-                + _leg(way, idle_mm, j, j + 1)
-                - _leg(way, idle_mm, i - 1, j + 1)
-            )
-            for k in range(-1, len(way)):
+    lines, onward = len(way), legs.onward
+    for i in range(lines):
+        for j in range(i, min(i + MOVED, lines)):
+            gap = legs.there[way[i - 1], way[j + 1]] if i > 0 and j + 1 < lines else 0.0
+            out = onward[i] + onward[j + 1] - gap
+            to_first, from_last = legs.back[way[i]], legs.there[way[j]]
+            least = from_last[way[0]] if i > 0 else to_first[way[lines - 1]]
+            if j + 1 < lines:
+                least = min(least, to_first[way[lines - 1]])
+            least = min(least, _least_into(way, (to_first, from_last), onward, (0, i - 1)))
+            last = j + 1, lines - 1
+            least = min(least, _least_into(way, (to_first, from_last), onward, last))
+            if not out - least > GAIN_MM:
+                continue
+            for k in range(-1, lines):
                 if i - 1 <= k <= j:
                     continue
-                into = (
-                    _leg(way, idle_mm, k, i)
-                    + _leg(way, idle_mm, j, k + 1)
-                    - _leg(way, idle_mm, k, k + 1)
-                )
-                if out - into > GAIN_MM:
-                    moved = _moved(way, i, j, k)
-                    if _allowed(moved, before):
-                        way[:] = moved
+                into = to_first[way[k]] if k >= 0 else 0.0
+                into += from_last[way[k + 1]] if k + 1 < lines else 0.0
+                if out - (into - onward[k + 1]) > GAIN_MM:
+                    _move(way, (i, j, k), may[0])
+                    if _taken(way, legs, may):
                         return True
     return False
 
 
+@njit(cache=True, fastmath={"nnan", "nsz"})
+def _least_into(way, to_and_from, onward, places):  # type: ignore[no-untyped-def]
+    """The least way that lines add between a place and the next, of some places, mm."""
+    (to_first, from_last), least = to_and_from, np.inf
+    for k in range(places[0], places[1]):
+        into = to_first[way[k]] + from_last[way[k + 1]] - onward[k + 1]
+        if into < least:
+            least = into
+    return least
+
+
 @njit(cache=True)
-def _moved(way, i, j, k):  # type: ignore[no-untyped-def]
-    """The order with places i … j put behind place k."""
+def _move(way, places, other):  # type: ignore[no-untyped-def]
+    """Fill `other` with the order with places i … j put behind place k."""
+    (i, j, k), lines, n = places, len(way), 0
     if k < i:
-        return np.concatenate((way[: k + 1], way[i : j + 1], way[k + 1 : i], way[j + 1 :]))
-    return np.concatenate((way[:i], way[j + 1 : k + 1], way[i : j + 1], way[k + 1 :]))
+        parts = (0, k + 1), (i, j + 1), (k + 1, i), (j + 1, lines)
+    else:
+        parts = (0, i), (j + 1, k + 1), (i, j + 1), (k + 1, lines)
+    for first, end in parts:
+        for a in range(first, end):
+            other[n] = way[a]
+            n += 1
 
 
 @njit(cache=True)
-def _leg(way, idle_mm, i, j):  # type: ignore[no-untyped-def]
-    """Idle way from one place of the order to another, mm; none before the first and after the last."""
-    return 0.0 if i < 0 or j >= len(way) else idle_mm[way[i], way[j]]
-
-
-@njit(cache=True)
-def _allowed(way, before):  # type: ignore[no-untyped-def]
-    """Whether every line comes after those that must be cut before it."""
-    for a in range(len(way)):
-        for b in range(a + 1, len(way)):
-            if before[way[b], way[a]]:
-                return False
+def _taken(way, legs, may):  # type: ignore[no-untyped-def]
+    """Take another order, if in it every line comes after those that must be cut before it."""
+    other, place, pairs = may
+    for k in range(len(other)):
+        place[other[k]] = k
+    for n in range(len(pairs)):
+        if place[pairs[n, 0]] > place[pairs[n, 1]]:
+            return False
+    for k in range(len(other)):
+        way[k] = other[k]
+    _lay_out(way, legs)
     return True

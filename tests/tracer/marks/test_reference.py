@@ -7,8 +7,14 @@ import math
 import numpy as np
 import pytest
 
+from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
+from morfax.tracer.following.open_ends import at_ends
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.marks import reference
+from morfax.tracer.marks.reference import Reference
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program import selection
 from tests.tracer.inked import UM, arc, cross, inked, polyline, tick
 from tests.tracer.marked import trace
 
@@ -135,3 +141,23 @@ NONE = {
 def test_what_is_no_reference_point(other: np.ndarray) -> None:
     line = lead_line(polyline((14, 14), JOIN), tick((22, 14)), other)
     assert line.reference_mm is None and line.is_lead  # by its tick
+
+
+def test_of_many_holes_each_line_asks_only_those_next_to_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    holes = [arc((8 + 10 * (k % 5), 8 + 10 * (k // 5)), 3.0) for k in range(25)]
+    sheet, asked = Sheet.of(inked(*holes, seed=3)), list[Reference | None]()
+    ring = reference._ring
+    monkeypatch.setattr(
+        reference, "_ring", lambda view, place: asked.append(ring(view, place)) or asked[-1]
+    )
+    patches = selection.lines_of(sheet)
+    assert len(patches) == len(holes)
+    for patch in patches:
+        stroke = sheet.stroke(int(patch))
+        view = view_of(sheet, None, stroke.width_mm)
+        assert at_ends(view, sheet, stroke, 0.5, None) == []
+    # its own hole, as ink and as a patch, and the four beside it
+    assert len(asked) <= 6 * len(holes)
+    assert all(found is not None and found.kind == "ring" for found in asked)
