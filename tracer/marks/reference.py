@@ -40,11 +40,12 @@ from morfax.tracer.marks.sizes import (
 )
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS, is_tip, lines_on
-from morfax.tracer.sensing.spokes import WAYS, spokes
+from morfax.tracer.sensing.spokes import SPOKES, WAYS, spokes
 from morfax.tracer.sensing.view import View
 
 LEAST_MM, LARGEST_MM = CROSS_MM
 MOST_PX = 50_000_000  # of a patch that is searched for holes: a tenth of a second
+BESIDE = np.arange(SPOKES) - 1  # of each spoke, the one before it
 BEYOND = np.array([1.5, 1.9, 2.3])  # widths beyond the arms, at which the lead line is sought
 
 
@@ -257,5 +258,5 @@ def _ring(view: View, place: Array) -> Reference | None:
 
 def _runs(flags: NDArray[np.bool_]) -> int:
     """How many runs of two or more there are round a circle of flags."""
-    twice = flags & np.roll(flags, 1)
-    return int(np.sum(twice & ~np.roll(twice, 1)))
+    twice = flags & flags[BESIDE]
+    return int(np.count_nonzero(twice & ~twice[BESIDE]))
