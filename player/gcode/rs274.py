@@ -46,6 +46,7 @@ from morfax.recorder.gcode.check_sum import demand_right
 INCH_MM = 25.4
 LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
 
+BYTE_ORDER_MARK = "\ufeff"
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 WORD = re.compile(f"([A-Z])({_NUMBER})")
 COMMENT = re.compile(r"\([^()]*\)|;.*")
@@ -61,18 +62,40 @@ def read_rs274(
 
 
 def text_of(file: str | os.PathLike[str]) -> str:
-    """The text of a program; raises ProgramFault (no text, a wrong check sum), FileFault (unreadable)."""
+    """The text of a program; raises ProgramFault (no text, a wrong check sum), FileFault (unreadable).
+
+    Comments may hold what they like, in UTF-8 or with a byte to a character; all else is ASCII.
+    """
     try:
-        text = FilePath(file).read_bytes().decode("ascii")
-    except UnicodeDecodeError as error:
-        line = FilePath(file).read_bytes()[: error.start].count(b"\n") + 1
-        raise ProgramFault(
-            f"{file}, line {line}: this is no text; a program is lines such as G1 X10 Y5 F600"
-        ) from None
+        raw = FilePath(file).read_bytes()
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")
+    if not text.isascii():
+        _demand_ascii_words(text.split("\n"), str(file))
     demand_right(text, str(file))
     return text
+
+
+def _demand_ascii_words(lines: Sequence[str], name: str) -> None:
+    """Raise ProgramFault for the first character outside of comments that is not one of ASCII."""
+    for number, line in enumerate(lines, 1):
+        if line.isascii() or (words := COMMENT.sub("", line)).isascii():
+            continue
+        at = next(character for character in words if not character.isascii())
+        if at == BYTE_ORDER_MARK:
+            raise ProgramFault(
+                f"{name} begins with a byte-order mark, which controls refuse; save it as UTF-8 without one",
+                line=number,
+            )
+        raise ProgramFault(
+            f"{name}, line {number}: this is no text: {at!r} stands outside a comment; a program is lines"
+            " such as G1 X10 Y5 F600, and letters such as ä may stand in ( ) or behind ;",
+            line=number,
+        )
 
 
 def parse_rs274(

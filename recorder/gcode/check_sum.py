@@ -50,4 +50,4 @@ def demand_right(text: str, name: str) -> None:
 def _of(lines: Iterable[str]) -> int:
     """The check sum of some lines."""
     plain = [line.strip() for line in lines]
-    return zlib.crc32("".join(f"{line}\n" for line in plain if line).encode("ascii"))
+    return zlib.crc32("".join(f"{line}\n" for line in plain if line).encode())

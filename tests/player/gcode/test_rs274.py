@@ -209,6 +209,39 @@ def test_a_file_that_is_no_text_or_not_there(tmp_path: Path) -> None:
         read_rs274(tmp_path / "none.ngc")
 
 
+@pytest.mark.parametrize("coding", ["utf-8", "latin-1"])
+def test_comments_may_hold_any_letters(tmp_path: Path, coding: str) -> None:
+    file = tmp_path / "part.ngc"
+    file.write_bytes("G21 (für Grün)\nG1 X5 F600 ; längs\nM2\n".encode(coding))
+    assert read_rs274(file).moves[-1].end_mm == (5.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        (
+            "G1 X１",
+            "line 2: this is no text: '１' stands outside a comment",
+        ),  # a wide digit is none
+        ("G1 X1 (whole) ä", "line 2: this is no text: 'ä'"),
+        ("G1 X1 (cut öff", "line 2: this is no text: 'ö'"),
+    ],
+)
+def test_outside_of_comments_all_is_ascii(tmp_path: Path, line: str, says: str) -> None:
+    file = tmp_path / "part.ngc"
+    file.write_text(f"G21 (ä)\n{line}\nM2\n", "utf-8")
+    with pytest.raises(ProgramFault) as caught:
+        read_rs274(file)
+    assert says in str(caught.value) and caught.value.line == 2
+
+
+def test_a_byte_order_mark_is_refused_by_its_name(tmp_path: Path) -> None:
+    file = tmp_path / "part.ngc"
+    file.write_text("G21\nM2\n", "utf-8-sig")
+    with pytest.raises(ProgramFault, match="begins with a byte-order mark"):
+        read_rs274(file)
+
+
 @pytest.mark.parametrize(("apart_mm", "is_taken"), [(0.009, True), (0.012, False)])
 def test_the_ends_of_an_arc_may_lie_a_thousandth_of_its_radius_off_one_circle(
     apart_mm: float, is_taken: bool
