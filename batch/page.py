@@ -18,7 +18,7 @@ from urllib.parse import quote
 from morfax.batch import manifest
 from morfax.batch.results import FIGURES, PICTURE
 from morfax.batch.row import BatchRow
-from morfax.motion.files import written_beside
+from morfax.motion.files import printable, written_beside
 
 NAME = "report.html"
 STYLE = """
@@ -75,7 +75,8 @@ def write_page(folder: Path) -> tuple[Path, int]:
             f"<style>{STYLE}</style></head>\n<body><h1>{title}</h1>\n"
         )
         page.write(f"<table><thead><tr>{''.join(_headings())}</tr></thead><tbody>\n")
-        page.writelines(_line(folder, row) for row in rows)
+        # a file's name may hold any bytes
+        page.writelines(printable(_line(folder, row)) for row in rows)
         page.write(f"</tbody></table><script>{SORT}</script></body></html>\n")
     return folder / NAME, len(rows)
 
@@ -130,7 +131,7 @@ def _picture(folder: Path, row: BatchRow) -> str:
     """The picture of a drawing, if it has one."""
     if not row.folder or not (folder / row.folder / PICTURE).is_file():
         return ""
-    source = quote(f"{row.folder}/{PICTURE}")
+    source = quote(printable(f"{row.folder}/{PICTURE}"))
     name = escape(Path(row.file).name)
     return f'<a href="{source}"><img src="{source}" loading="lazy" alt="{name}, traced"></a>'
 
@@ -138,4 +139,4 @@ def _picture(folder: Path, row: BatchRow) -> str:
 def _linked(row: BatchRow) -> str:
     """The name of a drawing, which leads to its figures."""
     name = escape(row.file)
-    return f'<a href="{quote(f"{row.folder}/{FIGURES}")}">{name}</a>' if row.folder else name
+    return f'<a href="{quote(printable(f"{row.folder}/{FIGURES}"))}">{name}</a>' if row.folder else name

@@ -13,7 +13,7 @@ from html import escape
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
-from morfax.motion.files import written_beside
+from morfax.motion.files import printable, written_beside
 from morfax.reports.table import as_cells
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def write(
         + "\n</body></html>\n"
     )
     with written_beside(file) as beside:
-        beside.write_text(html, encoding="utf-8")
+        beside.write_text(printable(html), encoding="utf-8")
 
 
 def _table(cells: list[list[str]]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -172,6 +173,15 @@ def test_a_manifest_survives_a_name_that_was_cut_within_a_letter(tmp_path: Path)
     with Manifest(tmp_path) as written:
         written.append(BatchRow("b.png", "done"))
     assert [row.file for row in manifest.rows(tmp_path)] == ["b.png"]
+
+
+def test_names_of_any_bytes_have_their_line_on_the_page(tmp_path: Path) -> None:
+    for name in (os.fsdecode(b"fl\xe4che.png"), "a\0b.png"):
+        row = BatchRow(name, "done", "0123abcd" * 8, name, seconds=1.0)
+        with Manifest(tmp_path) as written:
+            written.append(row)
+    page, count = write_page(tmp_path)
+    assert count == 2 and r"fl\udce4che.png" in page.read_text()
 
 
 def test_results_are_no_drawings_and_a_link_leads_round_once(scans: Path) -> None:
