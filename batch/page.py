@@ -139,4 +139,8 @@ def _picture(folder: Path, row: BatchRow) -> str:
 def _linked(row: BatchRow) -> str:
     """The name of a drawing, which leads to its figures."""
     name = escape(row.file)
-    return f'<a href="{quote(printable(f"{row.folder}/{FIGURES}"))}">{name}</a>' if row.folder else name
+    return (
+        f'<a href="{quote(printable(f"{row.folder}/{FIGURES}"))}">{name}</a>'
+        if row.folder
+        else name
+    )
