@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import at_lengths, length_mm
+from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
@@ -50,22 +50,30 @@ def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> Stretch | None:
     """What the slow cell is to keep to along a plan that stations made; None along any other."""
     if plan.leader != STATIONS or len(plan.stretches) != 1 or view.on_edge:
         return None
-    if not _is_bare(view, plan.stretches[0]):
-        return None
     seen = plan.leg.seen if plan.seen is None else plan.seen
-    room_mm = ROOM_LEADS * carriage.tuning.lead_mm
-    return Stretch(plan.stretches[0], keeps_mm(view, seen), room_mm)
+    return bare_stretch(view, carriage, plan.stretches[0], seen)
 
 
-def _is_bare(view: View, way: Array) -> bool:
-    """Whether nothing leaves a line along a way (n, 2) mm: a tick or a stub draws the cell to its side."""
+def bare_stretch(view: View, carriage: Carriage, way: Array, seen: Array) -> Stretch | None:
+    """The part of a way (n, 2) mm along which nothing leaves the line; None if that is too short."""
+    lead_mm = carriage.tuning.lead_mm
+    bare_mm = _bare_mm(view, way)
+    if bare_mm < length_mm(way):
+        way = way[lengths_mm(way) < bare_mm - lead_mm]
+    if len(way) < 2:
+        return None
+    return Stretch(way, keeps_mm(view, seen), ROOM_LEADS * lead_mm)
+
+
+def _bare_mm(view: View, way: Array) -> float:
+    """For how far nothing leaves a line along a way (n, 2) mm, as a stub that draws the cell aside."""
     places = at_lengths(way, np.arange(0.0, length_mm(way), view.step_mm))
     reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
-    for place, step in zip(places[1:], np.diff(places, axis=0), strict=True):
-        right, left = view.edges(place, heading_of(step), reach_mm)
+    for k, step in enumerate(np.diff(places, axis=0)):
+        right, left = view.edges(places[k + 1], heading_of(step), reach_mm)
         if not left - right <= STUB_WIDTHS * view.width_mm:  # NaN: no edge in reach
-            return False
-    return True
+            return k * view.step_mm
+    return length_mm(way)
 
 
 def clean_from(view: View, carriage: Carriage, plan: Plan) -> Anchor:

@@ -20,6 +20,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.numbering import Ink, longest_first
+from morfax.tracer.ink.areas import Edge, ways_round
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
 from morfax.tracer.sensing.leg import turn
 
@@ -28,9 +29,6 @@ MOST_OF_IT = 0.4
 STRAIGHT_ON = math.radians(
     35
 )  # legs of a line that goes on over a junction turn by no more; by trial
-Edge = tuple[
-    int, bool
-]  # a line of the net, and whether it is gone along from its last place to its first
 
 
 class Outline(NamedTuple):
@@ -90,7 +88,7 @@ def _outside(junctions: Junctions) -> Outline | None:
         if not spurs:
             break
         left -= spurs
-    ways = [way for face in _faces(left, junctions) for way in _simple(face, junctions)]
+    ways = [way for face in ways_round(left, junctions) for way in _simple(face, junctions)]
     if not ways:
         return None
     areas = [_area_mm2(way, junctions) for way in ways]
@@ -111,50 +109,8 @@ def _spurs(left: set[int], junctions: Junctions) -> set[int]:
 
 def _bars(left: set[int], junctions: Junctions) -> set[int]:
     """The lines with the same area on both sides: they only lead from one part of a net to another."""
-    faces = [set(face) for face in _faces(left, junctions)]
+    faces = [set(face) for face in ways_round(left, junctions)]
     return {n for n in left if any((n, False) in face and (n, True) in face for face in faces)}
-
-
-def _faces(left: set[int], junctions: Junctions) -> list[list[Edge]]:
-    """The ways round the areas that some lines part: areas within the net anticlockwise, the outside
-    clockwise.
-    """
-    onto = _next_edges(left, junctions)
-    faces, seen = list[list[Edge]](), set[Edge]()
-    for first in onto:
-        face, edge = list[Edge](), first
-        while edge not in seen:
-            seen.add(edge)
-            face.append(edge)
-            edge = onto[edge]
-        if face:
-            faces.append(face)
-    return faces
-
-
-def _next_edges(left: set[int], junctions: Junctions) -> dict[Edge, Edge]:
-    """For each line and sense the next one round the area to its left: the first to the left of the way
-    back.
-    """
-    leaving = dict[int, list[tuple[float, Edge]]]()
-    for number, there in junctions.by_number.items():
-        ends = np.array([leg.end_mm for leg in there.legs])
-        middle = ends.mean(axis=0)
-        for side, end, leg in zip(there.sides, ends, there.legs, strict=True):
-            if side.line not in left:
-                continue
-            out = end - middle
-            if math.hypot(*out) < leg.width_mm:  # few legs, near together: by where they head
-                out = -np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
-            edge = side.line, side.last
-            leaving.setdefault(number, []).append((math.atan2(out[1], out[0]), edge))
-    onto = dict[Edge, Edge]()
-    for legs in leaving.values():
-        edges = [edge for _, edge in sorted(legs)]
-        for k, (line, back) in enumerate(edges):
-            # the same line comes in here the other way about, and goes on to the next one clockwise
-            onto[line, not back] = edges[k - 1]
-    return onto
 
 
 def _simple(face: list[Edge], junctions: Junctions) -> list[list[Edge]]:

@@ -6,10 +6,10 @@ motion rate.
     clean run ───── junction ───── clean run ───── corner ───── …
      kernel          way            kernel          way
 
-The head follows by its swinging cell up to its lead before a run's end, and where its guard cells see what is
-no clean line it goes on for a while along what was felt there. It never has to search: all junctions are
-known. If its path leaves the line that was felt it goes back to where it was on it, and runs that piece from
-memory.
+The head follows by its swinging cell up to its lead before a run's end. Where its guard cells see what is no
+clean line it goes on along what was felt there: slowly by its cell, if that keeps to it, else by stations. It
+never has to search: all junctions are known. If its path leaves the line that was felt it goes back to where
+it was on it, and runs that piece from memory.
 
 Source: our own; see `tracer.head` for the head itself.
 """
@@ -25,10 +25,12 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.following.felt_line import bare_stretch
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import CHUNK, Carriage
 from morfax.tracer.head.leaders import STATIONS, Led
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.slow_cell import SHORTEST_MM
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, MORE, Home, Mark
 from morfax.tracer.ink.chains import Chain, Junctions, Side
@@ -51,6 +53,7 @@ BEYOND_LEADS = 0.5  # leads: a piece that is no longer beyond its lead is run fr
 STRAYED = 0.3  # widths: a head so far beside what was felt has left the line
 LOOKED_AT = 60  # one position in so many is held against what was felt
 SWELLS = 0.5  # the share of a change of a line's width that the head takes over at once
+SLOWLY_LEGS = 3.0  # the cell goes on by itself for so many legs, then fast again
 NOTHING = np.empty((0, 2))  # was felt between
 NEVER_HOME = Home(0.0, 0.0, 0.0, math.inf)
 
@@ -179,7 +182,21 @@ class InkHead:
             carriage.retune(view)
             return view, at
         at = self._station(run, at)
+        if self._slowly(run, view, at):
+            return view, self._station(run, at)
         return view, self._along(run, at, round(view.leg_mm / view.step_mm), view)
+
+    def _slowly(self, run: Run, view: View, at: int) -> bool:
+        """Whether the cell itself, slow and with a short lead, goes on along what was felt."""
+        left_mm = (len(run) - 1 - at) * view.step_mm - self.carriage.tuning.lead_mm
+        if left_mm < SHORTEST_MM:
+            return False
+        on = at + round(min(left_mm, SLOWLY_LEGS * view.leg_mm) / view.step_mm)
+        way = self._course(run, at, (run.places_mm[on], float(run.headings_rad[on])))
+        stretch = bare_stretch(view, self.carriage, way, run.stations()[at : on + 1])
+        if stretch is None:
+            return False
+        return self.carriage.follow_slowly(view, NEVER_HOME, stretch) is not None
 
     def _strayed(self, run: Run, at: int, mark: Mark) -> bool:
         """Whether the newest positions have left what was felt."""

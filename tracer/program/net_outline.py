@@ -7,6 +7,10 @@ A patch of ink that goes round two areas or more is a net. Its length is that of
 net the head might go straight on into another line; the net's junctions are solved first, so the choice
 depends neither on the place nor on how the sheet lay in the scanner.
 
+A line that touches itself makes a net too. If its outline leaves ink out, the head looks for a longer closed
+way through the tangles itself; and where the head is lost on ink that goes round one area, the junctions show
+the way round.
+
 Source: our own; the operator of patent ES 361967 says which line. Questions: a drawn program (a reference
 point, a card, a turn or stop that was told) has one line, which its lead line leads to: it is no net.
 """
@@ -35,14 +39,25 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.outlines import Outline
 
 AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
+MOST_OF_IT = (
+    0.97  # of its ink: an outline that is shorter leaves bays or other lines out; by trial
+)
+CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round leaves too much out; by trial
+ODD = (
+    1 / 3
+)  # of the junctions of a line that only touches itself have an odd number of legs; by trial
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
 
 
 class OfNet(NamedTuple):
-    """The set-up in which each net is as long as its longest outline; the line, if that is the longest."""
+    """The set-up in which each net is as long as its longest outline; the line, if that is the longest.
+
+    `leaves_out`: whether it passes bays by where one line touches itself, through which the head may find.
+    """
 
     setup: Setup
     line: Line | None = None
+    leaves_out: bool = False
 
 
 def of_net(setup: Setup) -> OfNet:
@@ -56,18 +71,12 @@ def of_net(setup: Setup) -> OfNet:
     nets = np.flatnonzero(are_nets & (lengths_mm > (1 - ALIKE) * longest_mm))
     if not len(nets) or _has_reference(setup):
         return OfNet(setup)
-    from morfax.tracer.ink.chains import solved
-    from morfax.tracer.ink.outlines import outlines
-    from morfax.tracer.ink.stretches import FeltSheet
-
     # 1. the longest outline of each
     found: dict[int, tuple[Outline, Junctions]] = {}
     for patch in nets.tolist():
-        felt = FeltSheet.of(sheet.drawing, setup.settings, _ink_of(sheet, patch))
-        junctions = solved(felt)
-        closed = outlines(junctions)
-        if closed:
-            found[patch] = closed[0], junctions
+        closed = _closed(setup, patch)
+        if closed is not None:
+            found[patch] = closed
     # 2. the nets count by these
     counted_mm = sheet.lengths_mm.copy()
     for patch, (outline, _) in found.items():
@@ -76,8 +85,50 @@ def of_net(setup: Setup) -> OfNet:
     longest = int(counted.longest_first(np.arange(len(counted_mm)))[0])
     if longest not in found:
         return OfNet(replace(setup, sheet=counted))
-    line = _line(setup, *found[longest])
-    return OfNet(setup, replace(line, ink_mm=float(sheet.lengths_mm[longest])))
+    outline, junctions = found[longest]
+    line = replace(_line(setup, outline, junctions), ink_mm=float(sheet.lengths_mm[longest]))
+    is_most = outline.length_mm > MOST_OF_IT * float(lengths_mm[longest])
+    return OfNet(setup, line, not is_most and _touches_itself(junctions))
+
+
+def round_ring(setup: Setup, line: Line) -> Line | None:
+    """The way round the ink on which a line was lost, if that goes round one area and closes."""
+    sheet = setup.sheet
+    if line.reference_mm is not None or _is_program(setup) or sheet.drawing.edges_mm:
+        return None
+    patch = sheet.patch_at(np.asarray(line.start_mm))
+    if (
+        sheet.patches.count > MOST_PATCHES
+        or sheet.are_solid[patch]
+        or _loops(sheet)[patch] != 1
+    ):
+        return None
+    closed = _closed(setup, patch)
+    if closed is None or closed[0].length_mm < CLOSES * line.length_mm:
+        return None
+    return replace(_line(setup, *closed), ink_mm=line.ink_mm)
+
+
+def _closed(setup: Setup, patch: int) -> tuple[Outline, Junctions] | None:
+    """The longest closed outline of a patch of ink, and its junctions."""
+    from morfax.tracer.ink.chains import solved
+    from morfax.tracer.ink.outlines import outlines
+    from morfax.tracer.ink.stretches import FeltSheet
+
+    sheet = setup.sheet
+    felt = FeltSheet.of(sheet.drawing, setup.settings, _ink_of(sheet, patch))
+    junctions = solved(felt)
+    closed = outlines(junctions)
+    return (closed[0], junctions) if closed else None
+
+
+def _touches_itself(junctions: Junctions) -> bool:
+    """Whether a net may be one line that touches itself: to most of its junctions it brings an even number of
+    legs.
+    """
+    legs = np.array([len(there.sides) for there in junctions.by_number.values()])
+    at_junctions = legs[legs > 2]
+    return bool(np.mean(at_junctions % 2) < ODD) if len(at_junctions) else False
 
 
 def _is_program(setup: Setup) -> bool:
@@ -99,9 +150,14 @@ def _has_reference(setup: Setup) -> bool:
 
 def _nets(sheet: Sheet) -> NDArray[np.bool_]:
     """Which patches go round two areas or more."""
+    return np.asarray((_loops(sheet) > 1) & ~sheet.are_solid)
+
+
+def _loops(sheet: Sheet) -> NDArray[np.int64]:
+    """How many areas each patch goes round."""
     enclosure = Enclosure.of(sheet.patches, len(sheet.drawing.darkness))
     least_px = (AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2
-    return np.asarray((enclosure.loops(least_px) > 1) & ~sheet.are_solid)
+    return enclosure.loops(least_px)
 
 
 def _ink_of(sheet: Sheet, patch: int) -> Mask:

@@ -24,9 +24,10 @@ from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
+from morfax.tracer.program.best_run import SHORT
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import SHORT, followed, followed_from_an_end
+from morfax.tracer.program.trace import followed, followed_from_an_end
 
 # from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of
 # `following.open_ends`, and as much again

@@ -3,22 +3,16 @@
 Signals: a Drawing in; out a Trace, which is a stream of Motion (X, Y, Z in sheet mm at the motion rate) and
 says how the line ended. Several lines: see `trace_lines`.
 
-From each place where the head may be put down the line is followed in several attempts (see `attempts`),
-until one of them is the line. Other turns than straight on are tried only when the head has been put down
-elsewhere in vain: from a chord the head does not come back straight on, and with other turns it comes back
-round half of the contour.
+The line is the best of the head's runs from the places where it may be put down (see `best_run`). Where lines
+cross or touch, or the head is lost on a line that closes, the junctions of its ink show the way round (see
+`net_outline`).
 
 Source: patent ES 361967, section on use: the operator brings the head over the drawing and lets it run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
-from itertools import takewhile
-from typing import NamedTuple
-
-import numpy as np
+from dataclasses import replace
 
 from morfax.motion.faults import LineFault
 from morfax.tracer.drawing.drawing import Drawing
@@ -30,16 +24,13 @@ from morfax.tracer.following.start import ends_of, put_down
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.best_run import Target, best_of
 from morfax.tracer.program.marks_read import with_marks_read
-from morfax.tracer.program.net_outline import OfNet, of_net
+from morfax.tracer.program.net_outline import OfNet, of_net, round_ring
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import NO_OTHERS, others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.unexplained import unexplained
-
-# of the ink that is joined to it: a shorter run is along another line, which crosses this one; by trial
-SHORT = 0.5
-ELSEWHERE = 5  # places at which the head is put down when a run leads nowhere; by trial
 
 
 def trace(
@@ -50,7 +41,7 @@ def trace(
     progress: HeadProgress | None = None,
 ) -> Trace:
     """Follow a line of the drawing: the one at `start_mm` (sheet mm), or the longest; of lines that cross or
-    touch the longest closed outline (see `net_outline`).
+    touch the longest closed outline (see `net_outline`), or a longer closed way that the head finds.
 
     `progress` hears how far the head has come and the length of the line, mm. Raises LineFault if no line is
     there to start on, CardFault for a stop that the operator cannot serve; a line that is lost on the way is
@@ -59,11 +50,27 @@ def trace(
     operator = operator or Operator()
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     found = OfNet(setup) if start_mm is not None else of_net(setup)
-    line = found.line or followed(found.setup, start_mm)
+    line = _along_net(found) or followed(found.setup, start_mm)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
     beside = unexplained(setup, lines)
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=beside)
+
+
+def _along_net(found: OfNet) -> Line | None:
+    """The line along the outline of a net; where that leaves bays out and the head finds a longer closed way
+    through them, that.
+    """
+    if not found.leaves_out:
+        return found.line
+    assert found.line is not None
+    try:
+        own = followed(found.setup, None)
+    except LineFault:
+        return found.line
+    return (
+        own if own.ending == "closed" and own.length_mm > found.line.length_mm else found.line
+    )
 
 
 def followed(
@@ -72,22 +79,24 @@ def followed(
     number: int = 1,
     other_turns: bool = True,
 ) -> Line:
-    """The head's best run along the line at a place, or along the longest line.
+    """The head's best run along the line at a place, or along the longest line; of ink that closes, and on
+    which the head is lost, the way round that its junctions show.
 
     With `other_turns` it tries other turns than straight on if the line does not come back.
     """
     stances = put_down(setup.sheet, start_mm, setup.settings, setup.operator.reference_mm)
-    best, others = _best(_Target(setup, start_mm, number), stances, other_turns)
+    best, others = best_of(Target(setup, start_mm, number), stances, other_turns)
     assert best is not None  # put_down gives a stance, or raises
     if others:
         raise _several_lead([best, *others])
-    return best
+    found = round_ring(setup, best) if best.ending in ("lost", "joined") else None
+    return best if found is None else replace(found, number=number)
 
 
 def followed_from_an_end(setup: Setup, stroke: Stroke, number: int = 1) -> Line | None:
     """The head's best run from the open ends of a line; None without open ends, or if lost from each."""
     stances = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
-    best, _ = _best(_Target(setup, number=number), iter(stances))
+    best, _ = best_of(Target(setup, number=number), iter(stances))
     return best if best is not None and best.ending != "lost" else None
 
 
@@ -107,185 +116,6 @@ def followed_through(setup: Setup, stance: Stance) -> list[Line]:
     elif first.ending != "closed" or wrong_way:
         runs.append(attempts.run(turned_about(stance)))
     return [Line.of(run, stops=drawing.told_stops) for run in runs]
-
-
-class Run(NamedTuple):
-    """A line, where the head was put down for it, and the length of the ink that is joined to it, mm."""
-
-    line: Line
-    stance: Stance
-    ink_mm: float
-
-    @property
-    def goes_far(self) -> bool:
-        """Whether it goes along most of the ink."""
-        return self.line.length_mm > SHORT * self.ink_mm
-
-    @property
-    def ran_in(self) -> bool:
-        """Whether it began in the middle of a line, perhaps on a chord, and ended in what it had followed."""
-        away_mm = float(np.hypot(*(self.line.start_mm - self.stance.place_mm)))
-        began_there = away_mm < self.stance.view.width_mm
-        return self.line.ending == "joined" and not self.stance.at_end and began_there
-
-    @property
-    def is_certain(self) -> bool:
-        """Whether it is the line without doubt; if it passed a junction, a lead line may come in there."""
-        if self.stance.at_end and self.line.junctions_mm:
-            return False
-        ending = self.line.ending
-        return ending == "closed" or (self.goes_far and ending != "joined")
-
-    @property
-    def from_open_end(self) -> bool:
-        """Whether it began at an open end that is no reference point's."""
-        return _is_open(self.stance)
-
-    def goes_before(self, best: Run) -> bool:
-        """Whether it is better than the best so far: longer; one that closes goes before one that ran in."""
-        closes = "closed" in (self.line.ending, best.line.ending)
-        if closes and self.ran_in != best.ran_in:
-            return best.ran_in
-        return self.line.length_mm > best.line.length_mm
-
-
-@dataclass(frozen=True, slots=True)
-class _Target:
-    """The line that is asked for: the set-up, the place that the operator points at, and its number."""
-
-    setup: Setup
-    start_mm: tuple[float, float] | None = None
-    number: int = 1
-
-    def run(self, stance: Stance, ink_mm: float, *, other_turns: bool = False) -> Run:
-        """Follow from a stance; with other turns also where straight on does not go round as asked."""
-        sheet, operator = self.setup.sheet, self.setup.operator
-        attempts = Attempts(
-            sheet.drawing,
-            self.setup.settings,
-            longest_mm(sheet.drawing, stance.view.width_mm),
-            operator.sides,
-            self.setup.told(ink_mm),
-            other_turns,
-        )
-        try:
-            run = attempts.asked_for(stance, operator.direction, self.start_mm)
-        except LineFault:
-            if other_turns:
-                raise
-            attempts = replace(attempts, other_turns=True)
-            run = attempts.asked_for(stance, operator.direction, self.start_mm)
-        stops = sheet.drawing.told_stops
-        line = Line.of(run, self.number, stance.reference_mm, stops)
-        is_solid = sheet.is_solid_at(stance.place_mm)
-        return Run(replace(line, ink_mm=ink_mm, is_solid=is_solid), stance, ink_mm)
-
-    def without_turns(self) -> _Target:
-        """The same line, straight on at every junction."""
-        return replace(self, setup=self.setup.without_turns())
-
-
-@dataclass(slots=True)
-class _Search:
-    """The runs so far: the best, the lead lines from open ends, and the runs from smooth places."""
-
-    best: Run | None = None
-    leads: list[Run] = field(default_factory=list)
-    smooth: list[Run] = field(default_factory=list)
-    settled: bool = (
-        False  # the best is the lead line from the reference point: nothing else is tried
-    )
-
-    def is_over(self, stance: Stance) -> bool:
-        """Whether no more stances are tried from this one on."""
-        return (bool(self.leads) and not stance.at_end) or len(self.smooth) > ELSEWHERE
-
-    def has_passed(self, stance: Stance) -> bool:
-        """Whether a run from a smooth place has passed a stance."""
-        return any(_lies_on(stance, run.line) for run in self.smooth)
-
-    def add(self, run: Run) -> bool:
-        """Take in a run; returns whether no better one need be looked for."""
-        line, stance, _ = run
-        if line.is_lead and run.from_open_end:
-            self.leads.append(run)
-        best = run if self.best is None or run.goes_before(self.best) else self.best
-        self.best = best
-        # 1. a run without doubt
-        if run.is_certain:
-            return True
-        if stance.at_end:
-            return False
-        # 2. from a smooth place the best so far will do, if it did not run in
-        self.smooth.append(run)
-        return not best.ran_in and (best.line.ending == "closed" or best.goes_far)
-
-
-def _best(
-    wanted: _Target, stances: Iterator[tuple[Stance, float]], other_turns: bool = True
-) -> tuple[Line | None, list[Line]]:
-    """The best run from one of some stances, None if there are no stances; and further lead lines that are as
-    good.
-
-    The card's turns are counted from the beginning of the lead line: so at which open end a lead line begins
-    is judged without them.
-    """
-    search = _searched(wanted, stances)
-    if search.best is None or search.settled:
-        return (search.best.line if search.best else None), []
-    best = _with_other_turns(wanted, search.best, search.smooth) if other_turns else search.best
-    first = search.leads[0] if search.leads else best
-    if wanted.setup.operator.sides and first.from_open_end:
-        first = wanted.run(first.stance, first.ink_mm)
-    return first.line, [lead.line for lead in search.leads[1:]]
-
-
-def _searched(wanted: _Target, stances: Iterator[tuple[Stance, float]]) -> _Search:
-    """The runs from one stance after the other, until no better one need be looked for."""
-    search, straight = _Search(), wanted.without_turns()
-    in_reach = takewhile(lambda place: not search.is_over(place[0]), stances)
-    for stance, ink_mm in in_reach:
-        if search.has_passed(stance):
-            continue
-        try:
-            run = (straight if _is_open(stance) else wanted).run(stance, ink_mm)
-        except LineFault:
-            if search.best is None:
-                raise
-            continue
-        if run.line.is_lead and not run.from_open_end and run.goes_far:
-            return _Search(run, settled=True)
-        if search.add(run):
-            break
-    return search
-
-
-def _with_other_turns(wanted: _Target, best: Run, smooth: list[Run]) -> Run:
-    """The first run that closes with other turns than straight on, in place of a best run that ran in, or
-    closed round a small part of the ink.
-    """
-    closes_short = best.line.ending == "closed" and best.line.length_mm < SHORT * best.ink_mm
-    if not best.ran_in and not closes_short:
-        return best
-    for tried in filter(lambda run: run.ran_in, smooth):
-        run = wanted.run(tried.stance, tried.ink_mm, other_turns=True)
-        is_longer = best.ran_in or run.line.length_mm > best.line.length_mm
-        if run.line.ending == "closed" and is_longer:
-            return run
-        if best.line.ending == "closed" or run.goes_far:
-            break
-    return best
-
-
-def _lies_on(stance: Stance, line: Line) -> bool:
-    """Whether a stance is on a line that was followed."""
-    away_mm = np.hypot(*(line.own_mm - stance.place_mm).T)
-    return bool(away_mm.min() < stance.view.width_mm)
-
-
-def _is_open(stance: Stance) -> bool:
-    """Whether the head stands at an open end of a line that is no reference point's."""
-    return stance.at_end and stance.reference_mm is None
 
 
 def _several_lead(lines: list[Line]) -> LineFault:
