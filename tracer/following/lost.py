@@ -32,3 +32,8 @@ def line_lost(
         y_mm=y,
         heading_rad=heading_rad,
     )
+
+
+def by_its_cell(fault: LineFault) -> bool:
+    """Whether the head's cell failed, not the line: no way is to be found for such a head."""
+    return CONTRADICT in str(fault) or NO_GUARDS in str(fault)

@@ -30,6 +30,7 @@ from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.enclosure import Enclosure
 from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following import lost
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
 from morfax.tracer.program.setup import Setup
@@ -95,6 +96,8 @@ def round_ring(setup: Setup, line: Line) -> Line | None:
     """The way round the ink on which a line was lost, if that goes round one area and closes."""
     sheet = setup.sheet
     if line.reference_mm is not None or _is_program(setup) or sheet.drawing.edges_mm:
+        return None
+    if line.fault is not None and lost.by_its_cell(line.fault):
         return None
     patch = sheet.patch_at(np.asarray(line.start_mm))
     if (
