@@ -21,6 +21,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.ink.doubled import BROADER
+from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.net import COVERED, Inner, Net, end_leg, net_of, trimmed
 from morfax.tracer.ink.partners import Pair, meeting_place, partners, way_through
 from morfax.tracer.ink.run import Run
@@ -52,17 +54,18 @@ def solved(sheet: FeltSheet) -> Junctions:
     that; then all is asked anew, for these two may be what goes along another stretch.
     """
     parted, two, bare = set[int](), set[int](), set[int]()
+    doubled = sheet.doubled.throughout(sheet.felt)
     for _ in range(SOLVED_AGAIN):
         junctions = Junctions(net_of(sheet, two | bare), sheet.settings)
         lines = [line.stretch for line in junctions.net.lines]
-        together = dict.fromkeys(
-            (sheet.doubled.stations.keys() & set(lines)) - parted - bare, sheet.doubled.pen_mm
-        )
+        together = dict.fromkeys((doubled & set(lines)) - parted - bare, sheet.doubled.pen_mm)
         together |= {
             stretch: width_mm
             for n, stretch in enumerate(lines)
-            if stretch not in parted | bare and (width_mm := junctions.single_mm(n)) is not None
+            if stretch not in parted | bare
+            and (width_mm := junctions.single_mm(n, _narrower_mm(sheet, stretch))) is not None
         }
+        sheet.together.update(n for n in together if n in doubled or sheet.is_broad(n))
         too_long = parted.intersection(lines) - two - bare
         more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
         if together or too_long:
@@ -76,6 +79,13 @@ def solved(sheet: FeltSheet) -> Junctions:
         else:
             break
     return junctions
+
+
+def _narrower_mm(sheet: FeltSheet, stretch: int) -> float:
+    """Lines that go on from a stretch are narrower, if it is two lines: on a clean sheet by very little."""
+    if sheet.is_broad(stretch):
+        return usual_width_mm(sheet.felt[stretch]) / BROADER
+    return NARROWER * sheet.widths_mm[stretch]
 
 
 class Side(NamedTuple):
@@ -222,10 +232,10 @@ class Junctions:
         away_mm, _ = self._passing(there).query(inner.run.places_mm)
         return bool(np.mean(away_mm < COVERED * there.legs[0].width_mm) > COVERED_SHARE)
 
-    def single_mm(self, number: int) -> float | None:
+    def single_mm(self, number: int, wide_mm: float) -> float | None:
         """The width of each of two lines that run together as one line, mm; None if that is one line.
 
-        At both its ends two narrower lines go on from it.
+        At both its ends two lines go on from it that are narrower than `wide_mm`.
         """
         line, widths = self.net.lines[number], list[float]()
         for last in (False, True):
@@ -236,7 +246,7 @@ class Junctions:
             onward = [
                 other.width_mm
                 for other in there.legs
-                if other.width_mm < NARROWER * line.width_mm
+                if other.width_mm < wide_mm
                 and abs(turn(leg.heading_rad, other.heading_rad + math.pi)) < TOGETHER
             ]
             if len(onward) != 2:

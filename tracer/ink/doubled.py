@@ -32,6 +32,7 @@ Flags = NDArray[np.bool_]
 
 # All limits below were chosen by trial on drawings of nets and on line art.
 SHARED = 1.15  # times the line's width: ink that two lines share is wider
+BROADER = 1.05  # times the pen's width: of ink into which two lines run at both its ends
 TWO = 2.5  # times the pen's width: ink that is wider is no two lines of it
 AVERAGED = 2.0  # widths over which a width is averaged
 BESIDE = 1.5  # widths from the ends of a stretch: there others cross it
@@ -50,6 +51,7 @@ CROSSED = (
 )  # widths from there: the slope of the ink's width up to the nearer place ...
 # ... is so much of that between the two, or more: of lines that only touch, as a parabola does, a third
 LEVEL_OFF = 0.45
+FROM_ENDS = 10.0  # widths: within them two lines that share a stretch have begun to
 FEWEST, LEAST_WIDTHS = (
     10,
     8.0,
@@ -87,6 +89,16 @@ class Doubled(NamedTuple):
         """The length of the ink of a stretch that two lines share, mm."""
         flags = self.stations.get(number)
         return 0.0 if flags is None else float(flags.sum()) * felt[number].view.step_mm
+
+    def throughout(self, felt: Sequence[Run]) -> set[int]:
+        """The stretches that two lines share from end to end: of others one of the lines ends on the way."""
+        found = set[int]()
+        for n, flags in self.stations.items():
+            there = np.flatnonzero(flags)
+            end_mm = max(there[0], len(flags) - 1 - there[-1]) * felt[n].view.step_mm
+            if end_mm < FROM_ENDS * self.pen_mm:
+                found.add(n)
+        return found
 
 
 class _Widths(NamedTuple):

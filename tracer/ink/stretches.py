@@ -19,7 +19,7 @@ from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import SHARED, Doubled
+from morfax.tracer.ink.doubled import BROADER, SHARED, Doubled
 from morfax.tracer.ink.felt import Ends, Parted, feel_along, is_steady, judged, usual_width_mm
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
@@ -48,6 +48,9 @@ class FeltSheet:
     settings: Settings
     ends: list[Ends]  # of each stretch, whether the ink ends there
     doubled: Doubled = field(default_factory=Doubled)
+    together: set[int] = field(
+        default_factory=set
+    )  # stretches that have turned out to be two lines
     _runs: dict[tuple[int, float], Parted] = field(default_factory=dict)
 
     def runs(self, number: int) -> Parted:
@@ -62,9 +65,13 @@ class FeltSheet:
     def is_shared(self, number: int, run: Run) -> bool:
         """Whether the ink along a stretch is that of two lines, each as wide as a run's view says."""
         known = run.widths_mm[np.isfinite(run.widths_mm)]
-        if number in self.doubled.stations or len(known) < HALF * len(run):
+        if number in self.together or len(known) < HALF * len(run):
             return True
         return float(np.median(known)) > SHARED * run.view.width_mm
+
+    def is_broad(self, number: int) -> bool:
+        """Whether a stretch is broader than the pen of a clean sheet; of another sheet that is not known."""
+        return usual_width_mm(self.felt[number]) > BROADER * self.doubled.pen_mm
 
     @classmethod
     def of(cls, drawing: Drawing, settings: Settings, ink: Mask) -> FeltSheet:
