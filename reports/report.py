@@ -42,7 +42,7 @@ def write(
     """Write the report: an introduction, a table with a row for each system, faults in full, the pictures."""
     faults = [f"{name}: {row['fault']}" for name, row in rows.items() if row.get("fault")]
     plain = [
-        (name, {key: value for key, value in row.items() if key != "fault"})
+        (name.replace("_", " "), {k: value for k, value in row.items() if k != "fault"})
         for name, row in rows.items()
     ]
     body = [

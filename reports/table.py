@@ -48,7 +48,11 @@ def as_json(figures: Figures) -> str:
 def as_text(figures: Figures) -> str:
     """The figures as text: one line each, then those inside as a table."""
     told = {key: value for key, value in figures.items() if value is not None}
-    rows = [(key, value) for key, value in told.items() if isinstance(value, Mapping)]
+    rows = [
+        (key.replace("_", " "), value)
+        for key, value in told.items()
+        if isinstance(value, Mapping)
+    ]
     tables = _tables(rows)
     lists = [_named(value) for value in told.values() if _is_listing(value)]
     alone = {
@@ -90,7 +94,7 @@ def _named(listing: list[Figures]) -> list[Row]:
     """The rows of a list of dictionaries, named after the first figure of each, such as "line 3"."""
     first = next(iter(listing[0]))
     return [
-        (f"{first} {row[first]}", {key: row[key] for key in row if key != first})
+        (" ".join(_told(first, row[first])), {key: row[key] for key in row if key != first})
         for row in listing
     ]
 
@@ -125,8 +129,7 @@ def as_cells(rows: Sequence[Row]) -> list[list[str]]:
     )
     header = ["", *(_told(key, None)[0] for key in keys)]
     return [header] + [
-        [name.replace("_", " "), *(_told(key, row.get(key))[1] for key in keys)]
-        for name, row in rows
+        [name, *(_told(key, row.get(key))[1] for key in keys)] for name, row in rows
     ]
 
 

@@ -50,6 +50,20 @@ def test_dictionaries_inside_become_one_table() -> None:
     assert ink.split() == ["played", "to", "ink", "3", "mm", "–"]
 
 
+def test_rows_of_a_list_are_named_by_their_place_in_its_unit_and_by_files_as_they_are_called() -> (
+    None
+):
+    text = as_text(
+        {
+            "places": [{"unexplained_place_mm": (33.0411666667, 36.5548333333), "what": "ink"}],
+            "drawings": [{"drawing": "my_part.png", "ending": "closed"}],
+        }
+    )
+    rows = [line.split("  ")[0] for line in text.splitlines()]
+    assert rows[1] == "unexplained 33.04, 36.55 mm"
+    assert rows[3] == "drawing my_part.png"
+
+
 def test_columns_stand_below_each_other_whatever_letters_are_in_them() -> None:
     text = as_text(
         {
