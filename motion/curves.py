@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.speed_limits import braked
 
 SPACING_MM = 0.02  # of the places on a curve
@@ -25,12 +26,26 @@ LEAST_BEND_PER_MM = 1e-6  # so that no bend is: a radius of a kilometre is strai
 def hermite(start: Array, heading: float, end: Array, end_heading: float) -> Array:
     """The cubic from one place and heading to another, (n, 2) mm."""
     chord = float(np.hypot(*(end - start)))
-    t = np.linspace(0, 1, max(2, math.ceil(chord / SPACING_MM) + 1))[:, None]
-    leaving = chord * np.array([math.cos(heading), math.sin(heading)])
-    arriving = chord * np.array([math.cos(end_heading), math.sin(end_heading)])
-    h = t * t * (3 - 2 * t)
-    slopes = leaving * t * (1 - t) ** 2 - arriving * t * t * (1 - t)
-    return np.asarray(start * (1 - h) + end * h + slopes)
+    ends = float(start[0]), float(start[1]), float(end[0]), float(end[1])
+    leaving = chord * math.cos(heading), chord * math.sin(heading)
+    arriving = chord * math.cos(end_heading), chord * math.sin(end_heading)
+    out = np.empty((max(2, math.ceil(chord / SPACING_MM) + 1), 2))
+    _cubic(ends, (*leaving, *arriving), out)
+    return out
+
+
+@njit(cache=True, _nrt=False)
+def _cubic(ends, slopes, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, 2) with a cubic from place to place, by its slopes there."""
+    last = len(out) - 1
+    step = 1.0 / last
+    for k in range(last + 1):
+        t = k * step if k < last else 1.0
+        h = t * t * (3.0 - 2.0 * t)
+        leaves, arrives = (1.0 - t) * (1.0 - t), 1.0 - t
+        for i in range(2):
+            slope = slopes[i] * t * leaves - slopes[2 + i] * t * t * arrives
+            out[k, i] = ends[i] * (1.0 - h) + ends[2 + i] * h + slope
 
 
 def bends_per_mm(points: Array) -> Array:
@@ -62,5 +77,6 @@ def speeds(
 
 def distinct(points: Array) -> Array:
     """The polyline without places that repeat the one before."""
-    keep = np.r_[True, np.hypot(*np.diff(points, axis=0).T) > REPEATS_MM]
+    keep, steps = np.ones(len(points), bool), points[1:] - points[:-1]
+    keep[1:] = np.hypot(steps[:, 0], steps[:, 1]) > REPEATS_MM
     return points[keep]

@@ -31,12 +31,15 @@ Ints = NDArray[np.int64]
 
 def steps_mm(line_mm: Array) -> Array:
     """Lengths of the straight pieces of a polyline, (n - 1,) mm."""
-    return np.hypot(*np.diff(line_mm, axis=0).T)
+    steps = line_mm[1:] - line_mm[:-1]  # np.diff takes twice the time of a short line
+    return np.hypot(steps[:, 0], steps[:, 1])
 
 
 def lengths_mm(line_mm: Array) -> Array:
     """Length of a polyline up to each of its places, (n,) mm."""
-    return np.r_[0.0, np.cumsum(steps_mm(line_mm))]
+    lengths = np.zeros(max(1, len(line_mm)))
+    np.cumsum(steps_mm(line_mm), out=lengths[1:])
+    return lengths
 
 
 def lengths_by_blocks(line_mm: Array) -> Iterator[tuple[int, Array, Array]]:

@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from morfax.motion.compiled import njit
 from morfax.motion.drive import Drive
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Tuning
@@ -260,18 +261,30 @@ def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float, float
     view, heading = stance.view, stance.heading_rad
     stations = tuned_along(view)
     aside = CALIBRATED_ASIDE * view.width_mm
-    to_left, to_right = (-aside, amplitude_mm), (aside, amplitude_mm)
-    way = np.array([math.cos(heading), math.sin(heading)])
-    slopes = means = firsts = balances = 0.0
-    for k in range(stations):
-        place = stance.place_mm + view.step_mm * k * way
-        left = sweep(view.cells, place, heading, to_left, CALIBRATED_SAMPLES)
-        right = sweep(view.cells, place, heading, to_right, CALIBRATED_SAMPLES)
-        slopes += (left[0] - right[0]) / (2 * aside) / stations
-        means += (left[1] + right[1]) / 2 / stations
-        firsts += abs(left[0] + right[0]) / 2 / stations
-        balances += (left[1] - right[1]) / (2 * aside) / stations
+    x_mm, y_mm = stance.place_mm.tolist()
+    pose = x_mm, y_mm, float(heading)
+    sizes_mm = float(aside), float(amplitude_mm), float(view.step_mm)
+    slopes, means, firsts, balances = _swept(view.cells, pose, sizes_mm, stations)
     slope = max(slopes, LEAST_SLOPE_PER_MM)
     if not view.on_edge:
         return slope, means, 0.0
     return slope, firsts, math.copysign(max(abs(balances), LEAST_SLOPE_PER_MM), balances)
+
+
+@njit(cache=True)
+def _swept(cells, pose, sizes_mm, stations):  # type: ignore[no-untyped-def]
+    """Means over stations ahead of a pose: slope of the fundamental (per mm), darkness, size of the
+    fundamental, slope of the darkness (per mm). `sizes_mm`: how far aside, amplitude, distance of stations.
+    """
+    (x_mm, y_mm, heading), (aside, amplitude_mm, step_mm) = pose, sizes_mm
+    c, s, place = math.cos(heading), math.sin(heading), np.empty(2)
+    slopes = means = firsts = balances = 0.0
+    for k in range(stations):
+        place[0], place[1] = x_mm + step_mm * k * c, y_mm + step_mm * k * s
+        left = sweep(cells, place, heading, (-aside, amplitude_mm), CALIBRATED_SAMPLES)
+        right = sweep(cells, place, heading, (aside, amplitude_mm), CALIBRATED_SAMPLES)
+        slopes += (left[0] - right[0]) / (2 * aside) / stations
+        means += (left[1] + right[1]) / 2 / stations
+        firsts += abs(left[0] + right[0]) / 2 / stations
+        balances += (left[1] - right[1]) / (2 * aside) / stations
+    return slopes, means, firsts, balances
