@@ -51,7 +51,9 @@ def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> Stretch | None:
     if plan.leader != STATIONS or len(plan.stretches) != 1 or view.on_edge:
         return None
     seen = plan.leg.seen if plan.seen is None else plan.seen
-    return bare_stretch(view, carriage, plan.stretches[0], seen)
+    # a stub that the way ends before may still be a leg of a junction that is not known yet
+    stretch = bare_stretch(view, carriage, plan.stretches[0], seen)
+    return stretch if stretch is not None and stretch.way is plan.stretches[0] else None
 
 
 def bare_stretch(view: View, carriage: Carriage, way: Array, seen: Array) -> Stretch | None:
