@@ -10,6 +10,7 @@ started threads must not be forked, so they are kept to one thread before they a
 
 from __future__ import annotations
 
+import warnings
 from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -39,6 +40,10 @@ def warm_up() -> None:
         TraceJob(DrawingFile(file, dpi=DPI), outputs).run()
 
 
+# Kernels that are compiled here have other processes compile ahead: children that the fork server does not
+# know, which it says and passes over.
+warnings.filterwarnings("ignore", message="forkserver: waitpid returned unexpected pid")
 worker.keep_to_one_core()
+worker.forgive_damaged_kernels()
 with suppress(Exception):  # what is wrong shows on the first drawing, with a word
     warm_up()

@@ -11,13 +11,16 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 
 from morfax.batch.row import BatchRow
+from morfax.jobs.damaged_kernels import compile_damaged_again
 
 Work = Callable[[str], BatchRow]  # of the name of a drawing; can be pickled
 BEGUN = "begun"
+_FORGIVING: list[bool] = []
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -26,6 +29,7 @@ def serve(pipe: Connection, work: Work, memory_bytes: int | None) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     keep_to_one_core()
+    forgive_damaged_kernels()
     limit_memory(memory_bytes)
     while True:
         try:
@@ -45,6 +49,13 @@ def keep_to_one_core() -> None:
     import cv2
 
     cv2.setNumThreads(1)
+
+
+def forgive_damaged_kernels() -> None:
+    """Have kernels that numba keeps, and that are damaged on disk, compiled again, and told of once."""
+    if not _FORGIVING:  # a worker that is forked from one that does need not begin again
+        _FORGIVING.append(True)
+        compile_damaged_again(lambda line: print(line, file=sys.stderr, flush=True))
 
 
 def limit_memory(memory_bytes: int | None) -> None:

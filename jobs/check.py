@@ -68,7 +68,8 @@ class CheckJob:
         if self.picture is not None:
             medium.outgoing(self.picture, self.program)
         made = self._machine()
-        checked = check_program(self.program, made, self.stock)
+        with listener.progress("checking the program", 1.0) as advance:
+            checked = check_program(self.program, made, self.stock, advance)
         surface_mm = self.stock.surface_mm if self.stock else 0.0
         figures = {
             "program": str(self.program),

@@ -14,7 +14,8 @@ What is meant so is allowed: by the text chunk, whose entries the recorder write
 Source: patent ES 361967 has four bare tracks. Questions: the text chunk turns no screws, but it may allow
 what the tracks show; it is no proof, as a copied track may be one of those that are allowed. Z and further
 axes stand in many programs, so they are not asked to move. A tool that starts in the work may well go up
-only; one that starts above it and never comes down makes nothing, whichever way the tape runs.
+only; one that starts above it and never comes down makes nothing, whichever way the tape runs. A closed
+line whose tool stays where it is, played backwards, is a right tape of another part: nothing tells it.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ from morfax.recorder.tape.tape import Stored
 
 TOOL = "z"
 NOT_VOUCHED = (
-    "the tape is bare, it has no check signal: lost or repeated samples, a late track, and X and Y in each "
-    "other's places show only where it ends elsewhere than it states"
+    "the tape is bare, it has no check signal: lost or repeated samples, a late track, X and Y in each "
+    "other's places and a tape that runs backwards show only where it ends elsewhere than it states"
 )
 
 

@@ -12,7 +12,7 @@ curve is not followed, keeps it from being started, and is found as "not read".
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 
@@ -28,6 +28,8 @@ from morfax.player.gcode.check.words import WordRules
 from morfax.player.gcode.machine_reader import FOR
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.program_text import END
+
+TOLD_EVERY = 2000  # lines: some ms
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +47,16 @@ class Checked:
         return not any(finding.stops for finding in self.findings)
 
 
-def check_program(file: FilePath, machine: Machine, stock: Stock | None = None) -> Checked:
-    """Check a file; raises FileFault if it cannot be read, ProgramFault if it is no text."""
+def check_program(
+    file: FilePath,
+    machine: Machine,
+    stock: Stock | None = None,
+    tell: Callable[[float], object] = lambda share: None,
+) -> Checked:
+    """Check a file; raises FileFault if it cannot be read, ProgramFault if it is no text.
+
+    `tell` is told what share of the lines is read.
+    """
     try:
         raw = file.read_bytes()
     except OSError as error:
@@ -55,7 +65,15 @@ def check_program(file: FilePath, machine: Machine, stock: Stock | None = None) 
         raise ProgramFault(f"{file} is no text; a program is lines such as G1 X10 Y5 F600")
     # each byte is a character: what a control reads
     lines = raw.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    return check_lines(lines, machine, stock)
+    return check_lines(_told(lines, tell), machine, stock)
+
+
+def _told(lines: list[str], tell: Callable[[float], object]) -> Iterator[str]:
+    """The lines, and how far they are."""
+    for number, line in enumerate(lines):
+        if number % TOLD_EVERY == 0:
+            tell(number / len(lines))
+        yield line
 
 
 def check_lines(lines: Iterable[str], machine: Machine, stock: Stock | None = None) -> Checked:
