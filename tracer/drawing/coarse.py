@@ -11,7 +11,7 @@ Scans of two levels, and engravings that were made small, have steps at their ed
 and gaps of a pixel. A wider aperture makes up for that.
 
 Down to a width of 1.25 pixels outlines of 0.5 mm with slots, spikes and bays of 1.5 mm and more were right or
-told in 60 of 60, at 1 pixel in 180 of 180: there the ink of each way is held against the scan's (see
+told in 60 of 60, at 1 pixel in 240 of 240: there the ink of each way is held against the scan's (see
 `program.redrawn`). The operator is warned of lines that look as wide as 1.5 pixels or less: how wide they are
 cannot be told more closely, so nothing is refused: most paths on lines of 1 pixel are right.
 
