@@ -28,6 +28,7 @@ _COMPUTED = re.compile(
     r"([A-Z@^])[-+]?(?:ABS|ACOS|ASIN|ATAN|COS|EXP|FIX|FUP|LN|ROUND|SIN|SQRT|TAN|EXISTS)?[#\[]"
 )
 _POLAR = re.compile(r"[@^][-+\d.]+")
+LONGEST_READ = 1 << 16  # characters of a line: 256 times what any control here reads
 _LONGEST_SHOWN = 30  # characters of a line, in a finding
 _MOVES = frozenset("XYZIJKRABCUVW")
 
@@ -61,6 +62,8 @@ class ControlInput:
         if not compact:
             return None
         self.begun = True
+        if len(compact) > max(LONGEST_READ, self.machine.longest_line):
+            return None  # found as too long
         if text.lstrip().startswith("/"):
             self.findings.remark(
                 "switch",
