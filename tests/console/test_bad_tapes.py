@@ -137,7 +137,7 @@ def test_a_tape_backwards_is_no_other_tape_but_the_tool_goes_up(
     assert answer.exit_code == 5 and "the tape runs backwards" in answer.err
     assert "bad.incomplete.csv" in answer.out
     assert (
-        "backwards"
+        "the tape runs backwards"
         not in morfax("play", written(frames, tape_text(here, frames)), "-o", "good.csv").err
     )
 
