@@ -70,7 +70,7 @@ class CompareJob:
             for file, by_hand in zip(files, self.by_hand.beside(files), strict=True)
         ]
         if drawing is None:
-            found = comparison.from_path(paths[0], paths[1])
+            found = comparison.from_path(paths[0], paths[1], listener=listener)
         else:
             paths = [_on_sheet(drawing, paths[0], zero)]
             radius_mm = (self.cutter_mm or 0.0) / 2

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.jobs.figures import Figures
+from morfax.jobs.listener import SILENT, Listener
 
 if TYPE_CHECKING:
     from morfax.motion.contour import Summary
@@ -58,16 +59,23 @@ def measured_on(drawing: Drawing) -> Drawing:
     return lines_and_rims(drawing) if drawing.both else drawing
 
 
-def from_path(path: Path, reference: Path, names: tuple[str, str] = ("a", "b")) -> Comparison:
+def from_path(
+    path: Path,
+    reference: Path,
+    names: tuple[str, str] = ("a", "b"),
+    listener: Listener = SILENT,
+) -> Comparison:
     """Compare a path with another one; `names` are what the figures call the two."""
     from morfax.motion.contour import distance, pointwise
 
-    found = distance(path, reference)
+    with listener.progress("comparing", 3.0) as advance:
+        found = distance(path, reference, lambda share: advance(2.0 * share))
+        along = pointwise(path, reference, SAMPLE_MM, lambda share: advance(2.0 + share))
     rows = {
         f"{names[0]}_to_{names[1]}": _row(found.path_to_reference),
         f"{names[1]}_to_{names[0]}": _row(found.reference_to_path),
     }
-    return Comparison(rows, found.hausdorff_mm, *pointwise(path, reference, SAMPLE_MM))
+    return Comparison(rows, found.hausdorff_mm, *along)
 
 
 def from_drawing(

@@ -14,7 +14,7 @@ sample. The four nearest are tried.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +35,7 @@ _P95 = 0.95  # of the length is nearer than this distance
 
 
 Contour = Path | Motion | Array | Sequence[Array]
+Tell = Callable[[float], object]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,20 +67,23 @@ class Distances:
         return f"path to reference {there}; reference to path {back}; Hausdorff {self.hausdorff_mm:.4f} mm"
 
 
-def distance(path: Contour, reference: Contour) -> Distances:
-    """Distances of a path from a reference and back, mm."""
+def distance(path: Contour, reference: Contour, tell: Tell = lambda share: None) -> Distances:
+    """Distances of a path from a reference and back, mm; `tell` is told what share of them is known."""
     ours, theirs = _sampled(path), _sampled(reference)
-    there = _Finder(theirs).distances_mm(ours.points_mm)
-    back = _Finder(ours).distances_mm(theirs.points_mm)
+    there = _Finder(theirs).distances_mm(ours.points_mm, lambda share: tell(0.5 * share))
+    back = _Finder(ours).distances_mm(theirs.points_mm, lambda share: tell(0.5 + 0.5 * share))
     return Distances(_summary(there, ours.weights_mm), _summary(back, theirs.weights_mm))
 
 
 def pointwise(
-    path: Contour, reference: Contour, sample_mm: float = SAMPLE_MM
+    path: Contour,
+    reference: Contour,
+    sample_mm: float = SAMPLE_MM,
+    tell: Tell = lambda share: None,
 ) -> tuple[Array, Array]:
     """Samples (n, 2) along a path, and the distance of each from the reference, mm."""
     ours = _sampled(path, sample_mm)
-    return ours.points_mm, _Finder(_sampled(reference)).distances_mm(ours.points_mm)
+    return ours.points_mm, _Finder(_sampled(reference)).distances_mm(ours.points_mm, tell)
 
 
 def distances_mm(points_mm: Array, reference: Contour) -> Array:
@@ -169,12 +173,12 @@ class _Finder:
         self._sampled = sampled
         self._neighbours = Neighbours(sampled.points_mm)
 
-    def distances_mm(self, points: Array) -> Array:
-        """Distance of each point (n, 2) from the nearest straight piece, mm."""
-        parts = [
-            self._some(points[i : i + _SAMPLES_AT_ONCE])
-            for i in range(0, len(points), _SAMPLES_AT_ONCE)
-        ]
+    def distances_mm(self, points: Array, tell: Tell = lambda share: None) -> Array:
+        """Distance of each point (n, 2) from the nearest straight piece, mm; `tell` hears how far it is."""
+        parts = list[Array]()
+        for first in range(0, len(points), _SAMPLES_AT_ONCE):
+            tell(first / len(points))
+            parts.append(self._some(points[first : first + _SAMPLES_AT_ONCE]))
         return np.concatenate(parts)
 
     def _some(self, points: Array) -> Array:

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from morfax.motion import contour
 from morfax.motion.contour import closure_mm, distance, distances_mm, length_mm, pointwise
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion, Path
@@ -166,6 +167,14 @@ def test_a_very_long_path_is_sampled_further_apart(monkeypatch: pytest.MonkeyPat
 def test_a_single_point_has_a_distance() -> None:
     apart = distance(np.array([[3.0, 4.0]]), np.array([[0.0, 0.0]]))
     assert apart.hausdorff_mm == apart.path_to_reference.rms_mm == 5 * MM
+
+
+def test_how_far_a_long_comparison_is_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(contour, "_SAMPLES_AT_ONCE", 1000)
+    told = list[float]()
+    distance(circle(2, 2000), circle(2.1, 2000), told.append)
+    assert len(told) > 4 and told == sorted(told)
+    assert told[0] == 0.0 and 0.5 in told and told[-1] < 1.0
 
 
 def test_what_is_no_contour() -> None:
