@@ -24,8 +24,9 @@ from morfax.tracer.ink.areas import Edge, ways_round
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
 from morfax.tracer.sensing.leg import turn
 
-# of the way round the net's outside: a closed chain that is shorter is a detail of the drawing; by trial
-MOST_OF_IT = 0.4
+# of the way round the net's outside: two lines that overlap each make half of it or more, and a closed chain
+# that is shorter is a detail of the drawing
+MOST_OF_IT = 0.5
 STRAIGHT_ON = math.radians(
     35
 )  # legs of a line that goes on over a junction turn by no more; by trial
