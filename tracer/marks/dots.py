@@ -17,6 +17,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
+from morfax.motion.median import median
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.marks.sizes import (
     DOT_ALONG,
@@ -102,7 +103,7 @@ def _disc(view: View, place: Array) -> tuple[Array, Array] | None:
         reach = spokes(view, place, largest_mm)[:, 0]
         if np.isfinite(reach).mean() <= DOT_EVEN:
             return None
-        usual = float(np.nanmedian(reach))
+        usual = median(reach[~np.isnan(reach)])
         even = np.abs(reach - usual) < share * usual
         if usual <= DOT_LEAST_WIDTHS * view.width_mm or even.mean() < DOT_EVEN:
             return None

@@ -24,6 +24,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.sensing.leg import Leg, meet
+from morfax.tracer.sensing.photocell import darkness_along
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import pen
@@ -245,10 +246,8 @@ def _softness(view: View, leg: Leg) -> float:
     unit = way / np.hypot(*way.T)[:, None]
     left = np.column_stack([-unit[:, 1], unit[:, 0]])
     u = ACROSS * (leg.width_mm + PAPER_MM)
-    across = [
-        [view.darkness_at(place + a * n) for a in u]
-        for place, n in zip(stations, left, strict=True)
-    ]
+    places = stations[:, None] + u[:, None] * left[:, None]
+    across = darkness_along(view.cells, places.reshape(-1, 2)).reshape(len(left), len(u))
     seen = np.median(across, axis=0) / (2 * view.level)
     # 2. the pen that is most like it
     drawn, misfits = np.empty(len(u)), []
