@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import tracemalloc
 from itertools import pairwise
 from pathlib import Path
@@ -252,16 +253,24 @@ def test_a_tape_of_a_moment_is_a_fault(tmp_path: Path) -> None:
 
 def test_memory_does_not_grow_with_the_tape(tmp_path: Path) -> None:
     peaks = []
-    for seconds in (3, 6, 24):
+    for seconds in (6, 24):
         file = tape(tmp_path / f"{seconds}.wav", tracks(swing, seconds))
-        tracemalloc.start()
+        # a first one may compile kernels, and the tests' runner has a thread beside: the least counts
+        peaks.append(min(peak_of_playing(file) for _ in range(4)))
+    assert peaks[1] < 1.1 * peaks[0]
+    assert peaks[0] < 20e6  # bytes: a few blocks of 1 MB
+
+
+def peak_of_playing(file: Path) -> int:
+    """What playing a tape takes at most, bytes."""
+    gc.collect()
+    tracemalloc.start()
+    try:
         for _ in by_hand(file):
             pass
-        peaks.append(tracemalloc.get_traced_memory()[1])
+        return tracemalloc.get_traced_memory()[1]
+    finally:
         tracemalloc.stop()
-    # the first may compile kernels, which takes memory of its own
-    assert peaks[2] < 1.1 * peaks[1]
-    assert peaks[1] < 20e6  # bytes: a few blocks of 1 MB
 
 
 @pytest.mark.parametrize(("off_mm", "is_fault"), [(0.011, False), (0.020, True)])
