@@ -35,5 +35,5 @@ def line_lost(
 
 
 def by_its_cell(fault: LineFault) -> bool:
-    """Whether the head's cell failed, not the line: no way is to be found for such a head."""
+    """Whether the head's cell and the line felt ahead disagreed, or the cell saw no more ink."""
     return CONTRADICT in str(fault) or NO_GUARDS in str(fault)

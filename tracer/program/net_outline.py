@@ -47,6 +47,8 @@ CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round
 ODD = (
     1 / 3
 )  # of the junctions of a line that only touches itself have an odd number of legs; by trial
+WORKS_MM = 10.0  # a head whose cell is out of order is lost before it has run so far
+ENDS = 1 / 6  # of a line that only touches itself, for each of its junctions; by trial
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
 
 
@@ -97,7 +99,7 @@ def round_ring(setup: Setup, line: Line) -> Line | None:
     sheet = setup.sheet
     if line.reference_mm is not None or _is_program(setup) or sheet.drawing.edges_mm:
         return None
-    if line.fault is not None and lost.by_its_cell(line.fault):
+    if line.length_mm < WORKS_MM and line.fault is not None and lost.by_its_cell(line.fault):
         return None
     patch = sheet.patch_at(np.asarray(line.start_mm))
     if (
@@ -126,12 +128,14 @@ def _closed(setup: Setup, patch: int) -> tuple[Outline, Junctions] | None:
 
 
 def _touches_itself(junctions: Junctions) -> bool:
-    """Whether a net may be one line that touches itself: to most of its junctions it brings an even number of
-    legs.
+    """Whether a net may be one line that touches itself: it brings an even number of legs to most of its
+    junctions, and ends nowhere but at spikes whose two lines are one.
     """
     legs = np.array([len(there.sides) for there in junctions.by_number.values()])
-    at_junctions = legs[legs > 2]
-    return bool(np.mean(at_junctions % 2) < ODD) if len(at_junctions) else False
+    at_junctions, ends = legs[legs > 2], int(np.sum(legs == 1))
+    if not len(at_junctions):
+        return False
+    return bool(np.mean(at_junctions % 2) < ODD and ends < ENDS * len(at_junctions))
 
 
 def _is_program(setup: Setup) -> bool:

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 import shapely
 
+from morfax.motion.faults import LineFault
 from morfax.motion.polyline import length_mm
+from morfax.tracer.following import lost
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
@@ -69,8 +71,8 @@ def test_where_the_head_is_lost_the_junctions_show_the_way_round(
     line = ragged(119)
     setup = Setup(inked(line, seed=119).sheet, Settings(), Operator(), None)
     half = line[: len(line) // 2]
-    lost = Line(half, "lost", WIDTH_MM, length_mm(half))
-    monkeypatch.setattr(trace, "best_of", lambda *_: (lost, []))
+    head = Line(half, "lost", WIDTH_MM, length_mm(half))
+    monkeypatch.setattr(trace, "best_of", lambda *_: (head, []))
     found = trace.followed(setup, None, number=3)
     assert found.ending == "closed" and found.number == 3
     # spikes narrower than two lines are left out, and said
@@ -83,6 +85,18 @@ def test_an_open_line_on_which_the_head_is_lost_stays_lost(
 ) -> None:
     line = ragged(119)[:-8]
     setup = Setup(inked(line, seed=119).sheet, Settings(), Operator(), None)
-    lost = Line(line, "lost", WIDTH_MM, length_mm(line))
-    monkeypatch.setattr(trace, "best_of", lambda *_: (lost, []))
-    assert trace.followed(setup, None) is lost
+    head = Line(line, "lost", WIDTH_MM, length_mm(line))
+    monkeypatch.setattr(trace, "best_of", lambda *_: (head, []))
+    assert trace.followed(setup, None) is head
+
+
+@pytest.mark.parametrize("run_mm, ending", [(5.0, "lost"), (30.0, "closed")])
+def test_a_head_whose_cell_fails_at_once_is_shown_no_way(
+    run_mm: float, ending: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    line = ragged(119)
+    setup = Setup(inked(line, seed=119).sheet, Settings(), Operator(), None)
+    fault = LineFault(f"line lost: {lost.CONTRADICT}")
+    head = Line(line[:9], "lost", WIDTH_MM, run_mm, fault=fault)
+    monkeypatch.setattr(trace, "best_of", lambda *_: (head, []))
+    assert trace.followed(setup, None).ending == ending
