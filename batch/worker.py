@@ -13,6 +13,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable
+from functools import cache
 from multiprocessing.connection import Connection
 
 from morfax.batch.row import BatchRow
@@ -20,7 +21,6 @@ from morfax.jobs.damaged_kernels import compile_damaged_again
 
 Work = Callable[[str], BatchRow]  # of the name of a drawing; can be pickled
 BEGUN = "begun"
-_FORGIVING: list[bool] = []
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -51,11 +51,10 @@ def keep_to_one_core() -> None:
     cv2.setNumThreads(1)
 
 
+@cache  # a worker that is forked from a process that does need not begin again
 def forgive_damaged_kernels() -> None:
     """Have kernels that numba keeps, and that are damaged on disk, compiled again, and told of once."""
-    if not _FORGIVING:  # a worker that is forked from one that does need not begin again
-        _FORGIVING.append(True)
-        compile_damaged_again(lambda line: print(line, file=sys.stderr, flush=True))
+    compile_damaged_again(lambda line: print(line, file=sys.stderr, flush=True))
 
 
 def limit_memory(memory_bytes: int | None) -> None:

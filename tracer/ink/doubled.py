@@ -45,17 +45,13 @@ ABOUT = 3.0  # widths of a pen: two stretches whose ends are so near meet at one
 # of its way: ink of two lines that becomes wider by more has come to others that cross it
 FLARE = 0.15
 TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
-CROSSED = (
-    3.0,
-    6.0,
-)  # widths from there: the slope of the ink's width up to the nearer place ...
+# widths from there: the slope of the ink's width up to the nearer place ...
+CROSSED = 3.0, 6.0
 # ... is so much of that between the two, or more: of lines that only touch, as a parabola does, a third
 LEVEL_OFF = 0.45
 FROM_ENDS = 10.0  # widths: within them two lines that share a stretch have begun to
-FEWEST, LEAST_WIDTHS = (
-    10,
-    8.0,
-)  # stations that tell a width; widths of a pen that are a long way
+FEWEST = 10  # stations that tell a width
+LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 
 
 class Doubled(NamedTuple):

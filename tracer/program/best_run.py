@@ -30,7 +30,7 @@ SHORT = 0.5
 ELSEWHERE = 5  # places at which the head is put down when a run leads nowhere; by trial
 
 
-class Run(NamedTuple):
+class StanceRun(NamedTuple):
     """A line, where the head was put down for it, and the length of the ink that is joined to it, mm."""
 
     line: Line
@@ -62,7 +62,7 @@ class Run(NamedTuple):
         """Whether it began at an open end that is no reference point's."""
         return _is_open(self.stance)
 
-    def goes_before(self, best: Run) -> bool:
+    def goes_before(self, best: StanceRun) -> bool:
         """Whether it is better than the best so far: longer; one that closes goes before one that ran in."""
         closes = "closed" in (self.line.ending, best.line.ending)
         if closes and self.ran_in != best.ran_in:
@@ -78,7 +78,7 @@ class Target:
     start_mm: tuple[float, float] | None = None
     number: int = 1
 
-    def run(self, stance: Stance, ink_mm: float, *, other_turns: bool = False) -> Run:
+    def run(self, stance: Stance, ink_mm: float, *, other_turns: bool = False) -> StanceRun:
         """Follow from a stance; with other turns also where straight on does not go round as asked."""
         sheet, operator = self.setup.sheet, self.setup.operator
         attempts = Attempts(
@@ -99,7 +99,7 @@ class Target:
         stops = sheet.drawing.told_stops
         line = Line.of(run, self.number, stance.reference_mm, stops)
         is_solid = sheet.is_solid_at(stance.place_mm)
-        return Run(replace(line, ink_mm=ink_mm, is_solid=is_solid), stance, ink_mm)
+        return StanceRun(replace(line, ink_mm=ink_mm, is_solid=is_solid), stance, ink_mm)
 
     def without_turns(self) -> Target:
         """The same line, straight on at every junction."""
@@ -110,9 +110,9 @@ class Target:
 class _Search:
     """The runs so far: the best, the lead lines from open ends, and the runs from smooth places."""
 
-    best: Run | None = None
-    leads: list[Run] = field(default_factory=list)
-    smooth: list[Run] = field(default_factory=list)
+    best: StanceRun | None = None
+    leads: list[StanceRun] = field(default_factory=list)
+    smooth: list[StanceRun] = field(default_factory=list)
     settled: bool = (
         False  # the best is the lead line from the reference point: nothing else is tried
     )
@@ -125,7 +125,7 @@ class _Search:
         """Whether a run from a smooth place has passed a stance."""
         return any(_lies_on(stance, run.line) for run in self.smooth)
 
-    def add(self, run: Run) -> bool:
+    def add(self, run: StanceRun) -> bool:
         """Take in a run; returns whether no better one need be looked for."""
         line, stance, _ = run
         if line.is_lead and run.from_open_end:
@@ -181,7 +181,7 @@ def _searched(wanted: Target, stances: Iterator[tuple[Stance, float]]) -> _Searc
     return search
 
 
-def _with_other_turns(wanted: Target, best: Run, smooth: list[Run]) -> Run:
+def _with_other_turns(wanted: Target, best: StanceRun, smooth: list[StanceRun]) -> StanceRun:
     """The first run that closes with other turns than straight on, in place of a best run that ran in, or
     closed round a small part of the ink.
     """

@@ -40,13 +40,11 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.outlines import Outline
 
 AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
-MOST_OF_IT = (
-    0.97  # of its ink: an outline that is shorter leaves bays or other lines out; by trial
-)
+# of its ink: an outline that is shorter leaves bays or other lines out; by trial
+NEARLY_ALL = 0.97
 CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round leaves too much out; by trial
-ODD = (
-    1 / 3
-)  # of the junctions of a line that only touches itself have an odd number of legs; by trial
+# of the junctions of a line that only touches itself have an odd number of legs; by trial
+ODD = 1 / 3
 WORKS_MM = 10.0  # a head whose cell is out of order is lost before it has run so far
 ENDS = 1 / 6  # of a line that only touches itself, for each of its junctions; by trial
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
@@ -90,8 +88,8 @@ def of_net(setup: Setup) -> OfNet:
         return OfNet(replace(setup, sheet=counted))
     outline, junctions = found[longest]
     line = replace(_line(setup, outline, junctions), ink_mm=float(sheet.lengths_mm[longest]))
-    is_most = outline.length_mm > MOST_OF_IT * float(lengths_mm[longest])
-    return OfNet(setup, line, not is_most and _touches_itself(junctions))
+    is_nearly_all = outline.length_mm > NEARLY_ALL * float(lengths_mm[longest])
+    return OfNet(setup, line, not is_nearly_all and _touches_itself(junctions))
 
 
 def round_ring(setup: Setup, line: Line) -> Line | None:
