@@ -13,7 +13,10 @@ A parabola through the 6 ms before the gap (p0, v0, a0: held, as rewound past th
     H      = A T² / 4 + |dv| T / 2                    furthest that a motion of acceleration A may lie off d
 
 The count is certain where no other whole number is possible:      H < 1 - |r| - 0.1     (cycles)
-and the way between where it lies within a twentieth of a cycle:   |r| / 2 + |dv| T / 8 < 0.05
+and the way between where it lies within a fortieth of a cycle:    |r| / 2 + |dv| T / 8 < 0.025
+
+A fortieth, since a drive at the limit of its acceleration makes twice as much of it: where a speed jumps by
+8 mm/s within a gap of 2 ms, 0.047 cycle on the tape become 0.105 at the machine.
 
 A program that starts, stops or goes round a corner within the gap changes its acceleration there once, from
 a0 to a1. The change of speed tells when (s rows from p0), and then the travel is another:
@@ -50,9 +53,9 @@ ROUGH_CYCLES = 0.04  # what is left of the parabola; 26 dB of noise leave 0.015
 SMOOTH_CYCLES = 0.003
 SIDE_ROWS = 36  # of sound tape on each side, 6 ms at 6 kHz
 SHORT_ROWS = 24  # the same where the acceleration changes further off: 4 ms at 6 kHz
-# what is left of the travel with one change of acceleration, halved; with what sides of 4 ms may be off
-# beside a change (0.013 in 12 ms at 0.5 m/s²) well within a twentieth
-TURNED_CYCLES = 0.025
+# what may be left of the travel, halved, and of the way between: half of what is allowed, for the drives;
+# what sides of 4 ms may be off beside a change of acceleration (0.013 in 12 ms at 0.5 m/s²) is well within
+AGREED_CYCLES = ALLOWED_CYCLES / 2
 TURNED_ROWS = 3.0  # beside the gap: half of what the band filter blurs
 
 
@@ -96,7 +99,7 @@ class Bridge:
     @property
     def certain(self) -> bool:
         """Whether only one number of whole cycles is possible, and the way between is known."""
-        return self.counted and self.between < ALLOWED_CYCLES and self.misfit < ROUGH_CYCLES
+        return self.counted and self.between < AGREED_CYCLES and self.misfit < ROUGH_CYCLES
 
 
 def side(cycles: Array, at: int) -> Side:
@@ -135,7 +138,7 @@ def turned(before: Side, after: Side, rows: int, acceleration: float) -> Bridge 
     travel = rows * before.speed + first * turn * (rows - turn / 2) + last * left**2 / 2
     off = after.place - before.place - travel
     off -= round(off)
-    if abs(off) / 2 > TURNED_CYCLES:
+    if abs(off) / 2 > AGREED_CYCLES:
         return None
     reach = acceleration * rows**2 / 4
     misfit = max(before.misfit, after.misfit)

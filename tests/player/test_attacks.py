@@ -86,3 +86,13 @@ def test_the_judgement_itself_fails(benches: tuple[Bench, Bench], name: str) -> 
     assert not verdict.keeps("fault" if kind.must == "right" else "right")
     off = Kind("other", lambda tape, random: benches[1].frames, "right or fault")
     assert benches[0].tried(off, 0).silently_wrong
+
+
+def test_a_jump_of_the_speed_within_a_gap_that_the_drive_makes_larger(
+    benches: tuple[Bench, Bench],
+) -> None:
+    """Z starts at 8 mm/s where a low-pass takes the level: 0.047 cycle off on the tape, 0.105 behind it."""
+    kind = Kind("low-pass", lambda t, r: do.filtered(t, "lowpass", 8272.9), EITHER)
+    verdict = benches[1].tried(kind, 0)
+    assert verdict.keeps(EITHER), verdict.error_cycles
+    assert "Z was lost for 252.2 ms" in str(verdict.fault)
