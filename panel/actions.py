@@ -65,6 +65,8 @@ def _open(bench: Bench, action: dict[str, Any]) -> None:
 def _set(bench: Bench, action: dict[str, Any]) -> None:
     """Set an option, or several that belong together, or take them away with null."""
     changes = action.get("options") or {action.get("option"): action.get("value")}
+    if not isinstance(changes, dict):
+        raise WrongUse(f"the options are {str(changes)[:40]!r}; send each by its name")
     if bench.drawing is None:
         raise WrongUse("no drawing lies on the bench; open one first")
     options = dict(bench.history.now.options)

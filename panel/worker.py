@@ -52,8 +52,11 @@ class Teller:
     def say(self, event: str, /, **more: Any) -> None:
         """Send a message; a server that is gone ends the worker."""
         with self._lock:
-            self._out.write(pipe.packed({"say": event, **more}))
-            self._out.flush()
+            try:
+                self._out.write(pipe.packed({"say": event, **more}))
+                self._out.flush()
+            except BrokenPipeError:
+                os._exit(0)
 
     def note(self, text: str) -> None:
         """Pass a note on."""

@@ -86,6 +86,8 @@ def test_nonsense_is_refused_as_a_terminal_refuses_it(
         {"do": "override", "share": 0.5},
         {"do": "override", "share": "50%"},
         {"do": "hold"},
+        {"do": "set", "options": "--cutter"},
+        {"do": "set", "options": ["--cutter", "3mm"]},
     ],
 )
 def test_what_cannot_be_done_is_refused_in_words(

@@ -58,3 +58,19 @@ def test_damaged_kernels_are_compiled_again_and_the_page_hears_of_it(tmp_path: P
     assert begun["say"] == "begun"
     assert note["say"] == "note" and "are damaged: they are compiled again" in note["text"]
     assert done["result"] == {"is": 42}
+
+
+def test_a_worker_whose_server_was_killed_ends_without_a_word() -> None:
+    with subprocess.Popen(
+        [sys.executable, "-m", "morfax.panel.worker"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        cwd=ROOT,
+    ) as process:
+        assert process.stdin and process.stdout and process.stderr
+        process.stdout.close()
+        process.stdin.write(pipe.packed(("job", 1, "lines", None)))
+        process.stdin.flush()
+        assert process.wait(60) == 0
+        assert process.stderr.read() == b""
