@@ -20,7 +20,7 @@ from morfax.batch import crew as crew_module
 from morfax.batch.crew import Crew, WorkerLimits
 from morfax.batch.row import BatchRow
 from morfax.motion.faults import Fault
-from tests.batch.works import Stillborn, Toy
+from tests.batch.works import Stillborn, Toy, Twice
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs kill -9 and RLIMIT_AS")
 LIGHT = ("morfax.batch.worker", "cv2")  # what these workers need
@@ -78,6 +78,25 @@ def test_workers_that_never_start_are_not_replaced_for_ever(tmp_path: Path) -> N
     crew = Crew(Stillborn(), WorkerLimits(2), lambda: None, LIGHT)
     with pytest.raises(Fault, match=r"died as they started; give more with --memory"):
         list(crew.rows(["well-1", "well-2"]))
+
+
+def test_a_worker_compiles_a_damaged_kernel_again(tmp_path: Path) -> None:
+    (tmp_path / "twice_loop.py").write_text(
+        "from numba import njit\n\n@njit(cache=True)\ndef twice(x):\n    return 2 * x\n"
+    )
+    limits = WorkerLimits(1, limit_s=120.0)
+
+    def seconds() -> list[float]:
+        crew = Crew(Twice(tmp_path), limits, lambda: None, LIGHT)
+        return [row.seconds for row in crew.rows(["well-1"])]
+
+    assert seconds() == [42.0]
+    (kernel,) = (tmp_path / "__pycache__").glob("twice_loop.twice-*.nbc")
+    garbage = b"\x80\x05garbage" * 40
+    kernel.write_bytes(garbage)
+    assert seconds() == [42.0]
+    (kernel,) = (tmp_path / "__pycache__").glob("twice_loop.twice-*.nbc")
+    assert kernel.read_bytes() != garbage
 
 
 def held_bytes() -> int:
