@@ -133,7 +133,7 @@ def _of_unexplained(trace: Trace) -> Iterator[str]:
         (x, y), long_mm = beside[0][:2]
         many = "1 piece of ink" if len(beside) == 1 else f"{len(beside)} pieces of ink"
         yield (
-            f"{many} joined to the closed line beside its way, up to {long_mm:.1f} mm from it, at "
+            f"{many} joined to the {_line_of(trace)} beside its way, up to {long_mm:.1f} mm from it, at "
             f"{x:.1f},{y:.1f} mm: a tip or a bay that is narrower than two lines, or another line; --picture "
             "marks it, and --lines all follows other lines too"
         )
@@ -150,6 +150,12 @@ def _of_unexplained(trace: Trace) -> Iterator[str]:
             f"not sure that the closed line is the one drawn: the pixels are too large to tell at {places}, "
             f"the first at {x:.1f},{y:.1f} mm, where a spike or a bay may be cut off; scan at {dpi} dpi"
         )
+
+
+def _line_of(trace: Trace) -> str:
+    """What a line that came round is called."""
+    is_closed = any(line.ending == "closed" for line in trace.lines)
+    return "closed line" if is_closed else "line"
 
 
 def _of_others(trace: Trace) -> Iterator[str]:

@@ -77,6 +77,14 @@ def together(*drawn: tuple[Points, float], seed: int | None = None) -> Drawing:
     return Drawing(_seen(fine, pixels, DPI, seed), MM_PER_INCH / DPI)
 
 
+def loops(count: int, apart_mm: float = 12.0) -> Points:
+    """The way of a pen that writes some loops in a row: one stroke with two free ends."""
+    share = np.linspace(0.0, 1.0, 1000 * count + 1)
+    turned = 2 * np.pi * count * share
+    x = 10 + apart_mm * count * share + 5 * np.sin(turned)
+    return np.column_stack([x, 16 - 9 * np.sin(turned + 1.2) - 2 * np.sin(9 * share)])
+
+
 def _fixed(line: Points, rows: int, scale: float) -> NDArray[np.int32]:
     """Points in 1/256 of a fine pixel, Y down, 0 at the middle of the first fine pixel."""
     at = np.column_stack([line[:, 0] * scale, rows - line[:, 1] * scale]) - 0.5

@@ -8,7 +8,8 @@ rims of their ink.
     ══════──────────      between one and about two widths wide, which swells and shrinks slowly
 
 Only a clean sheet tells that: one whose lines have smooth edges and on which much of the ink is as narrow as
-the narrowest. Ink of one even width is a line of a broader pen.
+the narrowest. A nib or a brush swells and shrinks, too, and no width of it stands out. Ink of one even width
+is a line of a broader pen.
 
 Source: our own. Questions: a brush that is pressed evenly to just such widths looks the same.
 """
@@ -39,6 +40,9 @@ BESIDE = 1.5  # widths from the ends of a stretch: there others cross it
 NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
 # of the pen's width about it; of the ink, which is as narrow
 SO_NARROW, LEAST_NARROW = 0.05, 0.05
+# times as much ink is as narrow as the pen as is a little broader, or more: of a nib, whose width follows its
+# heading or the hand, 1.4 at most (a width that swells as a sine); of 216 nets of one pen 3.9 or more
+ONE_WIDTH = 2.0
 SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
 EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is one line
 ABOUT = 3.0  # widths of a pen: two stretches whose ends are so near meet at one crossing
@@ -138,7 +142,17 @@ def _pen_mm(some: Sequence[tuple[Array, float, Run]]) -> float:
     pen_mm = float(widths[round(NARROWEST * (len(widths) - 1))])
     are_narrow = np.abs(widths / pen_mm - 1) < SO_NARROW
     is_clean = rough < SMOOTH_EDGES and float(np.mean(are_narrow)) > LEAST_NARROW
-    return float(np.median(widths[are_narrow])) if is_clean else math.nan
+    if not is_clean:
+        return math.nan
+    pen_mm = float(np.median(widths[are_narrow]))
+    return pen_mm if _is_one_width(widths / pen_mm) else math.nan
+
+
+def _is_one_width(shares: Array) -> bool:
+    """Whether a pen's width stands out among widths in parts of it: a nib's are spread evenly."""
+    narrow = float(np.mean(np.abs(shares - 1) < SO_NARROW))
+    broader = float(np.mean(np.abs(shares - 1 - 2 * SO_NARROW) < SO_NARROW))
+    return narrow > ONE_WIDTH * broader
 
 
 def _broad(run: Run, averaged: Array, pen_mm: float) -> Flags | None:

@@ -33,7 +33,7 @@ STRAIGHT_ON = math.radians(
 
 
 class Outline(NamedTuple):
-    """A closed chain of lines and its length by their ink, mm."""
+    """A chain of lines, closed but for `one_stroke`, and its length by their ink, mm."""
 
     chain: Chain
     length_mm: float
@@ -64,6 +64,18 @@ def outlines(junctions: Junctions) -> list[Outline]:
         Ink.of(every, np.ones(len(every))),
     )
     return [found[k] for k in order]
+
+
+def one_stroke(junctions: Junctions) -> Outline | None:
+    """The one stroke from a free end that all the lines of a net are; None if they are several, or closed."""
+    chains, lines = junctions.chains(), junctions.net.lines
+    if len(chains) != 1 or chains[0].closed:
+        return None
+    first, last = chains[0].links[0], chains[0].links[-1]
+    ends = lines[first.line].junctions[first.back], lines[last.line].junctions[not last.back]
+    if not junctions.net.free_ends.intersection(ends):
+        return None
+    return Outline(chains[0], sum(line.length_mm for line in lines))
 
 
 def _is_straight_on(chain: Chain, junctions: Junctions) -> bool:

@@ -7,6 +7,9 @@ A patch of ink that goes round two areas or more is a net. Its length is that of
 net the head might go straight on into another line; the net's junctions are solved first, so the choice
 depends neither on the place nor on how the sheet lay in the scanner.
 
+A signature makes a net too, and the areas it goes round are no contours: where the lines, straight on over
+all junctions, are one stroke from a free end, and no closed outline is most of it, the head runs that stroke.
+
 A line that touches itself makes a net too. If its outline leaves ink out, the head looks for a longer closed
 way through the tangles itself; and where the head is lost on ink that goes round one area, the junctions show
 the way round.
@@ -42,6 +45,9 @@ if TYPE_CHECKING:
 AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
 # of its ink: an outline that is shorter leaves bays or other lines out; by trial
 NEARLY_ALL = 0.97
+# of a stroke that is all of a net's ink: a longer closed outline is what was drawn, and the rest its overlap;
+# by trial
+MOST_OF_IT = 0.6
 CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round leaves too much out; by trial
 # of the junctions of a line that only touches itself have an odd number of legs; by trial
 ODD = 1 / 3
@@ -75,9 +81,9 @@ def of_net(setup: Setup) -> OfNet:
     # 1. the longest outline of each
     found: dict[int, tuple[Outline, Junctions]] = {}
     for patch in nets.tolist():
-        closed = _closed(setup, patch)
-        if closed is not None:
-            found[patch] = closed
+        taken = _closed(setup, patch, or_stroke=setup.operator.direction is None)
+        if taken is not None:
+            found[patch] = taken
     # 2. the nets count by these
     counted_mm = sheet.lengths_mm.copy()
     for patch, (outline, _) in found.items():
@@ -89,7 +95,8 @@ def of_net(setup: Setup) -> OfNet:
     outline, junctions = found[longest]
     line = replace(_line(setup, outline, junctions), ink_mm=float(sheet.lengths_mm[longest]))
     is_nearly_all = outline.length_mm > NEARLY_ALL * float(lengths_mm[longest])
-    return OfNet(setup, line, not is_nearly_all and _touches_itself(junctions))
+    may_be_longer = outline.chain.closed and not is_nearly_all
+    return OfNet(setup, line, may_be_longer and _touches_itself(junctions))
 
 
 def round_ring(setup: Setup, line: Line) -> Line | None:
@@ -112,17 +119,22 @@ def round_ring(setup: Setup, line: Line) -> Line | None:
     return replace(_line(setup, *closed), ink_mm=line.ink_mm)
 
 
-def _closed(setup: Setup, patch: int) -> tuple[Outline, Junctions] | None:
-    """The longest closed outline of a patch of ink, and its junctions."""
+def _closed(
+    setup: Setup, patch: int, or_stroke: bool = False
+) -> tuple[Outline, Junctions] | None:
+    """The longest closed outline of a patch of ink, or the one stroke that it is; and its junctions."""
     from morfax.tracer.ink.chains import solved
-    from morfax.tracer.ink.outlines import outlines
+    from morfax.tracer.ink.outlines import one_stroke, outlines
     from morfax.tracer.ink.stretches import FeltSheet
 
     sheet = setup.sheet
     felt = FeltSheet.of(sheet.drawing, setup.settings, _ink_of(sheet, patch))
     junctions = solved(felt)
-    closed = outlines(junctions)
-    return (closed[0], junctions) if closed else None
+    found = outlines(junctions)[:1]
+    stroke = one_stroke(junctions) if or_stroke else None
+    if stroke is not None and all(it.length_mm < MOST_OF_IT * stroke.length_mm for it in found):
+        found = [stroke]
+    return (found[0], junctions) if found else None
 
 
 def _touches_itself(junctions: Junctions) -> bool:
@@ -172,20 +184,20 @@ def _ink_of(sheet: Sheet, patch: int) -> Mask:
 
 
 def _line(setup: Setup, outline: Outline, junctions: Junctions) -> Line:
-    """The head's run along an outline, the way round that is asked for."""
+    """The head's run along an outline, the way round that is asked for, or along a stroke."""
     from morfax.tracer.ink.outlines import junctions_on
     from morfax.tracer.ink.track import stroke_along
 
-    told = setup.told(outline.length_mm)
+    told, closed = setup.told(outline.length_mm), outline.chain.closed
     stroke = stroke_along(outline.chain, junctions, setup.settings, told)
     way_mm, led = stroke.way_mm, stroke.led
     places = junctions_on(outline.chain, junctions)
     direction = setup.operator.direction
-    if direction is not None and (area_mm2(way_mm) > 0) != (direction == "ccw"):
+    if closed and direction is not None and (area_mm2(way_mm) > 0) != (direction == "ccw"):
         way_mm, led, places = way_mm[::-1], led.turned_round(len(way_mm)), places[::-1]
     return Line(
         way_mm,
-        "closed",
+        "closed" if closed else "ended",
         stroke.width_mm,
         length_mm(way_mm),
         led=led,

@@ -1,4 +1,4 @@
-"""What closed lines do not explain: ink of theirs along which no line runs, and ways without ink.
+"""What lines that came round do not explain: ink of theirs along which no line runs, and ways without ink.
 
 Signals: the sheet and the lines that were followed in; out the places at which the head's own pen would not
 have drawn what is there.
@@ -60,27 +60,29 @@ class Unexplained(NamedTuple):
 
 
 def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
-    """What the closed ones of some lines leave unexplained, the longest first.
+    """What the closed ones of some lines leave unexplained, the longest first; of lines that ran into
+    themselves only ink, for there the head may have turned off its line.
 
     Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
     """
     closed = [line for line in lines if line.ending == "closed"]
-    if not closed or setup.operator.reads_marks(lines):
+    come_round = [line for line in lines if line.ending in ("closed", "joined")]
+    if not come_round or setup.operator.reads_marks(lines):
         return ()
     sheet, gap_mm = setup.sheet, setup.settings.gap_mm
-    found = [*_ink_beside(sheet, closed, lines), *_bare_ways(sheet, closed, gap_mm)]
+    found = [*_ink_beside(sheet, come_round, lines), *_bare_ways(sheet, closed, gap_mm)]
     found = found or list(_astray(sheet, closed))
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
 def _ink_beside(
-    sheet: Sheet, closed: Sequence[Line], lines: Sequence[Line]
+    sheet: Sheet, come_round: Sequence[Line], lines: Sequence[Line]
 ) -> Iterator[Unexplained]:
-    """Ink of the closed lines' patches that lies beside all ways."""
+    """Ink of the patches of lines that came round, beside all ways."""
     patches = sheet.patches
-    # 1. the patches on which closed lines run
+    # 1. the patches on which they run
     own = np.zeros(patches.count, bool)
-    own[[sheet.patch_at(line.loop_mm[0]) for line in closed]] = True
+    own[[sheet.patch_at(line.loop_mm[0]) for line in come_round]] = True
     runs = np.flatnonzero(own[patches.patch] & ~sheet.are_solid[patches.patch])
     if not len(runs):
         return
@@ -88,7 +90,7 @@ def _ink_beside(
     ways = np.vstack([line.places_mm for line in lines])
     ends = np.vstack([sheet.run_begins_mm(runs), sheet.run_ends_mm(runs)])
     away_mm = nearest_mm(ends, ways).reshape(2, -1)
-    width_mm = np.array([line.width_mm for line in closed]).max()
+    width_mm = np.array([line.width_mm for line in come_round]).max()
     widths_mm = np.maximum(sheet.widths_mm[patches.patch[runs]], width_mm)
     widths_mm = widths_mm - (_pixel_mm(sheet) if _is_coarse(sheet) else 0.0)
     far = away_mm.max(axis=0) > (0.5 + BEYOND_WIDTHS) * widths_mm

@@ -10,13 +10,14 @@ import shapely
 
 from morfax.jobs.remarks_on_ink import of_ink
 from morfax.jobs.trace_figures import ink as figures_of
+from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import Doubled
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
-from tests.tracer.inked import WIDTH_MM, Points, inked, polyline, together
+from tests.tracer.inked import WIDTH_MM, Points, inked, loops, polyline, together
 
 LONG_MM = 40.0
 CLEAR = polyline((5, 40), (55, 40))  # a line by itself
@@ -78,6 +79,19 @@ def test_a_line_of_a_broader_pen_is_one_line() -> None:
     drawn = together((CLEAR, WIDTH_MM), (polyline((5, 20), (55, 20)), 1.6 * WIDTH_MM), seed=1)
     found = trace_ink(drawn)
     assert len(found.lines) == 2 and found.ink is not None and not found.ink.single
+
+
+@pytest.mark.parametrize("swell", ["by its heading", "as a sine"])
+def test_a_nib_that_swells_and_shrinks_is_one_line(swell: str) -> None:
+    way = loops(5)
+    turned = np.linspace(0, 9 * np.pi, len(way))[::5] + 0.6
+    share = np.abs(np.sin(turned)) if swell == "by its heading" else 0.5 - 0.5 * np.cos(turned)
+    pieces = ((way[5 * k : 5 * k + 6], 0.25 + 0.35 * wide) for k, wide in enumerate(share))
+    found = trace_ink(together(*pieces, seed=1))
+    # taken for two lines of the thinnest pen, it was run twice, along both its rims
+    assert sum(line.length_mm for line in found.lines) < 1.03 * length_mm(way)
+    places = np.vstack([line.places_mm for line in found.lines])
+    assert float(np.mean(nearest_mm(places, way) < 0.2 * WIDTH_MM)) > 0.97
 
 
 def test_rough_lines_do_not_tell() -> None:

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import shapely
 
-from morfax.motion.polyline import area_mm2
+from morfax.motion.polyline import area_mm2, length_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
-from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline
+from tests.tracer.inked import WIDTH_MM, Points, arc, inked, loops, polyline
 
 PLATE = polyline((8, 8), (40, 8), (44, 26), (26, 38), (8, 30), (8, 8))
 BARS = polyline((8, 16), (42, 17)), polyline((22, 8), (22, 36.2))
@@ -66,3 +66,19 @@ def test_a_longer_line_beside_the_net_goes_before_it() -> None:
     round_all = polyline((3, 3), (50, 3), (50, 45), (3, 45), (3, 3))
     line = taken(round_all, PLATE, *BARS)
     assert lies_on(line, round_all, 0.15)
+
+
+@pytest.mark.parametrize("apart_mm", [12.0, 7.0])
+def test_a_signature_is_run_as_the_stroke_that_it_is_and_not_round_its_longest_loop(
+    apart_mm: float,
+) -> None:
+    way = loops(5, apart_mm)
+    line = taken(way)
+    assert line.ending == "ended"
+    assert line.length_mm == pytest.approx(length_mm(way), rel=0.01)
+    assert lies_on(line, way, 0.2 * WIDTH_MM)
+
+
+def test_an_outline_whose_pen_overshot_its_start_is_still_closed() -> None:
+    way = polyline((15, 20), (50, 20), (50, 45), (20, 45), (20, 12), (28, 12), (28, 24))
+    assert taken(way).ending == "closed"

@@ -7,11 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from morfax.jobs.remarks_on_ink import of_ink
 from morfax.motion.polyline import at_lengths, length_mm, nearest_mm
 from morfax.tracer.drawing.coarse import SEEN_PX
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.program import Trace
 from morfax.tracer.program.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
@@ -50,6 +52,15 @@ def test_ink_beside_a_closed_way_is_told_with_its_place_and_how_far_it_reaches(
     assert left.is_ink
     assert left.place_mm == pytest.approx((32 + long_mm + WIDTH_MM / 2, 20.05), abs=PIXEL_MM)
     assert left.length_mm == pytest.approx(long_mm + WIDTH_MM / 2, abs=PIXEL_MM)
+
+
+def test_ink_beside_a_line_that_ran_into_itself_is_told_too() -> None:
+    drawing = inked(with_tip(6.0), seed=1)
+    line = replace(closed(arc((20, 20), 12)), ending="joined")
+    (left,) = unexplained(Setup(Sheet.of(drawing)), [line])
+    assert left.length_mm == pytest.approx(6 + WIDTH_MM / 2, abs=PIXEL_MM)
+    (said,) = [text for text in of_ink(Trace((line,), unexplained=(left,)), several=False)]
+    assert "1 piece of ink joined to the line beside its way" in said
 
 
 def test_a_tip_shorter_than_a_width_and_a_half_is_not_told() -> None:
