@@ -45,7 +45,7 @@ def depth_along(
     """The same for runs of ink (see `components`), pixel after pixel: paper takes neither time nor memory."""
     count = int((end - begin).sum())
     # more looks to a pixel of ink than a line of 30 pixels takes: one broad shape has taken over
-    values, is_whole = _along_runs(row, begin, end, shape[0], shape[1], MOST_LOOKS_EACH * count)
+    values, is_whole = _along_runs(row, begin, end, shape, MOST_LOOKS_EACH * count)
     if is_whole:
         return np.asarray(values)
     ink = painted(row, begin, end, shape)
@@ -54,8 +54,9 @@ def depth_along(
 
 
 @njit(cache=True)
-def _along_runs(row, begin, end, rows, columns, most_looks):  # type: ignore[no-untyped-def]
+def _along_runs(row, begin, end, shape, most_looks):  # type: ignore[no-untyped-def]
     """The same for runs of lines; False where it is given up."""
+    rows, columns = shape
     first, depth = _in_columns(row, begin, end, rows, columns)
     square, looks = np.empty(columns), 0
     for k in range(len(row)):

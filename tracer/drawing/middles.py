@@ -17,13 +17,13 @@ SHALLOWER = np.float32(0.3)
 
 
 @njit(cache=True)
-def deepest(row, begin, end, depth, inner, disc):  # type: ignore[no-untyped-def]
-    """Row, column and ink about it of the pixels of some runs that lie deeper than all about them.
+def deepest(row, begin, end, depth, inner):  # type: ignore[no-untyped-def]
+    """Row and column of the pixels of some runs that lie deeper than all about them.
 
     `inner` are first and last + 1 row and column of the pixels that count.
     """
     if not len(row):
-        return np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0)
+        return np.empty(0, np.int64), np.empty(0, np.int64)
     top, columns = row[0] - 1, end.max()  # from the row above the first, which is paper
     first = np.searchsorted(row, np.arange(top, row[-1] + 3))  # the first run of each row
     places = np.zeros(len(row) + 1, np.int64)
@@ -47,20 +47,22 @@ def deepest(row, begin, end, depth, inner, disc):  # type: ignore[no-untyped-def
                 if inner[0] <= i < inner[1] and line[j + 1] >= most - SHALLOWER:
                     found_row[count], found_column[count] = i, j
                     count += 1
-    found_row, found_column = found_row[:count].copy(), found_column[:count].copy()
-    filled = _ink_about(begin, end, first, top, found_row, found_column, disc)
-    return found_row, found_column, filled
+    return found_row[:count].copy(), found_column[:count].copy()
 
 
 @njit(cache=True)
-def _ink_about(begin, end, first, top, rows, columns, disc):  # type: ignore[no-untyped-def]
-    """Pixels of ink under a disc centred on each of some pixels; the runs of each row begin at `first`."""
-    half = len(disc) // 2
+def ink_about(row, begin, end, places, disc):  # type: ignore[no-untyped-def]
+    """Pixels of ink of some runs under a disc centred on each of some places, rows and columns of its ink."""
+    (rows, columns), half = places, len(disc) // 2
+    filled = np.zeros(len(rows))
+    if not len(row):
+        return filled
+    top = row[0]
+    first = np.searchsorted(row, np.arange(top, row[-1] + 2))  # the first run of each row
     left, right = np.zeros(len(disc), np.int64), np.zeros(len(disc), np.int64)
     for d in range(len(disc)):  # each row of a disc is one stretch
         inside = np.flatnonzero(disc[d])
         left[d], right[d] = inside[0] - half, inside[-1] - half + 1
-    filled = np.zeros(len(rows))
     for k in range(len(rows)):
         for d in range(len(disc)):
             at = rows[k] + d - half - top

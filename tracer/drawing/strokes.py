@@ -26,7 +26,7 @@ from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
-from morfax.tracer.drawing.middles import deepest
+from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 
 Pixels = NDArray[Any]
@@ -289,5 +289,6 @@ class Sheet:
         inner = rows[0] - part[0], rows[1] - part[0], columns[0] - part[2], columns[1] - part[2]
         depth = depth_along(row, begin, end, (part[1] - part[0], part[3] - part[2]))
         disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
-        i, j, filled = deepest(row, begin, end, depth, inner, disc)
+        i, j = deepest(row, begin, end, depth, inner)
+        filled = ink_about(row, begin, end, (i, j), disc)
         return i + part[0], j + part[2], filled
