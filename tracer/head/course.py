@@ -98,5 +98,4 @@ def ahead_mm(place: Array, leg: Leg) -> float:
 def on_ink(view: View, stretches: list[Array]) -> bool:
     """Whether a course lies on ink, faint or not, for the most part."""
     places = np.vstack(stretches)[::ON_INK_EVERY]
-    fainter = view.at_level(FAINT * view.level)
-    return float(np.mean([fainter.dark(place) for place in places])) > ON_INK
+    return float(np.mean(view.darkness_along(places) > FAINT * view.level)) > ON_INK

@@ -11,29 +11,21 @@ Source: our own.
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
-from morfax.motion.curves import hermite
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.head.trail import Trail
+from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.doubled import BROADER
-from morfax.tracer.ink.felt import usual_width_mm
-from morfax.tracer.ink.net import COVERED, Inner, Net, end_leg, net_of, trimmed
-from morfax.tracer.ink.partners import Pair, meeting_place, partners, way_through
-from morfax.tracer.ink.run import Run
-from morfax.tracer.ink.shared_ink import SharedInk
+from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed
+from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
-from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
 
 # Chosen by trial on drawings of nets.
 FOOT_WIDTHS = 4.0  # as far ahead a line that ends on others is sought
@@ -43,7 +35,6 @@ FOOT_STEP_MM = 0.01
 WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
 # of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it
 NARROWER, TOGETHER = 0.8, math.radians(25)
-COVERED_SHARE = 0.7  # of a stretch within a junction, along which ways go
 SOLVED_AGAIN = 5  # times at most, with more lines
 
 
@@ -55,8 +46,9 @@ def solved(sheet: FeltSheet) -> Junctions:
     """
     parted, two, bare = set[int](), set[int](), set[int]()
     doubled = sheet.doubled.throughout(sheet.felt)
+    known = dict[Hashable, Crossing]()
     for _ in range(SOLVED_AGAIN):
-        junctions = Junctions(net_of(sheet, two | bare), sheet.settings)
+        junctions = Junctions(net_of(sheet, two | bare), sheet.settings, known)
         lines = [line.stretch for line in junctions.net.lines]
         together = dict.fromkeys((doubled & set(lines)) - parted - bare, sheet.doubled.pen_mm)
         together |= {
@@ -84,7 +76,7 @@ def solved(sheet: FeltSheet) -> Junctions:
 def _narrower_mm(sheet: FeltSheet, stretch: int) -> float:
     """Lines that go on from a stretch are narrower, if it is two lines: on a clean sheet by very little."""
     if sheet.is_broad(stretch):
-        return usual_width_mm(sheet.felt[stretch]) / BROADER
+        return sheet.measured[stretch].width_mm / BROADER
     return NARROWER * sheet.widths_mm[stretch]
 
 
@@ -111,34 +103,21 @@ class Chain(NamedTuple):
 
 @dataclass
 class Junction:
-    """The sides of lines that meet, with their legs as they come in."""
+    """The sides of lines that meet, in the order of their legs, and how they cross."""
 
     sides: list[Side]
-    legs: list[Leg]
     is_free: bool  # an end of the ink
-    inked: list[Run] = field(default_factory=list)  # what was felt of its own ink
-    passing: cKDTree | None = None
+    crossing: Crossing
 
-    @cached_property
-    def ink(self) -> SharedInk | None:
-        """Its own ink and the ways through it; None if nothing was felt within it."""
-        if not self.inked:
-            return None
-        ways = [
-            hermite(one.end_mm, one.heading_rad, onto.end_mm, onto.heading_rad)
-            for one, onto in (
-                (self.legs[a], self.legs[b].turned_round()) for a, b in self.pairs
-            )
-        ]
-        return SharedInk(self.inked, ways)
+    @property
+    def legs(self) -> list[Leg]:
+        """The legs of its sides as they come in."""
+        return self.crossing.legs
 
-    @cached_property
+    @property
     def pairs(self) -> list[Pair]:
         """The sides, by their numbers here, that are one line."""
-        width_mm = float(np.median([leg.width_mm for leg in self.legs]))
-        if len(self.sides) == 2:
-            return [(0, 1)]
-        return partners(self.legs, width_mm)
+        return self.crossing.pairs
 
     def leg(self, side: Side) -> Leg:
         """The leg of a side as it comes in."""
@@ -155,10 +134,11 @@ class Junction:
 
 @dataclass
 class Junctions:
-    """All junctions of a net, each solved once."""
+    """All junctions of a net, each solved once; crossings that are `known` need not be solved again."""
 
     net: Net
     settings: Settings
+    known: dict[Hashable, Crossing] = field(default_factory=dict)
 
     @cached_property
     def by_number(self) -> dict[int, Junction]:
@@ -168,12 +148,18 @@ class Junctions:
         for n, line in enumerate(self.net.lines):
             for last in (False, True):
                 number = line.junctions[last]
-                there = found.setdefault(number, Junction([], [], number in self.net.free_ends))
+                if number not in found:
+                    nothing = Crossing([], [], self.settings)
+                    found[number] = Junction([], number in self.net.free_ends, nothing)
+                there = found[number]
                 there.sides.append(Side(n, last))
-                there.legs.append(end_leg(line, last))
+                there.crossing.legs.append(end_leg(line, last))
+                there.crossing.views.append(line.runs[0].view)
         for inner in self.net.inner:
             if inner.junction in found:
-                found[inner.junction].inked.append(inner.run)
+                found[inner.junction].crossing.inked.append(inner)
+        for there in found.values():
+            there.crossing = self.known.setdefault(there.crossing.key, there.crossing)
         return found
 
     def _trim(self) -> None:
@@ -229,8 +215,7 @@ class Junctions:
         there = self.by_number.get(inner.junction)
         if there is None or not there.pairs:
             return False
-        away_mm, _ = self._passing(there).query(inner.run.places_mm)
-        return bool(np.mean(away_mm < COVERED * there.legs[0].width_mm) > COVERED_SHARE)
+        return there.crossing.covers(inner)
 
     def single_mm(self, number: int, wide_mm: float) -> float | None:
         """The width of each of two lines that run together as one line, mm; None if that is one line.
@@ -275,25 +260,9 @@ class Junctions:
         """How far from its clean end a leg comes onto the lines that pass, mm; None if it does not."""
         ahead_mm = np.arange(0.0, FOOT_WIDTHS * leg.width_mm + 1.0, FOOT_STEP_MM)
         places = leg.at(ahead_mm)
-        away, _ = self._passing(there).query(places)
+        away, _ = there.crossing.passing.query(places)
         come = np.flatnonzero(away < ON_IT * leg.width_mm)
         if not len(come):
             return None
         near = away[come[0] : come[0] + round(2 * leg.width_mm / FOOT_STEP_MM)]
         return float(ahead_mm[come[0] + int(np.argmin(near))])
-
-    def _passing(self, there: Junction) -> cKDTree:
-        """Places of the lines that pass a junction, from clean end to clean end."""
-        if there.passing is None:
-            from scipy.spatial import cKDTree
-
-            there.passing = cKDTree(np.vstack([self._way(there, pair) for pair in there.pairs]))
-        return there.passing
-
-    def _way(self, there: Junction, pair: Pair) -> Array:
-        """The way of a pair through a junction, (n, 2) mm."""
-        one, other = there.legs[pair[0]], there.legs[pair[1]].turned_round()
-        view = self.net.lines[there.sides[pair[0]].line].runs[0].view
-        stands = one.end_mm, one.heading_rad
-        planner = Planner(view, stands, Trail(one.end_mm, view.step_mm), self.settings)
-        return np.vstack(way_through(planner, (one, other), None, there.ink))

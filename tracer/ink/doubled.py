@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.ink.felt import FEWEST_STATIONS
 from morfax.tracer.ink.run import Run, smooth
@@ -113,7 +114,7 @@ def _widths(run: Run) -> _Widths | None:
     known = np.isfinite(run.widths_mm)
     if known.sum() < FEWEST:
         return None
-    usual_mm = float(np.median(run.widths_mm[known]))
+    usual_mm = median(run.widths_mm[known])
     off = math.ceil(BESIDE * usual_mm / run.view.step_mm)
     inside = known.copy()
     inside[:off] = inside[len(run) - off :] = False

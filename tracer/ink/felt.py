@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.ink.run import Run, smooth
 from morfax.tracer.sensing.leg import ROBUST
@@ -116,7 +117,8 @@ def feel_along(view: View, guide_mm: Array) -> Run:
         headings = _headings(places, reach_stations)
         found = _felt_across(view.cells, places, headings, reach_mm)
         aside, widths = 0.5 * (found[:, 0] + found[:, 1]), found[:, 1] - found[:, 0]
-        usual_mm = float(np.nanmedian(widths)) if np.isfinite(widths).any() else view.width_mm
+        known = widths[np.isfinite(widths)]
+        usual_mm = median(known) if len(known) else view.width_mm
         on_it = np.abs(widths - usual_mm) < CLEAN * usual_mm + CLEAN_PX * view.pitch_mm
         on_it &= np.abs(aside) < LEAP * usual_mm + 2 * view.pitch_mm
         aside = np.where(on_it, aside, 0.0)
@@ -132,8 +134,8 @@ def judged(stations: Run, width_mm: float) -> Felt:
     known = np.isfinite(widths)
     within_mm = CLEAN * width_mm + CLEAN_PX * view.pitch_mm
     if stations.length_mm > MEANT * view.leg_mm and known.any():
-        usual_mm = float(np.median(widths[known]))
-        spread_mm = ROBUST * float(np.median(np.abs(widths[known] - usual_mm)))
+        usual_mm = median(widths[known])
+        spread_mm = ROBUST * median(np.abs(widths[known] - usual_mm))
         if abs(usual_mm - width_mm) < within_mm:
             within_mm = max(within_mm, ROUGHER * spread_mm)
     clean = known & (off < within_mm)
@@ -151,7 +153,7 @@ def _is_felt(run: Run) -> bool:
 def usual_width_mm(run: Run) -> float:
     """The median width of some stations, mm; what their view says where the ink has no two edges."""
     known = run.widths_mm[np.isfinite(run.widths_mm)]
-    return float(np.median(known)) if len(known) else run.view.width_mm
+    return median(known) if len(known) else run.view.width_mm
 
 
 def is_steady(run: Run, width_mm: float) -> bool:

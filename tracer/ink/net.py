@@ -20,10 +20,10 @@ from typing import NamedTuple
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import strands
-from morfax.tracer.ink.felt import Parted, whole
+from morfax.tracer.ink.felt import Parted
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
-from morfax.tracer.ink.stretches import FeltSheet, felt_mm, with_width
+from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
@@ -76,37 +76,32 @@ class Net:
 
 def net_of(sheet: FeltSheet, own: set[int]) -> Net:
     """The net of felt stretches; some are lines of their own in any case."""
-    graph, felt, widths = sheet.graph, sheet.felt, sheet.widths_mm
+    graph, widths = sheet.graph, sheet.widths_mm
     at, net, kept = graph.at_nodes(), Net([]), list[tuple[int, Parted]]()
     same, inner = _Same(), list[int]()
     for n, stretch in enumerate(graph.stretches):
-        run, width_mm = with_width(felt[n], widths[n]), widths[n]
+        taken, length_mm = sheet.taken(n), sheet.measured[n].length_mm
         ends = [len(at.get(node, ())) for node in stretch.nodes]
         is_ring = stretch.nodes[0] == RING
-        short = felt_mm(run) < max(LEAST_MM, LEAST_WIDTHS * width_mm)
-        some, parted = sheet.runs(n)
+        short = length_mm < max(LEAST_MM, LEAST_WIDTHS * widths[n])
         # 1. specks, and stretches within a junction: they make one of the nodes at their ends
         if not is_ring and ends == [1, 1] and short:
-            net.left_mm += felt_mm(run)
-        elif (
-            n not in own
-            and not is_ring
-            and _is_inner(run, some, sheet.is_shared(n, run), min(ends))
-        ):
+            net.left_mm += length_mm
+        elif n not in own and not is_ring and _is_inner(sheet, n, min(ends)):
             same.join(*stretch.nodes)
             inner.append(n)
-        elif n in own and sheet.is_shared(n, run) and (two := strands(run, width_mm)):
+        elif n in own and sheet.is_shared(n) and (two := strands(taken.stations, widths[n])):
             kept += [(n, ([strand], [])) for strand in two]
         else:
-            kept.append((n, (some, parted) if some else ([whole(run)], [])))
+            kept.append((n, taken.parted))
     # 2. the others are lines
     net.lines += [_line_of(sheet, n, parted, same) for n, parted in kept]
     free = {node for node, numbers in at.items() if len(numbers) == 1}
     net.free_ends = {node for node in free if not same.has_joined(node)}
     net.inner += [
-        Inner(n, same.of(graph.stretches[n].nodes[0]), felt[n])
+        Inner(n, same.of(graph.stretches[n].nodes[0]), sheet.felt[n])
         for n in inner
-        if felt_mm(felt[n]) > OWN_WIDTHS * widths[n]
+        if sheet.measured[n].length_mm > OWN_WIDTHS * widths[n]
     ]
     _bridge_gaps(net, sheet.settings)
     return net
@@ -116,16 +111,18 @@ def _line_of(sheet: FeltSheet, n: int, parted: Parted, same: _Same) -> FeltLine:
     """A stretch, or a strand of one, as a line between the junctions that its ends have become."""
     nodes = sheet.graph.stretches[n].nodes
     ends = (-1 - n, -1 - n) if nodes[0] == RING else (same.of(nodes[0]), same.of(nodes[1]))
-    return FeltLine(*parted, ends, sheet.widths_mm[n], felt_mm(sheet.felt[n]), n)
+    return FeltLine(*parted, ends, sheet.widths_mm[n], sheet.measured[n].length_mm, n)
 
 
-def _is_inner(run: Run, clean: list[Run], shared: bool, fewest: int) -> bool:
+def _is_inner(sheet: FeltSheet, number: int, fewest: int) -> bool:
     """Whether a stretch lies within a junction; `fewest` stretches meet at one of its ends."""
-    length_mm, width_mm = felt_mm(run), run.view.width_mm
-    clean_mm = sum(some.length_mm for some in clean)
-    if length_mm > INNER_WIDTHS * width_mm or clean_mm > CLEAN_SHARE * length_mm:
+    length_mm, width_mm = sheet.measured[number].length_mm, sheet.widths_mm[number]
+    if length_mm > INNER_WIDTHS * width_mm:
+        return False
+    if sum(run.length_mm for run in sheet.taken(number).clean) > CLEAN_SHARE * length_mm:
         return False
     # one that ends in no other is the tip of two lines that run together, or a stub
+    shared = sheet.is_shared(number)
     return shared if fewest == 1 else shared or length_mm < 3 * width_mm
 
 

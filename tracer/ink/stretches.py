@@ -2,33 +2,51 @@
 
 Signals: the patches of a sheet in; stations along each stretch of its ink out (see `felt`).
 
-The sheet is seen through a few apertures, and each of these pictures is made once.
+The sheet is seen through an aperture for each pen, and each of these pictures is made once:
+
+    ink │     ▂█▅                stretches by their width: those about the commonest are one pen's, then those
+        │    ▁███▁      ▁▃▁      about the commonest of what is left; a stretch of rare width, as between
+        └──────────────────      crossings, is seen through the aperture that is nearest to its own
+           0.4 mm      0.9 mm
 
 Source: our own.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import ONE_PEN
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import BROADER, SHARED, Doubled
-from morfax.tracer.ink.felt import Ends, Parted, feel_along, is_steady, judged, usual_width_mm
+from morfax.tracer.ink.felt import (
+    Ends,
+    Parted,
+    feel_along,
+    is_steady,
+    judged,
+    usual_width_mm,
+    whole,
+)
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.photocell import LEVEL, Cells
+from morfax.tracer.sensing.photocell import LEVEL
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on drawings of nets.
-APERTURES_MM = 0.02  # cells of about one aperture are the same cells
+APERTURES_MM = 0.02  # apertures are whole steps of this
+PENS_SHARE = 0.1  # of the ink is drawn by a pen that is worth an aperture of its own
 SHORT_WIDTHS = 30.0  # a shorter stretch is judged by the widths of those beside it, too
 # a short one, with those into which it goes straight on, is long enough to tell its width
 ENOUGH_WIDTHS = 6.0
@@ -38,12 +56,45 @@ HALF = 0.5  # of a stretch's stations
 AWAY_WIDTHS = 3.0  # from a node, over which a stretch shows where it leads
 
 
+class Measured(NamedTuple):
+    """A felt stretch: its length and usual width, mm, and at what share of its stations that is known."""
+
+    length_mm: float
+    width_mm: float
+    known: float
+
+    @classmethod
+    def of(cls, run: Run) -> Measured:
+        """Measure a stretch."""
+        known = float(np.mean(np.isfinite(run.widths_mm)))
+        return cls(length_mm(run.places_mm), usual_width_mm(run), known)
+
+
+@dataclass(slots=True)
+class Taken:
+    """A stretch, if its line is taken to be of a width: its stations, clean runs, and what parts them."""
+
+    stations: Run
+    clean: list[Run]
+    _parted: list[Array]
+    _whole: Run | None = None
+
+    @property
+    def parted(self) -> Parted:
+        """Its clean runs, or all of it as one where it is clean nowhere; and what was felt between them."""
+        if self.clean:
+            return list(self.clean), list(self._parted)
+        self._whole = self._whole or whole(self.stations)
+        return [self._whole], []
+
+
 @dataclass(frozen=True, slots=True)
 class FeltSheet:
     """The stretches of a sheet as they were felt: what nets are made of."""
 
     graph: Graph
     felt: list[Run]
+    measured: list[Measured]
     widths_mm: list[float]
     settings: Settings
     ends: list[Ends]  # of each stretch, whether the ink ends there
@@ -51,39 +102,38 @@ class FeltSheet:
     together: set[int] = field(
         default_factory=set
     )  # stretches that have turned out to be two lines
-    _runs: dict[tuple[int, float], Parted] = field(default_factory=dict)
+    _taken: dict[tuple[int, float], Taken] = field(default_factory=dict)
 
-    def runs(self, number: int) -> Parted:
-        """The clean runs of a stretch, if its line is as wide as it is taken to be."""
+    def taken(self, number: int) -> Taken:
+        """A stretch, if its line is as wide as it is taken to be; that is asked once for each width."""
         key = number, self.widths_mm[number]
-        if key not in self._runs:
+        if key not in self._taken:
             stations = with_width(self.felt[number], key[1])
-            self._runs[key] = judged(stations, key[1]).runs(self.ends[number])
-        runs, parted = self._runs[key]
-        return list(runs), list(parted)
+            clean, parted = judged(stations, key[1]).runs(self.ends[number])
+            self._taken[key] = Taken(stations, clean, parted)
+        return self._taken[key]
 
-    def is_shared(self, number: int, run: Run) -> bool:
-        """Whether the ink along a stretch is that of two lines, each as wide as a run's view says."""
-        known = run.widths_mm[np.isfinite(run.widths_mm)]
-        if number in self.together or len(known) < HALF * len(run):
+    def is_shared(self, number: int) -> bool:
+        """Whether the ink along a stretch is that of two lines, each as wide as its line is taken to be."""
+        measured = self.measured[number]
+        if number in self.together or measured.known < HALF:
             return True
-        return float(np.median(known)) > SHARED * run.view.width_mm
+        return measured.width_mm > SHARED * self.widths_mm[number]
 
     def is_broad(self, number: int) -> bool:
         """Whether a stretch is broader than the pen of a clean sheet; of another sheet that is not known."""
-        return usual_width_mm(self.felt[number]) > BROADER * self.doubled.pen_mm
+        return self.measured[number].width_mm > BROADER * self.doubled.pen_mm
 
     @classmethod
     def of(cls, drawing: Drawing, settings: Settings, ink: Mask) -> FeltSheet:
         """Find and feel the stretches of some ink of a drawing."""
-        seen = _Seen(drawing, settings)
         graph = Graph.of(ink)
-        felt = _felt(graph, seen)
-        at = graph.at_nodes()
-        widths = _line_widths(graph, felt, at, settings)
+        felt = _felt(graph, drawing, settings)
+        measured, at = [Measured.of(run) for run in felt], graph.at_nodes()
+        widths = _line_widths(StraightOn(graph, felt, at), measured, settings)
         doubled = Doubled() if settings.line_width_mm else Doubled.of(felt)
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
-        return cls(graph, felt, widths, settings, ends, doubled)
+        return cls(graph, felt, measured, widths, settings, ends, doubled)
 
 
 def _is_end(node: int, at: dict[int, list[int]]) -> bool:
@@ -91,37 +141,55 @@ def _is_end(node: int, at: dict[int, list[int]]) -> bool:
     return len(at.get(node, ())) == 1
 
 
-@dataclass(slots=True)
 class _Seen:
-    """The sheet through its cells: those of an aperture are made once."""
+    """The sheet through its cells, made once for each aperture of some."""
 
-    drawing: Drawing
-    settings: Settings
-    made: dict[float, Cells] = field(default_factory=dict)
+    def __init__(self, drawing: Drawing, apertures_mm: Array) -> None:
+        self._cells = {
+            mm: photocell.behind_aperture(drawing, mm)
+            for mm in np.unique(apertures_mm).tolist()
+        }
 
-    def view(self, guide_mm: Array, width_mm: float) -> View:
+    def view(self, guide_mm: Array, width_mm: float, aperture_mm: float) -> View:
         """How the head sees a line along a guide."""
-        spot_mm = self.settings.aperture_mm or aperture_for(self.drawing, width_mm)
-        spot_mm = APERTURES_MM * round(spot_mm / APERTURES_MM)
-        if spot_mm not in self.made:
-            self.made[spot_mm] = photocell.behind_aperture(self.drawing, spot_mm)
-        view = View(self.made[spot_mm], width_mm)
+        view = View(self._cells[aperture_mm], width_mm)
         some = guide_mm[:: max(1, len(guide_mm) // 50)]
-        dark = float(np.median([view.darkness_at(place) for place in some]))
+        dark = median(view.darkness_along(some))
         return view.at_level(LEVEL * max(dark, FAINTEST))
 
 
-def _felt(graph: Graph, seen: _Seen) -> list[Run]:
+def _felt(graph: Graph, drawing: Drawing, settings: Settings) -> list[Run]:
     """What the cells feel along every stretch."""
-    drawing = seen.drawing
-    places = graph.places_mm(drawing)
-    felt = []
-    for stretch in graph.stretches:
-        half_px = max(float(np.median(graph.depths_px[stretch.pixels])) - 0.5, 0.5)
-        width_mm = 2 * half_px * drawing.pitch_mm
-        guide = _softened(places[stretch.pixels], round(2 * half_px))
-        felt.append(feel_along(seen.view(guide, width_mm), guide))
+    places, pitch_mm = graph.places_mm(drawing), drawing.pitch_mm
+    halves_px = [
+        max(median(graph.depths_px[stretch.pixels]) - 0.5, 0.5) for stretch in graph.stretches
+    ]
+    widths_mm = [2 * half_px * pitch_mm for half_px in halves_px]
+    own_mm = np.array([settings.aperture_mm or aperture_for(drawing, mm) for mm in widths_mm])
+    apertures_mm = _few(own_mm, [len(stretch.pixels) for stretch in graph.stretches])
+    seen, felt = _Seen(drawing, apertures_mm), list[Run]()
+    for n, stretch in enumerate(graph.stretches):
+        guide = _softened(places[stretch.pixels], round(2 * halves_px[n]))
+        felt.append(feel_along(seen.view(guide, widths_mm[n], float(apertures_mm[n])), guide))
     return felt
+
+
+def _few(own_mm: Array, pixels: Sequence[int]) -> Array:
+    """The aperture of each stretch, mm: that of its pen, or the one nearest to its own (n,)."""
+    if not len(own_mm):
+        return own_mm
+    steps, inked = np.round(own_mm / APERTURES_MM), np.asarray(pixels, float)
+    least, made, left = PENS_SHARE * inked.sum(), list[float](), np.ones(len(steps), bool)
+    while not made or inked[left].sum() > least:
+        sums = np.bincount(steps[left].astype(int), inked[left])
+        common = float(np.argmax(sums))
+        pen = left & (np.abs(steps - common) < ONE_PEN * max(common, 1.0))
+        if made and inked[pen].sum() < least:
+            break
+        made.append(common)
+        left &= ~pen
+    nearest = np.argmin(np.abs(steps[:, None] - np.array(made)), axis=1)
+    return np.asarray(APERTURES_MM * np.array(made)[nearest])
 
 
 def _softened(places: Array, reach: int) -> Array:
@@ -140,20 +208,15 @@ def with_width(run: Run, width_mm: float) -> Run:
     return replace(run, view=replace(run.view, width_mm=width_mm))
 
 
-def felt_mm(run: Run) -> float:
-    """Length of a felt stretch."""
-    return length_mm(run.places_mm)
-
-
 def _line_widths(
-    graph: Graph, felt: list[Run], at: dict[int, list[int]], settings: Settings
+    straight: StraightOn, measured: list[Measured], settings: Settings
 ) -> list[float]:
     """The width of the line of each stretch, mm: its own, and of a short one that of those beside it."""
-    own = [usual_width_mm(run) for run in felt]
+    graph, felt, at = straight.graph, straight.felt, straight.at
+    lengths, own, _ = zip(*measured, strict=True) if measured else ((), (), ())
     if settings.line_width_mm:
         return [settings.line_width_mm] * len(own)
-    lengths = [felt_mm(run) for run in felt]
-    found, straight = [], StraightOn(graph, felt, at)
+    found = []
     for n, stretch in enumerate(graph.stretches):
         if (
             lengths[n] > SHORT_WIDTHS * own[n]

@@ -123,7 +123,7 @@ def _pieces(chain: Chain, junctions: Junctions) -> list[Piece]:
         alone = len(there.sides) == 2
         runs = [run.turned_round() for run in line.runs[::-1]] if link.back else line.runs
         parted = [places[::-1] for places in line.parted[::-1]] if link.back else line.parted
-        pieces.append(Piece(runs[0], NOTHING if alone else None, there.ink))
+        pieces.append(Piece(runs[0], NOTHING if alone else None, there.crossing.ink))
         pieces += [Piece(run, places) for run, places in zip(runs[1:], parted, strict=True)]
     return pieces
 

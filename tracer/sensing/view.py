@@ -83,6 +83,10 @@ class View:
         """Darkness at a place."""
         return float(photocell.darkness_at(self.cells, place[0], place[1]))
 
+    def darkness_along(self, places: Array) -> Array:
+        """Darkness at each of many places (n, 2) mm."""
+        return np.asarray(photocell.darkness_along(self.cells, np.ascontiguousarray(places)))
+
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""
         return self.darkness_at(place) > self.level
