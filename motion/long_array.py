@@ -173,13 +173,22 @@ class _File:
         return values.reshape(rows, columns)
 
 
+def filed(parts: list[Array]) -> list[Array]:
+    """Some arrays (n, columns) behind each other in a file, each mapped; FileFault where it has no room."""
+    if not parts:
+        return []
+    file, ends = _File(), np.cumsum([len(part) for part in parts])
+    whole = file.mapped(file.append(parts), int(ends[-1]), parts[0].shape[1])
+    return np.split(whole, ends[:-1])
+
+
 def blocks(rows: Array, before: int = 0, every: int = 1) -> Iterator[Array]:
     """The rows of an array in blocks, each with as many rows `before` its own as are there.
 
     The first row of a block's own is a multiple of `every`. An array in memory is one block; a block of a
     mapped one is given back when the next is asked for.
     """
-    if not is_mapped(rows):
+    if not is_mapped(rows) or not len(rows):
         yield rows
         return
     size = BLOCK_ROWS - BLOCK_ROWS % every
@@ -191,7 +200,7 @@ def blocks(rows: Array, before: int = 0, every: int = 1) -> Iterator[Array]:
 
 def one_in(rows: Array, every: int) -> Array:
     """One row in so many, the first of them first; an array in memory gives a view of itself."""
-    if not is_mapped(rows):
+    if not is_mapped(rows) or not len(rows):
         return rows[::every]
     return np.vstack([block[::every].copy() for block in blocks(rows, every=every)])
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from morfax.motion import long_array
 from morfax.motion.faults import FileFault
-from morfax.motion.long_array import LongArray, blocks, is_mapped, one_in
+from morfax.motion.long_array import LongArray, blocks, filed, is_mapped, one_in
 from morfax.motion.polyline import lengths_by_blocks, lengths_mm
 
 ROWS = np.random.default_rng(1).normal(size=(2000, 2))
@@ -140,3 +140,15 @@ def test_a_folder_without_room_is_told_in_one_line(monkeypatch: pytest.MonkeyPat
     with pytest.raises(FileFault, match=r"No space left on device; .* set TMPDIR") as told:
         grown()
     assert "\n" not in str(told.value)
+
+
+def test_arrays_behind_each_other_in_a_file_are_the_same_rows() -> None:
+    """Each is mapped, also a part of one without a row, and is one block of its own."""
+    parts = [np.arange(2.0 * count).reshape(-1, 2) - count for count in (1, 7, 3)]
+    kept = filed(parts)
+    for part, rows in zip(parts, kept, strict=True):
+        assert is_mapped(rows) and np.array_equal(rows, part)
+        assert np.array_equal(np.vstack(list(blocks(rows))), part)
+        assert np.array_equal(one_in(rows[::-1], 2), part[::-2])
+        assert one_in(rows[:0], 2).shape == (0, 2) and not np.vstack(list(blocks(rows[:0]))).size
+    assert filed([]) == []

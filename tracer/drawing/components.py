@@ -25,6 +25,7 @@ Mask = NDArray[np.uint8]
 Numbers = NDArray[np.int32]
 
 STRIP_PX = 1 << 24  # pixels that are worked on at a time
+FEW_PX = 1 << 20  # the same where much else is held meanwhile: 4 MB of darkness; chosen
 
 
 @dataclass(frozen=True)
@@ -117,10 +118,15 @@ def painted(row: Numbers, begin: Numbers, end: Numbers, shape: tuple[int, int]) 
     return mask
 
 
-def strips(shape: tuple[int, ...], halo: int = 0) -> Iterator[tuple[int, int, slice]]:
-    """First row and last row + 1 of each strip of a sheet, and its rows with a halo of neighbours."""
+def strips(
+    shape: tuple[int, ...], halo: int = 0, pixels: int = STRIP_PX
+) -> Iterator[tuple[int, int, slice]]:
+    """First row and last row + 1 of each strip of a sheet, and its rows with a halo of neighbours.
+
+    A strip has about so many `pixels`, the halo apart.
+    """
     rows, columns = shape[:2]
-    height = max(4 * halo, STRIP_PX // max(columns, 1), 1)
+    height = max(4 * halo, pixels // max(columns, 1), 1)
     for top in range(0, rows, height):
         bottom = min(rows, top + height)
         yield top, bottom, slice(max(0, top - halo), min(rows, bottom + halo))

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.long_array import one_in
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.thinning import Indices
 
@@ -47,7 +48,7 @@ def hatching(ways: Sequence[Array]) -> list[Hatching]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    long_mm = np.array([length_mm(way[:: max(1, len(way) // 200)]) for way in ways])
+    long_mm = np.array([length_mm(one_in(way, max(1, len(way) // 200))) for way in ways])
     begins, ends = np.array([way[0] for way in ways]), np.array([way[-1] for way in ways])
     chords = ends - begins
     straight_mm = np.hypot(chords[:, 0], chords[:, 1])

@@ -18,6 +18,7 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.long_array import one_in
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
@@ -103,7 +104,7 @@ def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> 
     usual_mm = _usual_mm(sheet, left)
     wide_mm = np.where(left.solid_px > 0, usual_mm, np.maximum(sheet.widths_mm, usual_mm))
     near_mm = BESIDE_WIDTHS * wide_mm[patch]
-    run = np.vstack([evenly(way[::THINNED], EVERY_MM) for way in ways])
+    run = np.vstack([evenly(one_in(way, THINNED), EVERY_MM) for way in ways])
     is_near = cKDTree(run).query(places)[0] < near_mm
     # 2. by patches
     pixels = np.maximum(np.bincount(patch, minlength=sheet.patches.count), 1)

@@ -22,7 +22,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import Mask, strips
+from morfax.tracer.drawing.components import FEW_PX, Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import INK
 from morfax.tracer.drawing.lettering import lettering
@@ -103,7 +103,7 @@ def ink_left(sheet: Sheet, letters_from_mm: float = FOLLOWED_MM) -> InkLeft:
 def _ink(drawing: Drawing) -> Mask:
     """The ink of a sheet, softened, strip by strip: of a large sheet there is never more than that."""
     ink = np.zeros(drawing.darkness.shape, np.uint8)
-    for top, bottom, rows in strips(ink.shape, halo=HALO_PX):
+    for top, bottom, rows in strips(ink.shape, halo=HALO_PX, pixels=FEW_PX):
         soft = cv2.GaussianBlur(drawing.darkness[rows], (0, 0), SOFTENED_PX)
         ink[top:bottom] = soft[top - rows.start : bottom - rows.start] > INK
     return ink

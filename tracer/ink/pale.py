@@ -20,7 +20,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from morfax.tracer.drawing.components import Mask, strips
+from morfax.tracer.drawing.components import FEW_PX, Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import INK
 from morfax.tracer.drawing.thinning import neighbours, thinned
@@ -59,7 +59,9 @@ def _pale(drawing: Drawing) -> Mask:
     rim_px = RIM_PX + math.ceil(SPOTS * float(np.nan_to_num(noise.softness_px)))
     rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim_px + 1,) * 2)
     pale = np.zeros(drawing.darkness.shape, np.uint8)
-    for top, bottom, rows in strips(pale.shape, halo=rim_px + math.ceil(4 * SPOT_PX)):
+    for top, bottom, rows in strips(
+        pale.shape, halo=rim_px + math.ceil(4 * SPOT_PX), pixels=FEW_PX
+    ):
         soft = cv2.GaussianBlur(drawing.darkness[rows], (0, 0), SPOT_PX)
         inked = cv2.dilate((soft > INK).view(np.uint8), rim)
         own = slice(top - rows.start, bottom - rows.start)

@@ -5,9 +5,9 @@ Signals: the patches of a sheet in; stations along each stretch of its ink out (
 The sheet is seen through an aperture for each pen, and each of these pictures is made once:
 
     ink │     ▂█▅                stretches by their width: those about the commonest are one pen's, then those
-        │    ▁███▁      ▁▃▁      about the commonest of what is left; a stretch of rare width, as between
-        └──────────────────      crossings, is seen through the aperture that is nearest to its own
-           0.4 mm      0.9 mm
+        │    ▁███▁      ▁▃▁      about the commonest of what is left; ink broader than any pen, which lines
+        └──────────────────      share, has one aperture, too; a stretch of rare width is seen through the
+           0.4 mm      0.9 mm    aperture that is nearest to its own
 
 Source: our own.
 """
@@ -175,19 +175,22 @@ def _felt(graph: Graph, drawing: Drawing, settings: Settings) -> list[Run]:
 
 
 def _few(own_mm: Array, pixels: Sequence[int]) -> Array:
-    """The aperture of each stretch, mm: that of its pen, or the one nearest to its own (n,)."""
+    """The aperture of each stretch, mm: that of its pen, the one for broad ink, or the nearest to its own."""
     if not len(own_mm):
         return own_mm
+    # 1. each pen's: the commonest of what is left, and all about it
     steps, inked = np.round(own_mm / APERTURES_MM), np.asarray(pixels, float)
     least, made, left = PENS_SHARE * inked.sum(), list[float](), np.ones(len(steps), bool)
     while not made or inked[left].sum() > least:
-        sums = np.bincount(steps[left].astype(int), inked[left])
-        common = float(np.argmax(sums))
+        common = float(np.argmax(np.bincount(steps[left].astype(int), inked[left])))
         pen = left & (np.abs(steps - common) < ONE_PEN * max(common, 1.0))
         if made and inked[pen].sum() < least:
             break
         made.append(common)
         left &= ~pen
+    # 2. broad ink, which lines share: a small cell feels each pixel of its rims
+    if (steps > (1 + ONE_PEN) * max(made)).any():
+        made.append(float(steps.max()))
     nearest = np.argmin(np.abs(steps[:, None] - np.array(made)), axis=1)
     return np.asarray(APERTURES_MM * np.array(made)[nearest])
 

@@ -25,6 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.polyline import length_mm
 from morfax.tracer.following.felt_line import bare_stretch
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import CHUNK, Carriage
@@ -61,9 +62,12 @@ Told = Callable[[float], None]
 
 
 class InkStroke(NamedTuple):
-    """A stroke: its way (n, 2) mm at the motion rate, whether it closes, the line's width in mm, who led."""
+    """A stroke: its way (n, 2) mm at the motion rate and its length, whether it closes, the line's width in
+    mm, who led.
+    """
 
     way_mm: Array
+    length_mm: float
     closed: bool
     width_mm: float
     led: Led = Led()
@@ -109,8 +113,9 @@ def stroke_along(
         if k + 1 < len(pieces):
             head.through(piece.run, pieces[k + 1])
     head.arrive(last, ends)
+    way_mm = head.carriage.positions_mm
     return InkStroke(
-        head.carriage.positions_mm, chain.closed, longest.view.width_mm, head.carriage.led
+        way_mm, length_mm(way_mm), chain.closed, longest.view.width_mm, head.carriage.led
     )
 
 
@@ -200,6 +205,8 @@ class InkHead:
 
     def _strayed(self, run: Run, at: int, mark: Mark) -> bool:
         """Whether the newest positions have left what was felt."""
+        from scipy.spatial import cKDTree
+
         newest = self.carriage.since(mark)[::LOOKED_AT]
         if not len(newest):
             return False
@@ -208,8 +215,7 @@ class InkHead:
             / run.view.step_mm
         )
         felt = run.places_mm[max(0, at - 20) : at + beyond]
-        gaps = newest[:, None] - felt[None]
-        away = np.sqrt(np.min(np.sum(gaps * gaps, axis=2), axis=1))
+        away, _ = cKDTree(felt).query(newest)
         return bool(away.max() > STRAYED * run.view.width_mm)
 
     def through(self, run: Run, onward: Piece) -> None:

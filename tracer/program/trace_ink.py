@@ -8,13 +8,13 @@ Source: our own (see `tracer.ink`); patent ES 361967 has one contour to a tape.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from morfax.motion.faults import LineFault
-from morfax.motion.polyline import length_mm
+from morfax.motion.long_array import filed
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.shapes_among_lines import has_lines
 from morfax.tracer.drawing.strokes import Sheet
@@ -30,6 +30,8 @@ from morfax.tracer.program import stroke_order
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress
 from morfax.tracer.program.trace_solids import of_silhouettes, with_outlines
+
+NEWEST_BYTES = 8_000_000  # of the newest strokes are kept in memory, 0.8 m at 10 mm/s; chosen
 
 
 def trace_ink(
@@ -61,14 +63,14 @@ def _of_strokes(
     # 1. the lines and their junctions, and the head along each
     felt = FeltSheet.of(left.drawing, settings, left.ink)
     junctions = solved(felt)
-    strokes = _long_enough(list(_strokes(junctions, settings, progress)))
+    strokes = _long_enough(_kept(_strokes(junctions, settings, progress)))
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
             " of these with --edge, or scan the drawing at a higher resolution"
         )
     # 2. the longest first, and in an order with short idle ways
-    strokes.sort(key=lambda stroke: -length_mm(stroke.way_mm))
+    strokes.sort(key=lambda stroke: -stroke.length_mm)
     lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
     ink = balance(sheet, felt, left, [stroke.way_mm for stroke in strokes])
     return Trace(tuple(lines), Operator(), left_out_mm=ink.left_mm, ink=ink)
@@ -86,16 +88,28 @@ def _strokes(
 
     for chain in junctions.chains():
         stroke = stroke_along(chain, junctions, settings, told)
-        before_mm += length_mm(stroke.way_mm)
+        before_mm += stroke.length_mm
         told(0.0)
         yield stroke
 
 
+def _kept(strokes: Iterable[InkStroke]) -> list[InkStroke]:
+    """All strokes; the ways of many are kept in files, as that of a long one is."""
+    kept, newest = list[InkStroke](), list[InkStroke]()
+    for stroke in strokes:
+        newest.append(stroke)
+        if sum(each.way_mm.nbytes for each in newest) > NEWEST_BYTES:
+            ways = filed([each.way_mm for each in newest])
+            kept += [each._replace(way_mm=way) for each, way in zip(newest, ways, strict=True)]
+            newest.clear()
+    return kept + newest
+
+
 def _long_enough(strokes: list[InkStroke]) -> list[InkStroke]:
     """The strokes without those that are shorter than the lines are wide: they lie within others' ink."""
-    lengths_mm = np.array([length_mm(stroke.way_mm) for stroke in strokes])
-    if not len(strokes):
+    if not strokes:
         return strokes
+    lengths_mm = np.array([stroke.length_mm for stroke in strokes])
     widths_mm = np.array([stroke.width_mm for stroke in strokes])
     usual_mm = float(np.average(widths_mm, weights=lengths_mm))
     long = [stroke for stroke, mm in zip(strokes, lengths_mm, strict=True) if mm > usual_mm]
@@ -109,7 +123,7 @@ def _line(stroke: InkStroke, number: int) -> Line:
         stroke.way_mm,
         ending,
         stroke.width_mm,
-        length_mm(stroke.way_mm),
+        stroke.length_mm,
         number=number,
         led=stroke.led,
     )
