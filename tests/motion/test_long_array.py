@@ -150,5 +150,7 @@ def test_arrays_behind_each_other_in_a_file_are_the_same_rows() -> None:
         assert is_mapped(rows) and np.array_equal(rows, part)
         assert np.array_equal(np.vstack(list(blocks(rows))), part)
         assert np.array_equal(one_in(rows[::-1], 2), part[::-2])
-        assert one_in(rows[:0], 2).shape == (0, 2) and not np.vstack(list(blocks(rows[:0]))).size
+        assert (
+            one_in(rows[:0], 2).shape == (0, 2) and not np.vstack(list(blocks(rows[:0]))).size
+        )
     assert filed([]) == []

@@ -31,6 +31,17 @@ ALONG_COS = 0.94  # 20 degrees: a stretch that goes another way is not this line
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
 AVERAGED, FADES = 2.0, 1.0  # widths of the line
 SLACK = 0.12  # of the line's width: where two lines cross, the rims of their ink are felt so much too near
+NOTCH = (
+    0.1  # widths: nearer to the middle of its ink a line crosses another, and its rim is none
+)
+FEWEST = 8  # places that tell a bend
+EXACT_MM = 0.03  # a rim, felt every `EVERY_MM`: neighbours err alike
+TURNED, HUMP_MM = (
+    0.01,
+    1.0,
+)  # deviation: of the heading of a leg at its end; how far a way may bulge, 16 times
+FITS = 0.8  # of the places are as near to their rims as these are exact
+AGAIN = 6  # times weights are found anew
 SAME_MM = 1e-6  # ends of one way
 EVERY_MM = 0.05  # a way is looked at
 
@@ -64,7 +75,7 @@ class SharedInk(NamedTuple):
 def kept_in_ink(
     way: Array, ink: SharedInk, width_mm: float, others: Sequence[Array] = ()
 ) -> Array:
-    """A way through a junction, moved to where a line of a width lies within the ink; (n, 2) mm.
+    """A way through a junction, bent and moved to where a line of a width lies within the ink; (n, 2) mm.
 
     Where one of the `others` lies in the same ink each has its own rim.
     """
@@ -72,19 +83,36 @@ def kept_in_ink(
     stations = ink.stations()
     if not len(stations) or come_mm[-1] < FADES * width_mm:
         return way
-    # 1. how far each of some places of the way is from where the line would lie
     at_mm = np.linspace(0.0, come_mm[-1], 2 + math.ceil(come_mm[-1] / EVERY_MM))
-    some = np.column_stack([np.interp(at_mm, come_mm, column) for column in way.T])
-    move = _move(some, stations, width_mm, others)
-    # 2. moved smoothly, and not at the ends
-    moves = _averaged(move, AVERAGED * width_mm / (at_mm[1] - at_mm[0]))
+    some = _at(way, come_mm, at_mm)
+    # 1. bent smoothly along the rims
+    bent = some + _bent(some, at_mm / at_mm[-1], _off(some, stations, width_mm, others))
+    # 2. where it is out of the ink still, moved, smoothly and not at the ends
+    off = _off(bent, stations, width_mm, others)
+    far = np.sign(off.aside) * np.maximum(np.abs(off.aside) - SLACK * width_mm, 0.0)
+    moves = _averaged(far[:, None] * off.normals, AVERAGED * width_mm / (at_mm[1] - at_mm[0]))
     fade = np.minimum(at_mm, at_mm[-1] - at_mm) / (FADES * width_mm)
-    moves *= np.clip(fade, 0.0, 1.0)[:, None]
+    moves = bent - some + moves * np.clip(fade, 0.0, 1.0)[:, None]
     return np.asarray(way + np.column_stack([np.interp(come_mm, at_mm, m) for m in moves.T]))
 
 
-def _move(some: Array, stations: Array, width_mm: float, others: Sequence[Array]) -> Array:
-    """How far places of a way are to be moved, (n, 2) mm."""
+def _at(way: Array, come_mm: Array, at_mm: Array) -> Array:
+    """Places of a way at lengths along it, (n, 2) mm."""
+    return np.column_stack([np.interp(at_mm, come_mm, column) for column in way.T])
+
+
+class _Off(NamedTuple):
+    """How far each of some places is from where its line lies, to the left of the ink, mm; that direction,
+    (n, 2); and how sure that is, 0 to 1.
+    """
+
+    aside: Array
+    normals: Array
+    sure: Array
+
+
+def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array]) -> _Off:
+    """How far places of a way are from where the line would lie; 0 in ink that goes another way."""
     from scipy.spatial import cKDTree
 
     away, near = cKDTree(stations[:, :2]).query(some)
@@ -104,8 +132,35 @@ def _move(some: Array, stations: Array, width_mm: float, others: Sequence[Array]
         further = np.sum((other[nearest] - middles) * normals, axis=1)
         wanted = np.where(is_beside, np.where(aside > further, limit, -limit), wanted)
     off = np.where(beside > 1, within, wanted) - aside
-    move = np.sign(off) * np.maximum(np.abs(off) - SLACK * width_mm, 0.0)
-    return np.asarray(np.where(is_its_own, move, 0.0)[:, None] * normals)
+    is_sure = is_its_own & (beside == 1) & (limit > NOTCH * width_mm)
+    return _Off(np.where(is_its_own, off, 0.0), normals, is_sure.astype(float))
+
+
+def _bent(some: Array, share: Array, off: _Off) -> Array:
+    """How far places of a way are to be moved so that it goes along its rim as a whole, (n, 2) mm.
+
+    Least squares, to which the headings at its ends belong; a place that is far off counts less.
+    """
+    ways = np.gradient(some, axis=0)
+    to_left = np.column_stack([-ways[:, 1], ways[:, 0]]) / np.hypot(*ways.T)[:, None]
+    wanted = off.aside * np.sum(off.normals * to_left, axis=1)
+    if off.sure.sum() < FEWEST:
+        return np.zeros_like(some)
+    u, long_mm = share, float(np.hypot(*np.diff(some, axis=0).T).sum())
+    hump = u * u * (1 - u) * (1 - u)
+    shapes = np.column_stack(
+        [u * (1 - u) ** 2 * long_mm, u * u * (u - 1) * long_mm, hump, hump * (2 * u - 1)]
+    )
+    held = np.diag(1 / np.array([TURNED, TURNED, HUMP_MM, HUMP_MM]))
+    weights = off.sure / EXACT_MM
+    for _ in range(AGAIN):
+        rows = np.vstack([shapes * weights[:, None], held])
+        shape = np.linalg.lstsq(rows, np.r_[wanted * weights, np.zeros(4)])[0]
+        misfit = np.abs(wanted - shapes @ shape)
+        weights = off.sure / EXACT_MM / np.sqrt(1 + (misfit / EXACT_MM) ** 2)
+    if np.mean(misfit[off.sure > 0] < EXACT_MM) < FITS:  # the rims of more lines than two
+        return np.zeros_like(some)
+    return np.asarray((shapes @ shape)[:, None] * to_left)
 
 
 def _averaged(moves: Array, places: float) -> Array:
