@@ -35,6 +35,8 @@ FEWEST_PX = 3.0  # of the line's width: see `jobs.scale_doubts`
 TIMES = 2  # three times finer is no better: the same details, 1 um more RMS
 # of a pixel: standard deviation of the aperture; at 0.35 the gaps of small engravings stay open; by trial
 APERTURE_PX = 0.6
+INK = 0.5  # darker is ink
+DARKER = 80.0  # percentile of the ink's pixels, as of the strokes whose contrast is 1 (see `contrast`)
 MOST_PX = 1 << 22  # of a sheet, before: large sheets are no coarse scans, and need the memory
 # pixels, as `noise.Within` says: a line of 1.5 looks 1.8 to 2.12 wide, one of 2 looks 2.16 or more; by trial
 SEEN_PX = 2.14
@@ -51,9 +53,15 @@ def times_finer(darkness: Darkness, width_px: float) -> int:
     return TIMES if is_coarse and darkness.size <= MOST_PX else 1
 
 
-def finer(darkness: Darkness, times: int) -> Darkness:
-    """The darkness behind a wider aperture, on pixels so many times finer."""
-    soft = cv2.GaussianBlur(darkness, (0, 0), APERTURE_PX)
+def finer(darkness: Darkness, times: int, seen_px: float = math.inf) -> Darkness:
+    """The darkness behind a wider aperture, on pixels so many times finer; of lines that look so wide.
+
+    The aperture leaves little more than half of the darkness of a line of a pixel, and less where pixels
+    touch by their corners only: ink is as dark as before.
+    """
+    soft = np.asarray(cv2.GaussianBlur(darkness, (0, 0), APERTURE_PX), np.float32)
+    if seen_px < SEEN_PX:
+        soft /= _left_of(darkness, soft)
     larger = cv2.resize(soft, None, fx=times, fy=times, interpolation=cv2.INTER_LANCZOS4)
     return np.asarray(larger, np.float32)
 
@@ -70,3 +78,8 @@ def note(seen_px: float, pitch_mm: float) -> str:
         f"{DETAIL_PX * pitch_mm:.2g} mm may be cut off, and the path strays where lines touch; scan at "
         f"{wanted_dpi(pitch_mm)} dpi, or save the drawing so much larger"
     )
+
+
+def _left_of(darkness: Darkness, soft: Darkness) -> np.float32:
+    """How dark ink of darkness 1 is behind the aperture."""
+    return np.float32(np.percentile(soft[darkness > INK], DARKER))

@@ -228,7 +228,7 @@ class Drawing:
             notes = (*notes, grain.note(slit, pitch[0]))
         finer = coarse.times_finer(darkness, width_px)
         if finer > 1:
-            darkness = coarse.finer(np.asarray(darkness), finer)
+            darkness = coarse.finer(np.asarray(darkness), finer, seen_px)
         return cls(
             darkness,
             pitch[0] / finer,

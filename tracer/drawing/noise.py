@@ -42,6 +42,9 @@ FEWEST_PROFILES = 20  # fewer tell nothing: there is hardly a line
 STEP_PX = 0.5  # between the samples of a profile: edges are no sharper than a pixel
 BESIDE_PX = 6.0  # of paper to each side of a profile, and half a width of the line
 SLOPE_PX = 1.5  # to both sides of an edge, for its direction
+# darkness per pixel: flatter at both edges is a line of a pixel that no lens has softened, beyond which both
+# places lie on paper; they are nearer there. A soft line of that width has 0.3
+FLAT, THIN_PX = 0.1, 0.75
 OBLIQUE = 0.5  # cosine: a row or column that meets a line flatter than 60 degrees is left out
 PAPER = 0.25  # lighter is paper, and nothing else is drawn there
 GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
@@ -164,8 +167,10 @@ def _profiles(darkness: NDArray[np.float32] | Tiles) -> _Profiles | None:
     if len(places) < FEWEST_PROFILES:
         return None
     # 1. square to the edges that the row or column has met
-    ends = [_slope(darkness, places[:, :, k]) for k in (0, 1)]
-    across = ends[0] - ends[1]
+    across = _slope(darkness, places[:, :, 0]) - _slope(darkness, places[:, :, 1])
+    thin = np.hypot(*across.T) < FLAT
+    across[thin] = _slope(darkness, places[thin, :, 0], THIN_PX)
+    across[thin] -= _slope(darkness, places[thin, :, 1], THIN_PX)
     across /= np.maximum(np.hypot(*across.T), 1e-9)[:, None]
     met = places[:, :, 1] - places[:, :, 0]
     length_px = np.hypot(*met.T)
@@ -215,11 +220,13 @@ def _even(count: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(0, max(count - 1, 0), min(count, MOST_PROFILES)).astype(int))
 
 
-def _slope(darkness: NDArray[np.float32] | Tiles, places: Array) -> Array:
-    """How much darker it gets per pixel down and to the right at places (n, 2)."""
-    sides = SLOPE_PX * np.eye(2)
+def _slope(
+    darkness: NDArray[np.float32] | Tiles, places: Array, reach_px: float = SLOPE_PX
+) -> Array:
+    """How much darker it gets per pixel down and to the right at places (n, 2), felt so far to both sides."""
+    sides = reach_px * np.eye(2)
     steps = [_seen(darkness, (places + d).T) - _seen(darkness, (places - d).T) for d in sides]
-    return np.column_stack(steps) / (2 * SLOPE_PX)
+    return np.column_stack(steps) / (2 * reach_px)
 
 
 def _seen(darkness: NDArray[np.float32] | Tiles, places: Array) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -17,6 +18,7 @@ from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 
 WIDTH_MM = 0.5
+PIXEL_MM = 0.25
 STEP = polyline(  # a contour with a slot of 3 mm, which a leg of twelve pixels of 0.25 mm would cut off
     (6, 6), (40, 6), (40, 26), (25, 26), (25, 23), (22, 23), (22, 26), (6, 26), (6, 6)
 )
@@ -44,6 +46,34 @@ def test_a_slot_of_a_few_pixels_is_not_cut_off() -> None:
     assert drawing.finer == 2
     assert run.ending == "closed"
     assert distance(run.xy_mm[::4], STEP).reference_to_path.max_mm < 0.15
+
+
+def pixel_lines(*corners: Points) -> Drawing:
+    """The drawing of closed lines through corners, each a pixel wide, as a paint program draws it."""
+    high = np.ceil(np.vstack(corners).max(axis=0) / PIXEL_MM + 20).astype(int)
+    grey = np.full((high[1], high[0]), 255, np.uint8)
+    for line in corners:
+        at = np.column_stack(
+            [line[:, 0] / PIXEL_MM - 0.5, high[1] - line[:, 1] / PIXEL_MM - 0.5]
+        )
+        cv2.polylines(grey, [np.round(at).astype(np.int32)], True, 0, 1, cv2.LINE_8)
+    dpi = 25.4 / PIXEL_MM
+    return Drawing.of(Scan(Path("made.png"), grey, Stated((dpi, dpi))), Scale())
+
+
+@pytest.mark.parametrize("beside", [False, True])
+def test_sloping_lines_of_a_hard_pixel_do_not_fall_to_pieces(beside: bool) -> None:
+    """Their pixels touch by corners only; an upright line beside them is the one that is longest then."""
+    tilted = polyline((8, 25), (75, 10), (92, 82), (22, 90)) + 0.5 * PIXEL_MM  # on pixels
+    upright = polyline((4, 4), (4, 96))
+    drawing = pixel_lines(tilted, *([upright] if beside else []))
+    assert drawing.seen_px < 1.5
+    run = trace(drawing).lines[0]
+    assert run.ending == "closed"
+    around = np.vstack([tilted, tilted[:1]])
+    off = distance(run.xy_mm[::4], around)
+    assert off.path_to_reference.rms_mm < 0.25 * PIXEL_MM
+    assert off.reference_to_path.max_mm < PIXEL_MM
 
 
 def test_a_fine_scan_stays_as_it_is() -> None:
