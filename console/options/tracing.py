@@ -55,7 +55,7 @@ SEVERAL = option(
     help="Several lines as one program: all (every stretch of line, each once), contours (lines to be cut, "
     "inner before outer, without the bars between them), outer (contours inside no other), or numbers "
     "such as 1,3; 1 is the longest.  [default: one line, the longest or that at --start; contours with "
-    "--cutter or --kerf, unless there is a --card; what --machine is for: all with grbl-pen]",
+    "--cutter or --kerf, unless there is a --card; what --machine is for: all with grbl-pen and grbl-laser]",
 )
 LETTERING = option(
     "Line",

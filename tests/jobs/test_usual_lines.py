@@ -15,7 +15,7 @@ from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.recorder.gcode.machine import as_toml
 
 SHEET = Path(__file__).parents[2] / "samples" / "bracket.png"
-PEN, TORCH, ROUTER = "grbl-pen", "qtplasmac", "grbl-router"
+PEN, LASER, TORCH, ROUTER = "grbl-pen", "grbl-laser", "qtplasmac", "grbl-router"
 
 
 def lines_of(folder: Path, machine: str | None, **settings: Any) -> Any:
@@ -33,12 +33,14 @@ def lines_of(folder: Path, machine: str | None, **settings: Any) -> Any:
     ("machine", "settings", "expected"),
     [
         (PEN, {}, "all"),
+        (LASER, {}, "all"),
         (TORCH, {}, "contours"),
         (ROUTER, {}, None),
         (None, {}, None),
         # a cutter has the first word
         (ROUTER, {"tool": ToolSettings(cutter_mm=3.0)}, "contours"),
         (TORCH, {"tool": ToolSettings(cutter_mm=1.5)}, "contours"),
+        (LASER, {"tool": ToolSettings(cutter_mm=0.2)}, "contours"),
         # what somebody asks for is done
         (PEN, {"line": LineSettings(lines="contours")}, "contours"),
         (PEN, {"line": LineSettings(lines=(1, 2))}, (1, 2)),
