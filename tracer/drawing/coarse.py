@@ -36,6 +36,10 @@ TIMES = 2  # three times finer is no better: the same details, 1 um more RMS
 # of a pixel: standard deviation of the aperture; at 0.35 the gaps of small engravings stay open; by trial
 APERTURE_PX = 0.6
 INK = 0.5  # darker is ink
+FULL, BETWEEN = (
+    0.75,
+    0.03,
+)  # darkness; share of pixels that are neither paper nor ink, on a hard picture
 DARKER = 80.0  # percentile of the ink's pixels, as of the strokes whose contrast is 1 (see `contrast`)
 MOST_PX = 1 << 22  # of a sheet, before: large sheets are no coarse scans, and need the memory
 # pixels, as `noise.Within` says: a line of 1.5 looks 1.8 to 2.12 wide, one of 2 looks 2.16 or more; by trial
@@ -56,11 +60,11 @@ def times_finer(darkness: Darkness, width_px: float) -> int:
 def finer(darkness: Darkness, times: int, seen_px: float = math.inf) -> Darkness:
     """The darkness behind a wider aperture, on pixels so many times finer; of lines that look so wide.
 
-    The aperture leaves little more than half of the darkness of a line of a pixel, and less where pixels
-    touch by their corners only: ink is as dark as before.
+    The aperture leaves little more than half of the darkness of a hard line of a pixel, and less where pixels
+    touch by their corners only: such ink is as dark as before.
     """
     soft = np.asarray(cv2.GaussianBlur(darkness, (0, 0), APERTURE_PX), np.float32)
-    if seen_px < SEEN_PX:
+    if seen_px < SEEN_PX and _is_hard(darkness):
         soft /= _left_of(darkness, soft)
     larger = cv2.resize(soft, None, fx=times, fy=times, interpolation=cv2.INTER_LANCZOS4)
     return np.asarray(larger, np.float32)
@@ -78,6 +82,12 @@ def note(seen_px: float, pitch_mm: float) -> str:
         f"{DETAIL_PX * pitch_mm:.2g} mm may be cut off, and the path strays where lines touch; scan at "
         f"{wanted_dpi(pitch_mm)} dpi, or save the drawing so much larger"
     )
+
+
+def _is_hard(darkness: Darkness) -> bool:
+    """Whether pixels are paper or ink, and hardly any lies between: no lens has softened the lines."""
+    not_paper = darkness[darkness > 1 - FULL]
+    return bool(np.mean(not_paper < FULL) < BETWEEN)
 
 
 def _left_of(darkness: Darkness, soft: Darkness) -> np.float32:

@@ -11,6 +11,7 @@ import pytest
 
 from morfax.jobs.scale_doubts import scale_doubts
 from morfax.motion.contour import distance
+from morfax.tracer.drawing.coarse import finer
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
@@ -74,6 +75,15 @@ def test_sloping_lines_of_a_hard_pixel_do_not_fall_to_pieces(beside: bool) -> No
     off = distance(run.xy_mm[::4], around)
     assert off.path_to_reference.rms_mm < 0.25 * PIXEL_MM
     assert off.reference_to_path.max_mm < PIXEL_MM
+
+
+def test_only_hard_lines_are_made_as_dark_as_before() -> None:
+    hard = np.zeros((40, 40), np.float32)
+    hard[np.arange(5, 35), np.arange(5, 35)] = 1.0
+    soft = cv2.GaussianBlur(hard, (0, 0), 0.4)
+    corner = slice(20, 60), slice(20, 60)
+    assert finer(hard, 2, 1.0)[corner].max() > 0.95
+    assert np.array_equal(finer(soft, 2, 1.0), finer(soft, 2))
 
 
 def test_a_fine_scan_stays_as_it_is() -> None:
