@@ -80,9 +80,10 @@ def test_sloping_lines_of_a_hard_pixel_do_not_fall_to_pieces(beside: bool) -> No
 def test_only_hard_lines_are_made_as_dark_as_before() -> None:
     hard = np.zeros((40, 40), np.float32)
     hard[np.arange(5, 35), np.arange(5, 35)] = 1.0
-    soft = cv2.GaussianBlur(hard, (0, 0), 0.4)
-    corner = slice(20, 60), slice(20, 60)
-    assert finer(hard, 2, 1.0)[corner].max() > 0.95
+    soft = cv2.GaussianBlur(hard, (0, 0), 0.7)
+    # the palest place along the line: half of the ink's darkness parts it
+    along = finer(hard, 2, 1.0)[20:60, 20:60].max(axis=0)
+    assert along.min() > 0.6
     assert np.array_equal(finer(soft, 2, 1.0), finer(soft, 2))
 
 
