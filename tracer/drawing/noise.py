@@ -42,8 +42,8 @@ FEWEST_PROFILES = 20  # fewer tell nothing: there is hardly a line
 STEP_PX = 0.5  # between the samples of a profile: edges are no sharper than a pixel
 BESIDE_PX = 6.0  # of paper to each side of a profile, and half a width of the line
 SLOPE_PX = 1.5  # to both sides of an edge, for its direction
-# darkness per pixel: flatter at both edges is a line of a pixel that no lens has softened, beyond which both
-# places lie on paper; they are nearer there. A soft line of that width has 0.3
+# darkness per pixel: where most are flatter at both edges, they are lines of a pixel that no lens has softened,
+# beyond which both places lie on paper; they are nearer there. A soft line of that width has 0.3
 FLAT, THIN_PX = 0.1, 0.75
 OBLIQUE = 0.5  # cosine: a row or column that meets a line flatter than 60 degrees is left out
 PAPER = 0.25  # lighter is paper, and nothing else is drawn there
@@ -167,10 +167,12 @@ def _profiles(darkness: NDArray[np.float32] | Tiles) -> _Profiles | None:
     if len(places) < FEWEST_PROFILES:
         return None
     # 1. square to the edges that the row or column has met
-    across = _slope(darkness, places[:, :, 0]) - _slope(darkness, places[:, :, 1])
-    thin = np.hypot(*across.T) < FLAT
-    across[thin] = _slope(darkness, places[thin, :, 0], THIN_PX)
-    across[thin] -= _slope(darkness, places[thin, :, 1], THIN_PX)
+    ends = [_slope(darkness, places[:, :, k]) for k in (0, 1)]
+    thin = np.hypot(*(ends[0] - ends[1]).T) < FLAT
+    if np.median(thin):
+        for k in (0, 1):
+            ends[k][thin] = _slope(darkness, places[thin, :, k], THIN_PX)
+    across = ends[0] - ends[1]
     across /= np.maximum(np.hypot(*across.T), 1e-9)[:, None]
     met = places[:, :, 1] - places[:, :, 0]
     length_px = np.hypot(*met.T)
