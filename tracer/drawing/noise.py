@@ -42,8 +42,8 @@ FEWEST_PROFILES = 20  # fewer tell nothing: there is hardly a line
 STEP_PX = 0.5  # between the samples of a profile: edges are no sharper than a pixel
 BESIDE_PX = 6.0  # of paper to each side of a profile, and half a width of the line
 SLOPE_PX = 1.5  # to both sides of an edge, for its direction
-# darkness per pixel: where most are flatter at both edges, they are lines of a pixel that no lens has softened,
-# beyond which both places lie on paper; they are nearer there. A soft line of that width has 0.3
+# darkness per pixel: where most are flatter at both edges, they are lines of a pixel that no lens has
+# softened, beyond which both places lie on paper; they are nearer there. A soft line of that width has 0.3
 FLAT, THIN_PX = 0.1, 0.75
 OBLIQUE = 0.5  # cosine: a row or column that meets a line flatter than 60 degrees is left out
 PAPER = 0.25  # lighter is paper, and nothing else is drawn there
