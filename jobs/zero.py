@@ -138,7 +138,7 @@ def figures(zero: Zero, placement: Placement) -> Figures:
 
 def said_by(program: FilePath) -> Place | None:
     """Where on the sheet the zero of a program of ours is, as its head says; None if it does not say so."""
-    from morfax.player.gcode.rs274 import text_of
+    from morfax.player.gcode.gcode_text import text_of
     from morfax.recorder.gcode.program_head import zero_on_sheet_mm
 
     if not medium.is_gcode(program):

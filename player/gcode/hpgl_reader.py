@@ -24,8 +24,8 @@ import re
 import numpy as np
 
 from morfax.motion.faults import ProgramFault
+from morfax.player.gcode.gcode_text import text_of
 from morfax.player.gcode.moves import LINE, RAPID, Move, Program
-from morfax.player.gcode.rs274 import text_of
 from morfax.recorder.drawings.curve_chords import FLAT_MM, bulged
 from morfax.recorder.gcode.machine import Machine
 

@@ -27,9 +27,10 @@ from pathlib import Path as FilePath
 
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.arc_words import ArcLimits
+from morfax.player.gcode.gcode_text import COMMENT, text_of
 from morfax.player.gcode.hpgl_reader import ABOVE_MM, read_hpgl
 from morfax.player.gcode.moves import RAPID, Move, Program
-from morfax.player.gcode.rs274 import COMMENT, GcodeReader, parse_rs274, text_of
+from morfax.player.gcode.rs274 import GcodeReader, parse_rs274
 from morfax.player.gcode.tool_state import TORCH, ToolState
 from morfax.recorder.gcode.machine import HPGL, Machine, machine, names
 from morfax.recorder.gcode.program_text import END

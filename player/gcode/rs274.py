@@ -25,12 +25,11 @@ to be as far from both.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Sequence
-from pathlib import Path as FilePath
 
-from morfax.motion.faults import FileFault, ProgramFault
+from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.arc_words import OURS, ArcWords, Place, WordError
+from morfax.player.gcode.gcode_text import COMMENT, WORD, text_of
 from morfax.player.gcode.modal_groups import BLENDING, CODES, DISTANCE, MOTION, READ, UNITS
 from morfax.player.gcode.moves import (
     CLOCKWISE,
@@ -41,15 +40,10 @@ from morfax.player.gcode.moves import (
     Move,
     Program,
 )
-from morfax.recorder.gcode.check_sum import demand_right
 
 INCH_MM = 25.4
 LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
 
-BYTE_ORDER_MARK = "\ufeff"
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
-WORD = re.compile(f"([A-Z])({_NUMBER})")
-COMMENT = re.compile(r"\([^()]*\)|;.*")
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
 
@@ -59,43 +53,6 @@ def read_rs274(
 ) -> Program:
     """Read a program; raises ProgramFault with line and word, FileFault for an unreadable file."""
     return parse_rs274(text_of(file).split("\n"), str(file), start_mm)
-
-
-def text_of(file: str | os.PathLike[str]) -> str:
-    """The text of a program; raises ProgramFault (no text, a wrong check sum), FileFault (unreadable).
-
-    Comments may hold what they like, in UTF-8 or with a byte to a character; all else is ASCII.
-    """
-    try:
-        raw = FilePath(file).read_bytes()
-    except OSError as error:
-        raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
-    try:
-        text = raw.decode("utf-8")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    if not text.isascii():
-        _demand_ascii_words(text.split("\n"), str(file))
-    demand_right(text, str(file))
-    return text
-
-
-def _demand_ascii_words(lines: Sequence[str], name: str) -> None:
-    """Raise ProgramFault for the first character outside of comments that is not one of ASCII."""
-    for number, line in enumerate(lines, 1):
-        if line.isascii() or (words := COMMENT.sub("", line)).isascii():
-            continue
-        at = next(character for character in words if not character.isascii())
-        if at == BYTE_ORDER_MARK:
-            raise ProgramFault(
-                f"{name} begins with a byte-order mark, which controls refuse; save it as UTF-8 without one",
-                line=number,
-            )
-        raise ProgramFault(
-            f"{name}, line {number}: this is no text: {at!r} stands outside a comment; a program is lines"
-            " such as G1 X10 Y5 F600, and letters such as ä may stand in ( ) or behind ;",
-            line=number,
-        )
 
 
 def parse_rs274(

@@ -14,7 +14,7 @@ import re
 from typing import NamedTuple
 
 from morfax.player.gcode.check.findings import Findings
-from morfax.player.gcode.rs274 import WORD
+from morfax.player.gcode.gcode_text import WORD
 from morfax.recorder.gcode.machine import Machine
 
 _COMMENT = re.compile(r"\(([^)]*)(\)|$)|;.*")
