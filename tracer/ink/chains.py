@@ -44,7 +44,12 @@ def solved(sheet: FeltSheet) -> Junctions:
     A stretch that turns out to be two lines that run together lies within a junction, or is too long for
     that; then all is asked anew, for these two may be what goes along another stretch.
     """
-    parted, two, bare = set[int](), set[int](), set[int]()
+    cut = sheet.doubled.cut
+    parted, two, bare = set(cut), set(cut), set[int]()
+    sheet.widths_mm[:] = [
+        sheet.doubled.pen_mm if n in cut else width_mm
+        for n, width_mm in enumerate(sheet.widths_mm)
+    ]
     doubled = sheet.doubled.throughout(sheet.felt)
     known = dict[Hashable, Crossing]()
     for _ in range(SOLVED_AGAIN):

@@ -55,6 +55,11 @@ CROSSED = 3.0, 6.0
 # ... is so much of that between the two, or more: of lines that only touch, as a parabola does, a third
 LEVEL_OFF = 0.45
 FROM_ENDS = 10.0  # widths: within them two lines that share a stretch have begun to
+HALF = 0.5  # of a short piece's stations tell its width
+CUT_WIDTHS = 1.8  # of its own: a shorter piece is where others cross
+ALIKE = 0.15  # of its width: a piece of the same two lines is about as broad, and as broad all along
+STRAIGHT_COS = 0.98  # 11 degrees
+PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the same two lines
 FEWEST = 10  # stations that tell a width
 LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 
@@ -64,6 +69,9 @@ class Doubled(NamedTuple):
 
     pen_mm: float = math.nan
     stations: dict[int, Flags] = {}  # noqa: RUF012 - a NamedTuple's default, never written to
+    cut: frozenset[int] = (
+        frozenset()
+    )  # short pieces of the same lines, between others that cross them
 
     @classmethod
     def of(cls, felt: Sequence[Run]) -> Doubled:
@@ -84,7 +92,7 @@ class Doubled(NamedTuple):
         doubled = {n for n in broad if not _is_even(found[n].averaged)}
         while more := {n for n in broad.keys() - doubled if _goes_on(felt, n, doubled, pen_mm)}:
             doubled |= more
-        return cls(pen_mm, {n: broad[n] for n in sorted(doubled)})
+        return cls(pen_mm, {n: broad[n] for n in sorted(doubled)}, _cut(felt, doubled, pen_mm))
 
     def length_mm(self, felt: Sequence[Run], number: int) -> float:
         """The length of the ink of a stretch that two lines share, mm."""
@@ -177,6 +185,60 @@ def _goes_on(felt: Sequence[Run], number: int, doubled: set[int], pen_mm: float)
     others = np.array([felt[n].places_mm[[0, -1]] for n in doubled]).reshape(-1, 2)
     apart = ends[:, None] - others[None]
     return bool(np.any(np.hypot(apart[..., 0], apart[..., 1]) < ABOUT * pen_mm))
+
+
+def _cut(felt: Sequence[Run], doubled: set[int], pen_mm: float) -> frozenset[int]:
+    """Pieces that are too short to be told as doubled by themselves, between doubled ink straight on."""
+    kept = {n for n, run in enumerate(felt) if n not in doubled and _is_piece(run, pen_mm)}
+    before = set[int]()
+    while kept != before:
+        before, both = kept, [*kept, *doubled]
+        kept = {
+            n
+            for n in kept
+            if all(
+                any(m != n and _is_straight_on(run, felt[m], pen_mm) for m in both)
+                for run in (felt[n], felt[n].turned_round())
+            )
+        }
+    return frozenset(kept)
+
+
+def _is_piece(run: Run, pen_mm: float) -> bool:
+    """Whether a stretch may be a piece of two lines: about as broad all along, and not where others cross."""
+    known = run.widths_mm[np.isfinite(run.widths_mm)]
+    if len(known) < HALF * len(run):
+        return False
+    low_mm, usual_mm, high_mm = np.percentile(known, (25, 50, 75))
+    is_two = SHARED * pen_mm < usual_mm < TWO * pen_mm
+    is_even = high_mm - low_mm < ALIKE * usual_mm
+    return bool(is_two and is_even and run.length_mm > CUT_WIDTHS * usual_mm)
+
+
+def _is_straight_on(run: Run, other: Run, pen_mm: float) -> bool:
+    """Whether another stretch, about as broad there, lies straight on from a run's last place."""
+    way, near = (
+        run.places_mm[-1] - run.places_mm[0],
+        round(0.5 * PAST * pen_mm / other.view.step_mm),
+    )
+    for onward, widths in (
+        (other.places_mm, other.widths_mm[:near]),
+        (other.places_mm[::-1], other.widths_mm[-near:]),
+    ):
+        gap, far = onward[0] - run.places_mm[-1], onward[-1] - onward[0]
+        if (
+            math.hypot(*gap) < PAST * pen_mm
+            and min(_cos(way, far), _cos(way, gap + far)) > STRAIGHT_COS
+            and abs(np.nanmedian(run.widths_mm) / np.nanmedian(widths) - 1) < ALIKE
+        ):
+            return True
+    return False
+
+
+def _cos(one: Array, other: Array) -> float:
+    """The cosine of the angle between two directions; 0 where one is none."""
+    sizes = math.hypot(*one) * math.hypot(*other)
+    return float(one @ other) / sizes if sizes > 0 else 0.0
 
 
 def strands(stations: Run, width_mm: float) -> list[Run]:

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -37,7 +38,10 @@ CORNERED = math.radians(30)  # a corner counts as turning so much more: a smooth
 STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning so much more
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
-MOST_LEGS = 10  # 945 pairings; of more legs the straightest pairs are taken one after the other
+MOST_LEGS = (
+    10  # 945 pairings; of more legs the straightest are paired first, and partners exchanged
+)
+NOBODY, ROUNDED = -1, 1e-9
 
 Pair = tuple[int, int]
 
@@ -51,7 +55,7 @@ def partners(legs: Sequence[Leg], width_mm: float) -> list[Pair]:
         for b in range(a + 1, count):
             costs[a, b] = costs[b, a] = _turning(legs[a], legs[b], middle, width_mm)
     if count > MOST_LEGS:
-        return _straightest_first(costs)
+        return _exchanged(_straightest_first(costs), costs)
     best = min(_pairings(tuple(range(count))), key=lambda pairs: _cost(pairs, costs))
     return [pair for pair in best if math.isfinite(costs[pair])]
 
@@ -160,3 +164,36 @@ def _straightest_first(costs: Array) -> list[Pair]:
         pairs.append((int(a), int(b)))
         left[[a, b]] = left[:, [a, b]] = math.inf
     return pairs
+
+
+def _exchanged(pairs: list[Pair], costs: Array) -> list[Pair]:
+    """Pairs whose partners were exchanged as long as two of them are the better for it."""
+    paired = {leg for pair in pairs for leg in pair}
+    alone = [leg for leg in range(len(costs)) if leg not in paired]
+    # a leg without a partner is a pair with nobody
+    now = [*pairs, *((leg, NOBODY) for leg in alone)]
+    is_better = True
+    while is_better:
+        is_better = False
+        for one, other in combinations(range(len(now)), 2):
+            (a, b), (c, d) = now[one], now[other]
+            for tried in (((a, c), (b, d)), ((a, d), (b, c))):
+                if _cost_of(tried, costs) < _cost_of((now[one], now[other]), costs) - ROUNDED:
+                    now[one], now[other] = tried
+                    is_better = True
+    return [(min(pair), max(pair)) for pair in now if _is_joined(pair, costs)]
+
+
+def _is_joined(pair: Pair, costs: Array) -> bool:
+    """Whether a pair is two legs that are one line."""
+    return NOBODY not in pair and math.isfinite(costs[pair])
+
+
+def _cost_of(pairs: tuple[Pair, ...], costs: Array) -> float:
+    """What some pairs cost, rad²; half as much as two legs that are not joined if there is but one."""
+    return sum(
+        min(costs[pair] ** 2, NOT_JOINED)
+        if NOBODY not in pair
+        else 0.5 * NOT_JOINED * sum(leg != NOBODY for leg in pair)
+        for pair in pairs
+    )

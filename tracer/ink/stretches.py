@@ -216,7 +216,7 @@ def _line_widths(
 ) -> list[float]:
     """The width of the line of each stretch, mm: its own, and of a short one that of those beside it."""
     graph, felt, at = straight.graph, straight.felt, straight.at
-    lengths, own, _ = zip(*measured, strict=True) if measured else ((), (), ())
+    lengths, own, known = zip(*measured, strict=True) if measured else ((), (), ())
     if settings.line_width_mm:
         return [settings.line_width_mm] * len(own)
     found = []
@@ -235,7 +235,9 @@ def _line_widths(
             further = {
                 m for k in beside for node in graph.stretches[k].nodes for m in at.get(node, ())
             } - {n} or {n}
-        found.append(_weighted_median([own[m] for m in further], [lengths[m] for m in further]))
+        # a hair on which no cell felt two edges has no width to tell
+        telling = [m for m in further if known[m] > 0] or [n]
+        found.append(_weighted_median([own[m] for m in telling], [lengths[m] for m in telling]))
     return found
 
 

@@ -54,6 +54,21 @@ def test_two_lines_nearer_than_a_width_are_two_strokes(crossed: bool) -> None:
         assert away_mm < 0.25 * WIDTH_MM  # the other line is up to three widths away
 
 
+def test_two_lines_that_others_cut_into_short_pieces_are_two_strokes() -> None:
+    """They lie about 0.3 mm apart; pieces of 2.5 mm of their ink are too short to be told by themselves."""
+    along = np.linspace(-1, 1, 400)
+    apart_mm = 0.3 + 0.05 * along + 12 * np.maximum(np.abs(along) - 0.6, 0) ** 2
+    pair = [np.column_stack([30 + 25 * along, 20 + side * apart_mm / 2]) for side in (1, -1)]
+    across = [polyline((x, 10), (x, 30)) for x in (27.5, 30, 32.5)]
+    found = trace_ink(inked(*pair, *across, CLEAR, seed=1))
+    run_mm = sum(line.length_mm for line in found.lines)
+    assert run_mm == pytest.approx(sum(map(length_mm, (*pair, *across, CLEAR))), rel=0.01)
+    # one stroke between both would be 0.15 mm from either
+    places = np.vstack([line.places_mm for line in found.lines])
+    for line in pair:
+        assert nearest_mm(line[np.abs(along) < 0.1], places).max() < 0.1 * WIDTH_MM
+
+
 def test_the_ledger_counts_the_line_that_no_second_stroke_follows() -> None:
     drawing = inked(*near_lines(crossed=True), CLEAR, seed=1)
     left = ink_left(drawing.sheet)

@@ -79,5 +79,16 @@ def test_bends_are_allowed_for() -> None:
     assert paired(legs) == {frozenset({0, 2}), frozenset({1, 3})}
 
 
+def test_of_many_lines_each_has_its_own_partner() -> None:
+    """Six lines through one place. One leg is off by so much that it is straighter on from its neighbour's
+    partner: taken first, that pair would leave two legs that are no line.
+    """
+    turns = [0.0, 12.0, 45.0, 80.0, 115.0, 150.0]
+    legs = [leg(turn, 1.5) for turn in turns] + [leg(turn + 180, 1.5) for turn in turns]
+    assert paired(legs) == {frozenset({k, k + 6}) for k in range(6)}
+    legs[1], legs[6] = leg(6.0, 1.5), leg(186.5, 1.5)
+    assert paired(legs) == {frozenset({k, k + 6}) for k in range(6)}
+
+
 def test_the_meeting_place_is_nearest_to_all_lines() -> None:
     assert meeting_place([leg(10), leg(100), leg(250)]) == pytest.approx([0, 0], abs=1e-9)
