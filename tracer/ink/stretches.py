@@ -14,7 +14,7 @@ Source: our own.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -219,7 +219,13 @@ def _line_widths(
     lengths, own, known = zip(*measured, strict=True) if measured else ((), (), ())
     if settings.line_width_mm:
         return [settings.line_width_mm] * len(own)
-    found = []
+
+    def of_some(some: Iterable[int]) -> float | None:
+        """The width that most of some stretches have; a hair on which no cell felt two edges tells none."""
+        telling = [m for m in some if known[m] > 0]
+        return _weighted_median([own[m] for m in telling], [lengths[m] for m in telling])
+
+    found, usual_mm = list[float](), of_some(range(len(own)))
     for n, stretch in enumerate(graph.stretches):
         if (
             lengths[n] > SHORT_WIDTHS * own[n]
@@ -235,9 +241,7 @@ def _line_widths(
             further = {
                 m for k in beside for node in graph.stretches[k].nodes for m in at.get(node, ())
             } - {n} or {n}
-        # a hair on which no cell felt two edges has no width to tell
-        telling = [m for m in further if known[m] > 0] or [n]
-        found.append(_weighted_median([own[m] for m in telling], [lengths[m] for m in telling]))
+        found.append(of_some(further) or usual_mm or own[n])
     return found
 
 
@@ -284,8 +288,10 @@ class StraightOn:
         return np.asarray(chord / max(float(np.hypot(*chord)), 1e-9))
 
 
-def _weighted_median(values: list[float], weights: list[float]) -> float:
-    """The value below which lies half of the weight."""
+def _weighted_median(values: list[float], weights: list[float]) -> float | None:
+    """The value below which lies half of the weight; None of none."""
+    if not values:
+        return None
     order = np.argsort(values)
     sums = np.cumsum(np.asarray(weights)[order])
     return float(np.asarray(values)[order][np.searchsorted(sums, 0.5 * sums[-1])])
