@@ -14,7 +14,7 @@ Source: patent ES 361967, section on use: the operator brings the head over the 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
@@ -24,6 +24,7 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following import knots
+from morfax.tracer.following.branches import Branches
 from morfax.tracer.following.direction import Direction, goes, turned_about, turned_to
 from morfax.tracer.following.edge_check import kept_to
 from morfax.tracer.following.edge_follower import EdgeFollower
@@ -71,6 +72,7 @@ class Attempts:
     other_turns: bool = True  # tried where straight on does not come back
     tips: bool = False  # go back from a tip in which two lines end
     by_stations: bool = False  # the slow cell does not lead
+    branches: Branches = field(default_factory=Branches)
 
     def run(self, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
         """Follow from a stance, with other turns at the junctions of those numbers."""
@@ -78,12 +80,15 @@ class Attempts:
         told_turns = tuple(turn.enlarged(times) for turn in self.drawing.told_turns)
         wanted = Turns(turns, self.sides, self.tips, self.by_stations, told_turns)
         follower, keep = self._taken_up(stance, wanted)
+        branch, before = self.branches.head(stance, wanted)
+        follower = follower or branch
         if follower is None:
             put_down = enlarged(stance, times)
             kind = EdgeFollower if put_down.view.on_edge else Follower
             follower = kind(put_down, self.settings, MOTION_RATE_HZ, wanted)
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
-        run = reduced(follower.follow(times * self.longest_mm, reduced_told, keep))
+        run = reduced(follower.follow(times * self.longest_mm, reduced_told, keep, before))
+        self.branches.ended(follower)
         return kept_to(self.drawing.edges_mm, run)
 
     def _taken_up(self, stance: Stance, turns: Turns) -> tuple[Follower | None, Keep | None]:
@@ -181,7 +186,7 @@ class Attempts:
 
     def _with_doubts(self, stance: Stance, run: Followed) -> Followed:
         """A closed run with the ink that it left out where another way would have fitted as well: the longest
-        of at most `DOUBTS` more runs.
+        of at most `DOUBTS` more runs. It is not looked for beyond one that leaves no such ink out.
         """
         best, tried = run, 0
         open_runs: list[tuple[Followed, tuple[int, ...]]] = [(run, ())]
@@ -189,7 +194,7 @@ class Attempts:
             longest = int(np.argmax([some.travel_mm for some, _ in open_runs]))
             run, turns = open_runs.pop(longest)
             for number, rank in run.doubts if run.ending == "closed" else ():
-                if number in turns or tried == DOUBTS:
+                if number in turns or tried == DOUBTS or not best.doubts:
                     continue
                 more = (*turns, *(number,) * rank)
                 other, tried = self.run(stance, more), tried + 1

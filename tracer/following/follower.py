@@ -15,18 +15,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from morfax.motion.faults import LineFault
 from morfax.tracer.following import clean_line, lost
 from morfax.tracer.following.agreement import Agreement
 from morfax.tracer.following.felt_line import (
-    Anchor,
     clean_from,
     felt_ahead,
     nearest_station,
     slow_stretch,
     trail_behind,
 )
-from morfax.tracer.following.followed import Followed, without_repeat
+from morfax.tracer.following.followed import Followed
+from morfax.tracer.following.run_ends import RunEnds
 from morfax.tracer.following.way_home import WayHome
 from morfax.tracer.following.ways_out import (
     STRAIGHT_ON,
@@ -48,7 +47,6 @@ from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.junctions.width_change import of_another_pen
 from morfax.tracer.marks.dots import dot_at_end
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of
-from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.tangles.memory import Tangles
 from morfax.tracer.tangles.solution import Approach
 
@@ -57,7 +55,7 @@ SWELLS = 0.5
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
 
 
-class Follower:
+class Follower(RunEnds):
     """A head on a line of a drawing."""
 
     def __init__(
@@ -66,7 +64,8 @@ class Follower:
         """Put a head down at a stance, and tell it how to leave the junctions."""
         self.view, self.settings = stance.view, settings
         self._ways_out = WaysOut(turns, stance.reference_mm is not None)
-        self._at_tip = self._went_slowly = False
+        self._at_tip = self._went_slowly = self._at_junction = False
+        self._tip = None
         self.carriage = Carriage(stance, settings, rate_hz)
         self._tangles = Tangles()
         self._agreement = Agreement(by_stations=turns.by_stations)
@@ -74,9 +73,14 @@ class Follower:
         self._home = WayHome(stance, max(by_lead_mm, AWAY_WIDTHS * self.view.width_mm))
         self._aim(stance.leg_ahead())
 
-    def take_up(self, turns: Turns) -> None:
-        """Take up an earlier run where its copy was kept, and tell the head other turns."""
-        self._ways_out.turns = turns
+    @property
+    def junction(self) -> int:
+        """The number of a junction to which the head comes here."""
+        return self._ways_out.junctions.next(self.carriage.travel_mm)
+
+    def take_up(self, turns: Turns, *, at_junction: bool = False) -> None:
+        """Take up an earlier run where its copy was kept, or at its end, and tell the head other turns."""
+        self._ways_out.turns, self._at_junction = turns, at_junction
         self.carriage.taken_up()
 
     def follow(
@@ -84,24 +88,34 @@ class Follower:
         longest_mm: float,
         told: Callable[[float], None] | None = None,
         keep: Callable[[Follower], None] | None = None,
+        before: Callable[[Follower], None] | None = None,
     ) -> Followed:
-        """Follow until the line closes, ends or is lost; `told` hears the travel, mm, `keep` may copy."""
+        """Follow until the line closes, ends or is lost; `told` hears the travel, mm; `keep` may copy the
+        head on its way, `before` before each junction.
+        """
         home, on_mm = self._home.for_kernel(), 0.0 if keep is not None else longest_mm
         if not (self.carriage.hears(self.view) or self.settings.direct_rad_s_mm > 0):
             return self._lost(lost.CONTRADICT, lost.CHECK_CELL)
-        while self.carriage.travel_mm < longest_mm:
+        ending = self._on_from_there()
+        while ending is None and self.carriage.travel_mm < longest_mm:
             if keep is not None:
                 keep(self)
             knows = clean_line.Knows(home, self._anchor, self._ways_out.turns, on_mm)
             self.view, why = clean_line.follow(self.carriage, self.view, knows)
             if told is not None:
                 told(self.carriage.travel_mm)
-            ending = self._after(why)
-            if ending is not None:
-                return ending
-        return self._lost("the head has gone round without coming back to its start")
+            ending = self._after(why, before)
+        return ending or self._lost("the head has gone round without coming back to its start")
 
-    def _after(self, why: int) -> Followed | None:
+    def _on_from_there(self) -> Followed | None:
+        """Go on where an earlier run was taken up, if that was at a junction or at a tip."""
+        if self._at_junction:
+            self._at_junction = False
+            return self._through_junction()
+        self._on_from_tip()
+        return None
+
+    def _after(self, why: int, before: Callable[[Follower], None] | None) -> Followed | None:
         """What the head does where its carriage has stopped; returns what it did, if that was the end."""
         if why == HOME:
             return self._go_home()
@@ -115,6 +129,8 @@ class Follower:
             return None
         if self.settings.direct_rad_s_mm > 0:
             return self._lost(lost.NO_GUARDS, lost.SLOWER)
+        if before is not None:
+            before(self)
         return self._through_junction()
 
     def _through_junction(self) -> Followed | None:
@@ -201,45 +217,6 @@ class Follower:
         """What plans the way on from where the head stands."""
         return Planner(self.view, self.carriage.stands(), self.carriage.trail, self.settings)
 
-    def _at_end(self, incoming: Leg, choices: int) -> Followed | None:
-        """Run to the end of the line, or to where it meets what was followed before."""
-        end = end_of(self.view, incoming)
-        if end is None and choices:
-            end = 0.0  # all that leads on has been followed
-        if end is None:
-            return self._lost("no clean line leads on through the ink ahead")
-        if self._home.is_across(incoming, end, self.settings.recatch_mm):
-            # across the paper, to the end at which the head began
-            way = [course.to_end(self.carriage.stands(), incoming, end)]
-            self.carriage.run(way, self.settings.speed_mm_s, STATIONS)
-            return self._go_home()
-        return self._end(incoming, end, joined=choices > 0)
-
-    def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
-        """Run to an end of the line; and back, if it is a guide line's end, or a tip where two lines end."""
-        self.carriage.run(
-            [course.to_end(self.carriage.stands(), incoming, end_mm)], leader=STATIONS
-        )
-        self._at_tip = self._tangles.goes_back(
-            self.carriage.stands()[0], self.carriage.trail, self.view.width_mm
-        )
-        to_tip = self._at_tip and self._ways_out.turns.back_from_tips
-        if joined and not to_tip:
-            return self._done("joined")
-        on_guide = self._ways_out.junctions.turn_round(self.carriage.count)
-        if not on_guide and not to_tip:
-            return self._done("ended")
-        self.carriage.swivel(incoming.heading_at(end_mm) + math.pi)
-        way_back = [course.along_leg(incoming, end_mm, 0.0)]
-        self.carriage.run(way_back, self.settings.speed_mm_s, STATIONS)
-        self._aim(incoming.turned_round())
-        return None
-
-    def _go_home(self) -> Followed:
-        """Run onto the place where the head began."""
-        self.carriage.run([self._home.way_from(self.carriage)])
-        return self._done("closed")
-
     def _pass(self, plan: Plan) -> Followed | None:
         """Run a course and go on following at its end; or stop at home if the course passes home."""
         cut = self._home.on_course(plan.stretches, self.carriage.travel_mm, self.view.width_mm)
@@ -262,37 +239,3 @@ class Follower:
         why = self.carriage.follow_slowly(self.view, self._home.for_kernel(), stretch)
         self._went_slowly |= why is not None
         return why
-
-    def _aim(self, leg: Leg, clean_from: Anchor | None = None) -> None:
-        """Follow from the clean end of a leg; the line is clean from there, or from further back."""
-        self.carriage.aim(self.view, leg)
-        self._anchor = clean_from or (leg.end_mm, leg.heading_rad, self.carriage.travel_mm)
-
-    def _done(self, ending: str, fault: LineFault | None = None) -> Followed:
-        """What the head did in all."""
-        positions, junctions = self.carriage.positions_mm, self._ways_out.junctions
-        done = Followed(
-            positions,
-            ending,
-            self.carriage.heading_rad,
-            self.carriage.travel_mm,
-            self.view,
-            tuple(junctions.places_mm),
-            fault,
-            guides=junctions.guides(positions),
-            at_tip=self._at_tip,
-            went_slowly=self._went_slowly,
-            led=self.carriage.led,
-            served=frozenset(self._ways_out.served),
-            doubts=self._tangles.doubts(self.carriage.trail, self.view.width_mm),
-        )
-        return done if ending != "joined" else without_repeat(done)
-
-    def _lost(self, why: str, instead: str = lost.BRIDGE) -> Followed:
-        """The end of a line that was lost: the fault says where, and what to do instead."""
-        self.carriage.says(f"lost: {why}")
-        stands, travel_mm = self.carriage.stands(), self.carriage.travel_mm
-        because = f"{why}; look at the drawing there, {instead}"
-        return self._done(
-            "lost", lost.line_lost(stands, travel_mm, self.view.enlarged, because)
-        )

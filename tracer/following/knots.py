@@ -80,7 +80,7 @@ class _Run:
         if len(self.knots) == MOST_KNOTS:
             del self.knots[1::2]
             self.apart_mm *= 2
-        self.knots.append(_Knot(travel_mm, _copied(head), head.carriage.trail.places()))
+        self.knots.append(_Knot(travel_mm, copied(head), head.carriage.trail.places()))
         return True
 
     def on(self, darkness: Darkness, count: int) -> list[_Knot]:
@@ -88,7 +88,7 @@ class _Run:
         if darkness is self.darkness:
             return self.knots[:count]
         return [
-            replace(knot, head=_copied(knot.head, {id(self.darkness): darkness}))
+            replace(knot, head=copied(knot.head, {id(self.darkness): darkness}))
             for knot in self.knots[:count]
         ]
 
@@ -154,7 +154,7 @@ class Memory:
         if before is None or not count:
             return None, keep
         run.knots, run.apart_mm = before.on(darkness, count), before.apart_mm
-        head = _copied(run.knots[-1].head)
+        head = copied(run.knots[-1].head)
         head.take_up(turns)
         self.replayed_mm += head.carriage.travel_mm
         return head, keep
@@ -218,7 +218,7 @@ def _reach_mm(head: Follower) -> float:
     return turns_mm + LEGS * view.leg_mm + head.carriage.tuning.guard_lead_mm
 
 
-def _copied(head: Follower, other: dict[int, Darkness] | None = None) -> Follower:
+def copied(head: Follower, other: dict[int, Darkness] | None = None) -> Follower:
     """A head that can be moved without moving the first; what it sees and where it was are shared, but for
     `other` ink by the id of the first's.
     """

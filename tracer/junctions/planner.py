@@ -224,8 +224,9 @@ class Planner:
         there = np.vstack([incoming.seen, run.seen])
         if run.back is None:
             nodes, leg = course.nodes_along(self.view, self.stands, there)
-            way = course.through_nodes(nodes)
-            return None if leg is None else Plan([way], leg, run.seen, STATIONS)
+            if leg is None:
+                return None
+            return Plan([course.through_nodes(nodes)], leg, run.seen, STATIONS)
         to_tip, felt = course.nodes_along(self.view, self.stands, there, 0.0)
         tip, onto_tip_rad = run.back[0, :2], to_tip[-1][1]
         from_tip, leg = course.nodes_along(

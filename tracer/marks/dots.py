@@ -100,7 +100,7 @@ def _disc(view: View, place: Array) -> tuple[Array, Array] | None:
         DOT_ROUND,
         DOT_ROUND,
     ):  # at first the place may be off the middle
-        reach = spokes(view, place, largest_mm)[:, 0]
+        reach = spokes(view, place, largest_mm, 1)[:, 0]
         if np.isfinite(reach).mean() <= DOT_EVEN:
             return None
         usual = median(reach[~np.isnan(reach)])

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -52,7 +53,7 @@ class Base(NamedTuple):
     side: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SideStroke:
     """Ink beside the line, felt outward.
 
@@ -73,7 +74,7 @@ class SideStroke:
     @property
     def foot_mm(self) -> float:
         """Where its middle line meets the path, mm along it."""
-        return float(self._line()[1])
+        return float(self._line[1])
 
     @property
     def length_mm(self) -> float:
@@ -83,12 +84,12 @@ class SideStroke:
     @property
     def slant(self) -> float:
         """How far it goes along the path for each mm away from it."""
-        return float(self._line()[0])
+        return float(self._line[0])
 
     @property
     def straight(self) -> bool:
         """Whether it is straight, and near enough to square."""
-        slant, foot = self._line()
+        slant, foot = self._line
         rest = self.middles[:, 0] - foot - slant * self.middles[:, 1]
         return bool(abs(slant) < sizes.SLANT and np.sqrt(np.mean(rest**2)) < sizes.BENT_MM)
 
@@ -97,7 +98,9 @@ class SideStroke:
         """Whether it is drawn as a tick is."""
         return self.ends and self.straight and self.is_clear and self.is_like
 
+    @cached_property
     def _line(self) -> Array:
+        """Slope and offset of its middle line: each stroke is held against many others."""
         return np.polyfit(self.middles[:, 1], self.middles[:, 0], 1)
 
 

@@ -14,8 +14,9 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.tracer.sensing.leg import Leg, leg_of
-from morfax.tracer.sensing.photocell import STEP_PX
+from morfax.tracer.sensing.photocell import STEP_PX, darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
 from morfax.tracer.sensing.view import View
 
@@ -101,13 +102,30 @@ def lines_from(view: View, centre: Array, radius_mm: float) -> int:
     Paper on the way to a stroke is lighter than where the way grazes an edge. A speck of paper does not lie
     on all of the ways side by side.
     """
-    lighter = view.at_level(PAPER * view.level)
-    joined = 0
-    for heading in strokes_on(view, centre, radius_mm).mean(axis=1):
-        way = np.array([math.cos(heading), math.sin(heading)])
-        beside = np.outer(BESIDE * view.width_mm, [-way[1], way[0]])
-        spokes = centre + beside[:, None] + radius_mm * SPOKE[:, None] * way
-        joined += any(all(lighter.dark(place) for place in spoke) for spoke in spokes)
+    headings = strokes_on(view, centre, radius_mm).mean(axis=1)
+    beside_mm, along_mm = BESIDE * view.width_mm, radius_mm * SPOKE
+    lighter = float(PAPER * view.level)
+    return int(_joined(view.cells, lighter, centre, headings, (beside_mm, along_mm)))
+
+
+@njit(cache=True, _nrt=False)
+def _joined(cells, level, centre, headings, ways_mm):  # type: ignore[no-untyped-def]
+    """How many headings from a centre have ink, darker than a level, all along one of some ways: so far
+    beside the heading (to the left), at so many places along it.
+    """
+    (beside_mm, along_mm), joined = ways_mm, 0
+    for heading in headings:
+        c, s = math.cos(heading), math.sin(heading)
+        for beside in beside_mm:
+            x, y, inked = centre[0] - beside * s, centre[1] + beside * c, 0
+            while inked < len(along_mm):
+                along = along_mm[inked]
+                if darkness_at(cells, x + along * c, y + along * s) <= level:
+                    break
+                inked += 1
+            if inked == len(along_mm):
+                joined += 1
+                break
     return joined
 
 

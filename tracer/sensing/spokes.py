@@ -22,23 +22,23 @@ ANGLES = np.arange(SPOKES) * math.tau / SPOKES
 WAYS = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])
 
 
-def spokes(view: View, place: Array, reach_mm: float) -> Array:
-    """Where ink and paper change first and second along each spoke, (SPOKES, 2) mm; NaN beyond reach."""
-    return np.asarray(_changes(view.cells, place, WAYS, reach_mm))
+def spokes(view: View, place: Array, reach_mm: float, changes: int = 2) -> Array:
+    """Where ink and paper change first, second … along each spoke, (SPOKES, changes) mm; NaN beyond reach."""
+    out = np.full((SPOKES, changes), math.nan)
+    _changes(view.cells, place, WAYS, reach_mm, out)
+    return out
 
 
-@njit(cache=True)
-def _changes(cells, place, ways, reach_mm):  # type: ignore[no-untyped-def]
-    """The first two changes along each of some ways from a place, mm."""
-    out = np.full((len(ways), 2), math.nan)
+@njit(cache=True, _nrt=False)
+def _changes(cells, place, ways, reach_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` with the first changes along each of some ways from a place, mm."""
     step = STEP_PX * cells.pitch_mm
     last_mm = reach_mm - step  # the sample after this is the last within reach
     for k in range(len(ways)):
-        spoke = Ray(place[0], place[1], ways[k, 0], ways[k, 1], 0.0)
-        first = crossing_mm(cells, spoke, 0.0, last_mm, 0.0)
-        if math.isnan(first):
-            continue
-        behind = step * (math.floor(first / step) + 1)  # the sample that is past the change
-        out[k, 0] = first
-        out[k, 1] = crossing_mm(cells, spoke, behind, last_mm, 0.0)
-    return out
+        spoke, begin_mm = Ray(place[0], place[1], ways[k, 0], ways[k, 1], 0.0), 0.0
+        for change in range(out.shape[1]):
+            found = crossing_mm(cells, spoke, begin_mm, last_mm, 0.0)
+            if math.isnan(found):
+                break
+            out[k, change] = found
+            begin_mm = step * (math.floor(found / step) + 1)  # the sample that is past it

@@ -1,4 +1,4 @@
-"""The pen: what ink it would leave on a way through a tangle, and the way that leaves the ink that is there.
+"""The pen: what ink it would leave on a way through a tangle.
 
 A strand leads from one leg's clean end to another's. It leaves each along the leg's heading, bends evenly to
 its first vertex, and goes straight between its vertices; without a vertex it is one cubic. A stroke is a
@@ -6,14 +6,11 @@ straight line by itself. A pen of the line's width w leaves on a place at distan
 
     darkness = erfc((d - w/2) / (softness·√2)) / 2
 
-The vertices are moved until the sum over the tangle of what is wrong, squared, is least (Levenberg and
-Marquardt).
+Signals: places and darkness (see `tangle`), poses (x, y, heading) of the legs' ends and vertices, mm and rad,
+in; straight pieces, distances from them and darkness out. To the way that leaves the ink that is there see
+`settling`.
 
-Signals: places and darkness (see `tangle`), poses (x, y, heading) of the legs' ends, mm and rad; vertices in
-and out.
-
-Source: our own. Questions: scipy has a Levenberg and Marquardt too. This one runs in the kernel, on a few
-vertices, some hundred times per tangle; calls from there into Python would take longer than the fit.
+Source: our own.
 """
 
 from __future__ import annotations
@@ -31,14 +28,8 @@ from morfax.tracer.sensing.photocell import darkness_at
 # Chosen by trial on the test drawings.
 PIECES = 6  # straight pieces that a bend is drawn with
 STEEPEST = 0.6  # cosine: a bend that leaves further aside of its chord reaches no further ahead
-NUDGE_MM = 0.01  # by which a vertex is moved to see what that changes
-FARTHEST_MM = 0.3  # a vertex is moved at a time
 SPECK_PX = 1.5  # from the middle of a speck to the ink beside it
 INKED = 3.0  # softnesses from its edge, ink is whole or none: erfc is within 1e-5 of that
-DAMPING, LEAST_DAMPING = 1e-2, 1e-4  # of the step: at first, and at the least
-EASED, DAMPED = 0.3, 4  # times: after a step that was good, and after one that was not
-MOST_DAMPED = 6  # times that a step is tried again, shorter
-LEAST_GAIN = 1e-3  # of what is wrong: a smaller gain ends the fit
 
 
 class Ink(NamedTuple):
@@ -183,71 +174,14 @@ def on_paper_mm(cells, lines, count):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def ink_at(distance_mm, half_mm, softness_mm):  # type: ignore[no-untyped-def]
+    """Darkness that a pen of half a width leaves at a distance from its way."""
+    u = (distance_mm - half_mm) / (math.sqrt(2.0) * softness_mm)
+    return 0.5 * math.erfc(u) if abs(u) < INKED else (0.0 if u > 0 else 1.0)
+
+
+@njit(cache=True)
 def ink(distance_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
     """Darkness that a pen of half a width leaves at distances from its way."""
     for k in range(len(distance_mm)):
-        u = (distance_mm[k] - half_mm) / (math.sqrt(2.0) * softness_mm)
-        out[k] = 0.5 * math.erfc(u) if abs(u) < INKED else (0.0 if u > 0 else 1.0)
-
-
-@njit(cache=True)
-def _wrong(seen, drawn, vertices, lines, out):  # type: ignore[no-untyped-def]
-    """What is drawn too dark at each place, into `out` (2, n) after the distances; the sum of its squares."""
-    distance, wrong = out[0], out[1]
-    distance[:] = seen.known_mm
-    away(seen.places_mm, lines, pieces(drawn, vertices, lines), distance)
-    ink(distance, seen.half_mm, seen.softness_mm, wrong)
-    total = 0.0
-    for k in range(len(wrong)):
-        wrong[k] -= seen.darkness[k]
-        total += wrong[k] * wrong[k]
-    return total
-
-
-@njit(cache=True)
-def _changes(seen, drawn, vertices, lines, now):  # type: ignore[no-untyped-def]
-    """By how much each coordinate of the vertices changes what is wrong at each place, per mm."""
-    change, out = np.empty((2 * len(vertices), len(now))), np.empty((2, len(now)))
-    for i in range(len(change)):
-        old = vertices[i // 2, i % 2]
-        vertices[i // 2, i % 2] = old + NUDGE_MM
-        _wrong(seen, drawn, vertices, lines, out)
-        vertices[i // 2, i % 2] = old
-        change[i] = (out[1] - now) / NUDGE_MM
-    return change
-
-
-@njit(cache=True)
-def settle(seen, drawn, vertices, rounds):  # type: ignore[no-untyped-def]
-    """Move the vertices (k, 2), in place, to where the pen leaves the ink that is there.
-
-    Returns the sum of squares of what is still wrong.
-    """
-    n = len(seen.places_mm)
-    lines = np.empty((4, most_pieces(drawn, vertices)))
-    out = np.empty((2, n))
-    best = _wrong(seen, drawn, vertices, lines, out)
-    now = out[1].copy()
-    damping = DAMPING
-    for _ in range(rounds if len(vertices) > 0 else 0):
-        # 1. the normal equations
-        change = _changes(seen, drawn, vertices, lines, now)
-        square, right = change @ change.T, change @ now
-        before = best
-        # 2. a step that makes less wrong, damped until it does
-        for _ in range(MOST_DAMPED):
-            damped = square + np.diag(damping * np.diag(square) + 1e-6)
-            step = np.linalg.solve(damped, right)
-            step *= min(1.0, FARTHEST_MM / (np.max(np.abs(step)) + 1e-12))
-            moved = vertices - step.reshape(-1, 2)
-            total = _wrong(seen, drawn, moved, lines, out)
-            if total < best:
-                best, damping = total, max(EASED * damping, LEAST_DAMPING)
-                vertices[:] = moved
-                now[:] = out[1]
-                break
-            damping *= DAMPED
-        # 3. until no step gains much
-        if best > before * (1 - LEAST_GAIN):
-            break
-    return best
+        out[k] = ink_at(distance_mm[k], half_mm, softness_mm)

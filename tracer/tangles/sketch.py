@@ -27,7 +27,7 @@ from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.photocell import darkness_along
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import pen, settling
 from morfax.tracer.tangles.redrawing import (
     DOUBLED,
     NONE,
@@ -103,7 +103,7 @@ class Sketch:
     def settled(self, way: Redrawing, rounds: int = ALL) -> Redrawing:
         """The redrawing with its vertices moved to where they explain the ink best."""
         drawn, vertices = self._drawn(way)
-        left = float(pen.settle(self.ink, drawn, vertices, rounds))
+        left = float(settling.settle(self.ink, drawn, vertices, rounds))
         strands = len(drawn.counts)
         parts = np.split(vertices, np.cumsum([*drawn.counts, *[2] * drawn.strokes]))
         moved = replace(way, vertices=tuple(parts[:strands]), strokes=tuple(parts[strands:-1]))

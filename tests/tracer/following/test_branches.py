@@ -1,0 +1,99 @@
+"""Branches: a run with another turn begins where it leaves an earlier run, and comes to the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following import branches
+from morfax.tracer.following.attempts import Attempts
+from morfax.tracer.following.followed import Followed
+from morfax.tracer.following.start import put_down
+from morfax.tracer.following.ways_out import Turns
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.stance import Stance
+from morfax.tracer.tangles.memory import Tangles
+from tests.tracer.inked import inked, polyline
+
+LONGEST_MM = 150.0
+# a frame with two bars across it: three areas, and four junctions
+LADDER = inked(
+    polyline((6, 6), (60, 6), (60, 26), (6, 26), (6, 6)),
+    polyline((24, 6), (24, 26)),
+    polyline((42, 6), (42, 26)),
+    seed=3,
+)
+OPEN = inked(polyline((6, 6), (40, 6), (40, 20)), seed=2)
+START = (12.0, 6.0)
+
+
+def stance_on(drawing: Drawing) -> Stance:
+    return next(put_down(Sheet.of(drawing), START, Settings()))[0]
+
+
+def attempts_at(drawing: Drawing, *, tips: bool = False) -> Attempts:
+    return Attempts(drawing, Settings(), LONGEST_MM, tips=tips)
+
+
+def assert_same(one: Followed, other: Followed) -> None:
+    """Two runs are the same to the last bit."""
+    assert np.array_equal(one.positions_mm, other.positions_mm)
+    assert (one.ending, one.junctions_mm, one.doubts, one.at_tip) == (
+        other.ending,
+        other.junctions_mm,
+        other.doubts,
+        other.at_tip,
+    )
+
+
+def test_a_run_with_other_turns_leaves_the_run_without_them_at_the_junction() -> None:
+    stance, attempts = stance_on(LADDER), attempts_at(LADDER)
+    straight = attempts.run(stance)
+    assert len(straight.junctions_mm) >= 2
+    ways = set()
+    for turns in ((0,), (1,), (0, 1), (1, 1)):
+        run = attempts.run(stance, turns)
+        assert_same(run, attempts_at(LADDER).run(stance, turns))
+        ways.add(run.travel_mm)
+    assert len(ways) > 1  # the turns lead elsewhere
+    head, _ = attempts.branches.head(stance, Turns((1,)))
+    assert head is not None
+    away_mm = np.hypot(*(head.carriage.stands()[0] - straight.junctions_mm[1]))
+    assert (
+        away_mm < 4.0 < head.carriage.travel_mm
+    )  # near the junction, not where it was put down
+
+
+def test_a_run_from_another_stance_or_with_other_sides_begins_at_the_beginning() -> None:
+    stance, attempts = stance_on(LADDER), attempts_at(LADDER)
+    attempts.run(stance)
+    assert attempts.branches.head(stance_on(LADDER), Turns((1,)))[0] is None
+    assert attempts.branches.head(stance, Turns((1,), sides=("left",)))[0] is None
+    assert attempts.branches.head(stance, Turns((1,), back_from_tips=True))[0] is None
+
+
+def test_a_run_back_from_a_tip_goes_on_where_the_first_run_ended(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The end of the line is taken for a tip; the head goes to and fro as far as it may."""
+    monkeypatch.setattr(Tangles, "goes_back", lambda *_: True)
+    stance, attempts = stance_on(OPEN), attempts_at(OPEN)
+    ended = attempts.run(stance)
+    assert ended.ending == "ended" and ended.at_tip
+    back = replace(attempts, tips=True).run(stance)
+    assert back.travel_mm > 2 * ended.travel_mm
+    assert_same(back, attempts_at(OPEN, tips=True).run(stance))
+    # once only: the head is not there any more
+    assert_same(back, replace(attempts, tips=True).run(stance))
+
+
+def test_no_more_heads_are_kept_than_a_few(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(branches, "MOST_HEADS", 1)
+    stance, attempts = stance_on(LADDER), attempts_at(LADDER)
+    attempts.run(stance)
+    assert attempts.branches.head(stance, Turns((1,)))[0] is None
+    assert attempts.branches.head(stance, Turns((0,)))[0] is not None
