@@ -87,9 +87,9 @@ class Attempts:
             kind = EdgeFollower if put_down.view.on_edge else Follower
             follower = kind(put_down, self.settings, MOTION_RATE_HZ, wanted)
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
-        run = reduced(follower.follow(times * self.longest_mm, reduced_told, keep, before))
-        self.branches.ended(follower)
-        return kept_to(self.drawing.edges_mm, run)
+        run = follower.follow(times * self.longest_mm, reduced_told, keep, before)
+        self.branches.ended(follower, run)
+        return kept_to(self.drawing.edges_mm, reduced(run))
 
     def _taken_up(self, stance: Stance, turns: Turns) -> tuple[Follower | None, Keep | None]:
         """The head of an earlier run that began as this one will, and what keeps its knots; if anybody asks

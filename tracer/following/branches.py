@@ -16,14 +16,14 @@ every run, as long as the attempts at one line go on.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from morfax.tracer.following.knots import copied
 
 if TYPE_CHECKING:
-    from morfax.tracer.following.follower import Follower
+    from morfax.tracer.following.followed import Followed
+    from morfax.tracer.following.follower import Before, Follower
     from morfax.tracer.following.ways_out import Turns
     from morfax.tracer.head.stance import Stance
 
@@ -32,14 +32,30 @@ MOST_HEADS = 128  # kept in all, some 60 kB each; a run that leaves another late
 
 @dataclass(slots=True)
 class _Run:
-    """One run: its stance and turns, the head before each of its junctions, by their numbers, and the head
-    that stands at a tip at which the run ended.
+    """One run: its stance and turns, the head before each of its junctions, by their numbers, the head that
+    stands at a tip at which the run ended, and what the run came to.
     """
 
     stance: Stance
     turns: Turns
     heads: dict[int, Follower] = field(default_factory=dict)
     at_tip: Follower | None = None
+    came_to: Followed | None = None
+
+    def from_there(self, head: Follower, left_at: int) -> Followed | None:
+        """What a run comes to that left this one at a junction, and before the next is where this one was.
+
+        The way out that it took of the first junction is not in doubt; the junction may be taken to be
+        elsewhere.
+        """
+        number = left_at + 1
+        if self.came_to is None or number not in self.heads or head.junction != number:
+            return None
+        if not head.goes_on_as(self.heads[number]):
+            return None
+        doubts = tuple(doubt for doubt in self.came_to.doubts if doubt[0] != left_at)
+        places_mm = head.junctions_mm[:number] + self.came_to.junctions_mm[number:]
+        return replace(self.came_to, doubts=doubts, junctions_mm=places_mm)
 
 
 class Branches:
@@ -48,26 +64,30 @@ class Branches:
     def __init__(self) -> None:
         self._runs: list[_Run] = []
 
-    def head(
-        self, stance: Stance, turns: Turns
-    ) -> tuple[Follower | None, Callable[[Follower], None]]:
-        """The head where the run that begins now leaves an earlier one, if it does; and what keeps this run's
-        heads, for which it is called before each junction.
+    def head(self, stance: Stance, turns: Turns) -> tuple[Follower | None, Before]:
+        """The head where the run that begins now leaves an earlier one, if it does; and what is to be called
+        before each junction of this run: it keeps the head.
         """
         run = _Run(stance, turns)
-        head = self._from_tip(run) or self._from_junction(run)
+        head, left = self._from_tip(run), None
+        if head is None and turns.other:
+            left = self._left(run)
+            head = None if left is None else self._from_junction(run, left)
         self._runs.append(run)
 
-        def keep(head: Follower) -> None:
-            heads_in_all = sum(len(each.heads) for each in self._runs)
-            if head.junction not in run.heads and heads_in_all < MOST_HEADS:
+        def before(head: Follower) -> Followed | None:
+            if head.junction in run.heads:
+                return None
+            if sum(len(each.heads) for each in self._runs) < MOST_HEADS:
                 run.heads[head.junction] = copied(head)
+            return None if left is None else left.from_there(head, turns.other[-1])
 
-        return head, keep
+        return head, before
 
-    def ended(self, head: Follower) -> None:
+    def ended(self, head: Follower, came_to: Followed) -> None:
         """The newest run has ended: keep its head if that stands at a tip."""
         self._runs[-1].at_tip = head if head.is_at_tip else None
+        self._runs[-1].came_to = came_to
 
     def _from_tip(self, run: _Run) -> Follower | None:
         """The head that goes back from the tip at which the same run ended."""
@@ -79,16 +99,18 @@ class Branches:
         run.heads = dict(earlier.heads)
         return head
 
-    def _from_junction(self, run: _Run) -> Follower | None:
-        """The head before the junction at which an earlier run took another turn."""
-        if not run.turns.other:
-            return None
+    def _left(self, run: _Run) -> _Run | None:
+        """The earlier run that a run leaves at the junction of its last turn."""
         number = run.turns.other[-1]
         fewer = tuple(turn for turn in run.turns.other if turn != number)
         earlier = self._run(run.stance, run.turns._replace(other=fewer))
-        if earlier is None or number not in earlier.heads:
-            return None
-        head = copied(earlier.heads[number])
+        return earlier if earlier is not None and number in earlier.heads else None
+
+    def _from_junction(self, run: _Run, left: _Run) -> Follower:
+        """The head before the junction at which a run leaves another."""
+        number = run.turns.other[-1]
+        run.heads = {k: head for k, head in left.heads.items() if k <= number}
+        head = copied(left.heads[number])
         head.take_up(run.turns, at_junction=True)
         return head
 

@@ -13,7 +13,12 @@ Source: patent ES 361967, figure 1. Questions: see `tracer.head` and `tracer.jun
 from __future__ import annotations
 
 import math
+import pickle
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
 
 from morfax.tracer.following import clean_line, lost
 from morfax.tracer.following.agreement import Agreement
@@ -54,6 +59,8 @@ from morfax.tracer.tangles.solution import Approach
 SWELLS = 0.5
 AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
 
+Before = Callable[["Follower"], Followed | None]
+
 
 class Follower(RunEnds):
     """A head on a line of a drawing."""
@@ -83,15 +90,33 @@ class Follower(RunEnds):
         self._ways_out.turns, self._at_junction = turns, at_junction
         self.carriage.taken_up()
 
+    @property
+    def junctions_mm(self) -> tuple[tuple[float, float], ...]:
+        """The places of the junctions so far."""
+        return tuple(self._ways_out.junctions.places_mm)
+
+    def goes_on_as(self, other: Follower) -> bool:
+        """Whether all that decides the way on, but the turns, is what it is for a head of the same stance."""
+        if not np.array_equal(self.carriage.positions_mm, other.carriage.positions_mm):
+            return False
+        return pickle.dumps(self._state()) == pickle.dumps(other._state())
+
+    def _state(self) -> tuple[Any, ...]:
+        """What decides the way on from here, but positions, turns and the sheet."""
+        view, guides = self.view, replace(self._ways_out.junctions, places_mm=[])
+        seen = id(view.cells.darkness), view.level, view.width_mm, view.usual_mm
+        memory = self.junction, guides, self._tangles.strands, self._agreement, self._anchor
+        return self.carriage.mark(), seen, memory, self._at_tip, self._went_slowly
+
     def follow(
         self,
         longest_mm: float,
         told: Callable[[float], None] | None = None,
         keep: Callable[[Follower], None] | None = None,
-        before: Callable[[Follower], None] | None = None,
+        before: Before | None = None,
     ) -> Followed:
         """Follow until the line closes, ends or is lost; `told` hears the travel, mm; `keep` may copy the
-        head on its way, `before` before each junction.
+        head on its way, `before` before each junction: it may know what the run comes to from there.
         """
         home, on_mm = self._home.for_kernel(), 0.0 if keep is not None else longest_mm
         if not (self.carriage.hears(self.view) or self.settings.direct_rad_s_mm > 0):
@@ -115,7 +140,7 @@ class Follower(RunEnds):
         self._on_from_tip()
         return None
 
-    def _after(self, why: int, before: Callable[[Follower], None] | None) -> Followed | None:
+    def _after(self, why: int, before: Before | None) -> Followed | None:
         """What the head does where its carriage has stopped; returns what it did, if that was the end."""
         if why == HOME:
             return self._go_home()
@@ -129,9 +154,8 @@ class Follower(RunEnds):
             return None
         if self.settings.direct_rad_s_mm > 0:
             return self._lost(lost.NO_GUARDS, lost.SLOWER)
-        if before is not None:
-            before(self)
-        return self._through_junction()
+        known = None if before is None else before(self)
+        return known or self._through_junction()
 
     def _through_junction(self) -> Followed | None:
         """Take the head through the junction ahead; returns what the head did, if that was the end."""

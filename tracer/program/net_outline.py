@@ -28,12 +28,14 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
+from morfax.motion.long_array import one_in
 from morfax.motion.polyline import area_mm2, length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.enclosure import Enclosure
 from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
+from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
 from morfax.tracer.program.setup import Setup
@@ -207,5 +209,6 @@ def _line(setup: Setup, outline: Outline, junctions: Junctions) -> Line:
 
 def _from_start(places: list[tuple[float, float]], way_mm: Array) -> list[tuple[float, float]]:
     """Places on a closed way in the order in which it comes to them."""
-    come = [int(np.argmin(np.hypot(*(way_mm - place).T))) for place in places]
+    thinned = one_in(way_mm, THINNED)
+    come = [int(np.argmin(np.hypot(*(thinned - place).T))) for place in places]
     return [places[k] for k in np.argsort(come, kind="stable")]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -43,6 +44,18 @@ class Tangles:
         self._known: list[tuple[Tangle, Redrawing]] = []
         self._left: list[tuple[int, int, Leg]] = []
         self._beside: list[Leg] = []
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Tangles:
+        """A memory that goes on by itself; tangles and legs, which are never changed, are shared."""
+        copied = Tangles()
+        copied._known, copied._left = list(self._known), list(self._left)
+        copied._beside = list(self._beside)
+        return copied
+
+    @property
+    def strands(self) -> list[Redrawing]:
+        """The redrawings of the tangles so far: what decides by which strand a line leads through again."""
+        return [redrawing for _, redrawing in self._known]
 
     def way_out(self, view: View, approach: Approach) -> tuple[Plan | None, bool]:
         """The way out of the tangle ahead, and whether it explains the tangle's ink.

@@ -9,13 +9,16 @@ import pytest
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following import branches
+from morfax.tracer.following import branches, clean_line
 from morfax.tracer.following.attempts import Attempts
+from morfax.tracer.following.clean_line import Knows
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.start import put_down
-from morfax.tracer.following.ways_out import Turns
+from morfax.tracer.following.ways_out import STRAIGHT_ON, Turns, WaysOut
+from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.memory import Tangles
 from tests.tracer.inked import inked, polyline
 
@@ -97,3 +100,36 @@ def test_no_more_heads_are_kept_than_a_few(monkeypatch: pytest.MonkeyPatch) -> N
     attempts.run(stance)
     assert attempts.branches.head(stance, Turns((1,)))[0] is None
     assert attempts.branches.head(stance, Turns((0,)))[0] is not None
+
+
+def test_a_turn_in_vain_comes_to_what_the_run_without_it_came_to(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The head is told the same way out whichever turn is asked for: the rest of the run is not run again."""
+    chosen = WaysOut.chosen
+    monkeypatch.setattr(
+        WaysOut,
+        "chosen",
+        lambda self, view, leg, carriage: chosen(
+            replace(self, turns=STRAIGHT_ON), view, leg, carriage
+        ),
+    )
+    followed_mm = list[float]()
+    follow = clean_line.follow
+
+    def counted(carriage: Carriage, view: View, knows: Knows) -> tuple[View, int]:
+        before_mm = carriage.travel_mm
+        found = follow(carriage, view, knows)
+        followed_mm.append(carriage.travel_mm - before_mm)
+        return found
+
+    monkeypatch.setattr(clean_line, "follow", counted)
+    stance, attempts = stance_on(LADDER), attempts_at(LADDER)
+    straight = attempts.run(stance)
+    whole_mm = sum(followed_mm)
+    followed_mm.clear()
+    again = attempts.run(stance, (0,))
+    again_mm = sum(followed_mm)
+    assert 0 < again_mm < 0.7 * whole_mm
+    assert_same(again, straight)
+    assert_same(again, attempts_at(LADDER).run(stance, (0,)))

@@ -1,0 +1,25 @@
+"""The planner: ways on from where the head stands."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.trail import Trail
+from morfax.tracer.junctions.edge_following import EdgeRun
+from morfax.tracer.junctions.planner import Planner
+from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.sensing.photocell import behind_aperture
+from morfax.tracer.sensing.view import View
+from tests.tracer.inked import inked, polyline
+
+
+def test_an_edge_that_ends_where_the_head_stands_is_no_way_on() -> None:
+    """An engraved cam, 250 pixels for 120 mm, with all its lines: no node was left to lay a way through."""
+    view = View(behind_aperture(inked(polyline((4, 10), (24, 10))), 0.15), 0.5)
+    incoming = leg_of(view.feel(np.array([6.0, 10.0]), 0.0, 4.0), True, view.leg_mm)
+    stands = incoming.end_mm, incoming.heading_rad
+    planner = Planner(view, stands, Trail(incoming.end_mm, view.step_mm), Settings())
+    assert planner._along_edge(incoming, EdgeRun(incoming.seen[-1:], None)) is None
+    further = view.feel(incoming.end_mm, 0.0, 8.0)
+    assert planner._along_edge(incoming, EdgeRun(further, None)) is not None
