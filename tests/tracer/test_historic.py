@@ -13,7 +13,7 @@ import pytest
 
 from morfax.motion.drive import Drive
 from morfax.tracer.following.start import put_down
-from morfax.tracer.head import kernel
+from morfax.tracer.head import kernel, swinging
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import HISTORIC, Settings
 from morfax.tracer.head.stance import Stance
@@ -91,7 +91,7 @@ def test_an_ideal_pursuit_round_a_corner_runs_a_tractrix(vectors: Callable[[str]
         ahead_y = state.y_mm + lead_mm * math.sin(state.heading_rad)
         # the line stands at y = 0 up to the corner 0,0, and at x = 0 from there on
         state.aside_mm = -ahead_y if ahead_x < 0 and ahead_y < 0.5 else ahead_x
-        kernel._steer(state, tuning)
+        kernel._steer(state, tuning, swinging.way_of(state))
         nearest_mm = min(nearest_mm, math.hypot(state.x_mm, state.y_mm))
     assert nearest_mm / lead_mm == pytest.approx(told["closest_over_a"], abs=0.005)
 
@@ -113,7 +113,7 @@ def test_the_price_of_the_lead_on_a_circle_is_the_vectors(
         ahead_x = state.x_mm + lead_mm * math.cos(state.heading_rad)
         ahead_y = state.y_mm + lead_mm * math.sin(state.heading_rad)
         state.aside_mm = math.hypot(ahead_x, ahead_y) - radius_mm
-        kernel._steer(state, tuning)
+        kernel._steer(state, tuning, swinging.way_of(state))
     run_mm = math.hypot(state.x_mm, state.y_mm)
     assert run_mm == pytest.approx(told["pivot_radius"], abs=0.01 * told["inward_error"])
     assert radius_mm - run_mm == pytest.approx(told["inward_error"], rel=0.01)

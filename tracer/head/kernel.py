@@ -61,8 +61,9 @@ SHORTEST = 0.2  # of the distance to the point: the axis may have come so near t
 @njit(cache=True, _nrt=False)
 def follow(cells, state, t, home, out):  # type: ignore[no-untyped-def]
     """Follow the line until something happens or `out` (n, 2) is full; (positions written, why)."""
+    way = way_of(state)  # a sine and a cosine take as long as two looks of a cell
     for n in range(len(out)):
-        swing(cells, state, t)
+        swing(cells, state, t, way)
         if state.sweep_periods >= t.sweep_periods:
             detect(state, t)
             if t.direct_rad_s_mm == 0:
@@ -72,7 +73,7 @@ def follow(cells, state, t, home, out):  # type: ignore[no-untyped-def]
                 why = HOME
             if why != MORE:
                 return n, why
-        _steer(state, t)
+        way = _steer(state, t, way)
         out[n, 0], out[n, 1] = state.x_mm, state.y_mm
     return len(out), MORE
 
@@ -228,8 +229,8 @@ def _at_home(state, t, home):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, _nrt=False)
-def _steer(state, t):  # type: ignore[no-untyped-def]
-    """One period of relay, steering servo, sine and cosine, and the two drives."""
+def _steer(state, t, way):  # type: ignore[no-untyped-def]
+    """One period of relay, steering servo, sine and cosine, and the two drives; the way it then goes."""
     # 1. speed, as the relay has it
     if state.slow_periods > 0:
         state.slow_periods -= 1
@@ -240,7 +241,7 @@ def _steer(state, t):  # type: ignore[no-untyped-def]
     owed = owed_s(t.drive_gain, t.period_s)
     dx = state.point_x_mm - state.x_mm - owed * state.vx_mm_s
     dy = state.point_y_mm - state.y_mm - owed * state.vy_mm_s
-    c, s = way_of(state)
+    c, s = way
     along, aside = max(dx * c + dy * s, SHORTEST * t.point_mm), dy * c - dx * s
     demand = state.speed_mm_s * 2.0 * aside / (along * along + aside * aside)
     if t.direct_rad_s_mm > 0:
@@ -248,6 +249,6 @@ def _steer(state, t):  # type: ignore[no-untyped-def]
     state.turn_rad_s += t.steering_gain * (demand - state.turn_rad_s)
     state.heading_rad += state.turn_rad_s * t.period_s
     # 3. potentiometer 59 resolves the speed for the drives
-    vx = state.speed_mm_s * math.cos(state.heading_rad)
-    vy = state.speed_mm_s * math.sin(state.heading_rad)
-    move(state, t, vx, vy)
+    way = way_of(state)
+    move(state, t, state.speed_mm_s * way[0], state.speed_mm_s * way[1])
+    return way

@@ -64,13 +64,13 @@ def _hiss(state):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, _nrt=False)
-def swing(cells, state, t):  # type: ignore[no-untyped-def]
-    """One period of the swinging cell: its current goes into the synchronous detector."""
+def swing(cells, state, t, way):  # type: ignore[no-untyped-def]
+    """One period of the swinging cell: its current goes into the synchronous detector. `way`: see `way_of`."""
     phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
     sine = math.sin(phase)
     aside = state.middle_mm + t.amplitude_mm * sine
     ahead = state.lead_mm + t.along_mm * math.cos(phase)
-    darkness = t.cell_gain * seen(cells, state, way_of(state), ahead, aside)
+    darkness = t.cell_gain * seen(cells, state, way, ahead, aside)
     if t.cell_noise > 0.0:
         darkness += t.cell_noise * _hiss(state)
     state.first_sum += darkness * sine
@@ -139,6 +139,6 @@ def heard(cells, state, t, off_mm):  # type: ignore[no-untyped-def]
     state.middle_mm += off_mm
     set_mm = state.middle_mm
     for _ in range(t.sweep_periods):
-        swing(cells, state, t)
+        swing(cells, state, t, way_of(state))
     detect(state, t)
     return state.middle_mm - set_mm

@@ -129,7 +129,7 @@ def test_two_places_tell_no_parabola(tuning: Tuning) -> None:
 def swept(state: Any, seen: View, tuning: Tuning) -> None:
     """One whole sweep of a head that stands."""
     for _ in range(tuning.sweep_periods):
-        swinging.swing(seen.cells, state, tuning)
+        swinging.swing(seen.cells, state, tuning, swinging.way_of(state))
     swinging.detect(state, tuning)
 
 
@@ -167,7 +167,7 @@ def test_a_turning_head_puts_places_where_its_cell_was_in_the_middle_of_the_swee
             state.x_mm += (
                 1.0  # the axis leaps before and after the middle: its place between counts
             )
-        swinging.swing(white(0.5), state, tuning)
+        swinging.swing(white(0.5), state, tuning, swinging.way_of(state))
     swinging.detect(state, tuning)
     was = -turn_rad_s * half * tuning.period_s
     place = (
@@ -185,7 +185,7 @@ def test_the_ink_follows_a_tenth_of_what_a_sweep_saw_more_or_less(tuning: Tuning
     ):
         state = moving()
         for _ in range(tuning.sweep_periods):
-            swinging.swing(white(darkness), state, tuning)
+            swinging.swing(white(darkness), state, tuning, swinging.way_of(state))
         swinging.detect(state, tuning)
         assert state.ink == pytest.approx(1 + 0.1 * (ink - 1), abs=1e-6)
 
@@ -323,7 +323,7 @@ def test_the_axis_steers_on_the_circle_that_touches_its_heading(tuning: Tuning) 
     ahead = screws.owed_s(tuning.drive_gain, tuning.period_s) * SPEED_MM_S
     assert ahead == pytest.approx(owed, rel=0.1)  # a lag of 1 ms, stepped in periods of 0.17 ms
     state.point_x_mm, state.point_y_mm = PLACE + np.array([0.1 + ahead, 0.02])
-    kernel._steer(state, quick)
+    kernel._steer(state, quick, swinging.way_of(state))
     assert state.turn_rad_s == pytest.approx(SPEED_MM_S * 0.04 / (0.1**2 + 0.02**2), rel=1e-9)
     assert state.heading_rad == pytest.approx(state.turn_rad_s * tuning.period_s)
 
@@ -331,7 +331,7 @@ def test_the_axis_steers_on_the_circle_that_touches_its_heading(tuning: Tuning) 
 def test_a_point_that_is_passed_is_steered_for_as_if_a_fifth_were_left(tuning: Tuning) -> None:
     quick, state = tuning._replace(steering_gain=1.0), moving()
     state.point_x_mm, state.point_y_mm = PLACE + np.array([-1.0, 0.01])
-    kernel._steer(state, quick)
+    kernel._steer(state, quick, swinging.way_of(state))
     left = 0.2 * tuning.point_mm
     assert state.turn_rad_s == pytest.approx(SPEED_MM_S * 0.02 / (left**2 + 0.01**2), rel=1e-9)
 
@@ -343,9 +343,9 @@ def test_the_relay_holds_for_its_time_and_the_speed_changes_by_the_acceleration(
     state.slow_periods, state.point_x_mm, state.point_y_mm = 10.0, 1e3, PLACE[1]
     step = tuning.acceleration_mm_s2 * tuning.period_s
     for n in range(1, 10):
-        kernel._steer(state, tuning)
+        kernel._steer(state, tuning, swinging.way_of(state))
         assert state.speed_mm_s == pytest.approx(SPEED_MM_S - n * step)
-    kernel._steer(state, tuning)  # it lets go
+    kernel._steer(state, tuning, swinging.way_of(state))  # it lets go
     assert state.speed_mm_s == pytest.approx(SPEED_MM_S - 8 * step)
 
 
@@ -356,7 +356,7 @@ def test_the_relay_holds_for_a_tenth_of_a_second(tuning: Tuning) -> None:
     before = math.inf
     while state.speed_mm_s <= before:
         before, periods = state.speed_mm_s, periods + 1
-        kernel._steer(state, tuning)
+        kernel._steer(state, tuning, swinging.way_of(state))
     assert periods / MOTION_RATE_HZ == pytest.approx(0.1, abs=2 / MOTION_RATE_HZ)
 
 
