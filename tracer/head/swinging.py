@@ -65,7 +65,7 @@ def _hiss(state):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, _nrt=False)
 def swing(cells, state, t, way):  # type: ignore[no-untyped-def]
-    """One period of the swinging cell: its current goes into the synchronous detector. `way`: see `way_of`."""
+    """One period of the swinging cell on a way (see `way_of`): its current goes into the detector."""
     phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
     sine = math.sin(phase)
     aside = state.middle_mm + t.amplitude_mm * sine
