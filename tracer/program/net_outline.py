@@ -101,6 +101,17 @@ def of_net(setup: Setup) -> OfNet:
     return OfNet(setup, line, may_be_longer and _touches_itself(junctions))
 
 
+def outline_of(setup: Setup, patch: int) -> Line | None:
+    """The longest closed outline of a patch that goes round two areas or more, as the head ran along it."""
+    sheet = setup.sheet
+    if _is_program(setup) or sheet.drawing.edges_mm or sheet.patches.count > MOST_PATCHES:
+        return None
+    closed = _closed(setup, patch) if _nets(sheet)[patch] else None
+    if closed is None:
+        return None
+    return replace(_line(setup, *closed), ink_mm=float(sheet.lengths_mm[patch]))
+
+
 def round_ring(setup: Setup, line: Line) -> Line | None:
     """The way round the ink on which a line was lost, if that goes round one area and closes."""
     sheet = setup.sheet

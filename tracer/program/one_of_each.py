@@ -4,7 +4,8 @@ Signals: contours in; a line of each out, and how many patches are letters.
 
 The head is put down at an open end of the patch, or at the plainest of its places. A patch along which a line
 was followed before is a piece of that line, which has gaps. A line that is lost is cut as far as it was
-followed.
+followed. Where lines cross or touch, and the line that the head finds does not close or is a smaller part of
+them, their longest closed outline goes before it, as where one line is asked for (see `net_outline`).
 
 Source: our own; the patent has one contour to a tape. Questions: a small patch on which the head can nowhere
 be put down is taken for a letter; a larger one counts as a lost line.
@@ -25,6 +26,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
 from morfax.tracer.program.best_run import SHORT
+from morfax.tracer.program.net_outline import outline_of
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed, followed_from_an_end
@@ -44,7 +46,9 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[
         near = [lines[k] for k in _near(contour, boxes_mm)]
         if _is_done(contour, near, lines) or (which == "outer" and _is_inner(contour, lines)):
             continue
-        line = _follow_in_window(setup.after(come_mm, total_mm), contour)
+        line = _or_outline(
+            setup, contour, _follow_in_window(setup.after(come_mm, total_mm), contour)
+        )
         if line is not None:
             lines.append(line)
             boxes_mm.append(np.array([line.places_mm.min(axis=0), line.places_mm.max(axis=0)]))
@@ -128,6 +132,18 @@ def _follow_in_window(setup: Setup, contour: Contour) -> Line | None:
         if ((line.places_mm > low_mm) & (line.places_mm < high_mm)).all():
             return line
     return _follow(setup, contour)
+
+
+def _or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:
+    """A line that was followed on a patch; where it is a smaller part of a net, the net's outline."""
+    if line is None or line.reference_mm is not None or line.is_lead:
+        return line
+    if line.ending == "closed" and line.length_mm > SHORT * line.ink_mm:
+        return line
+    outline = outline_of(setup, contour.stroke.patch)
+    if outline is None or (line.ending == "closed" and outline.length_mm < line.length_mm):
+        return line
+    return replace(outline, number=contour.number)
 
 
 def _follow(setup: Setup, contour: Contour) -> Line | None:

@@ -12,6 +12,7 @@ from morfax.motion.polyline import area_mm2, length_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import WIDTH_MM, Points, arc, inked, loops, polyline
 
 PLATE = polyline((8, 8), (40, 8), (44, 26), (26, 38), (8, 30), (8, 8))
@@ -82,3 +83,26 @@ def test_a_signature_is_run_as_the_stroke_that_it_is_and_not_round_its_longest_l
 def test_an_outline_whose_pen_overshot_its_start_is_still_closed() -> None:
     way = polyline((15, 20), (50, 20), (50, 45), (20, 45), (20, 12), (28, 12), (28, 24))
     assert taken(way).ending == "closed"
+
+
+def hatched(box: Points, apart_mm: float) -> list[Points]:
+    """A rectangle, hatched at 45 degrees."""
+    (left, low), (right, high) = box[0], box[2]
+    lines = [box]
+    for along in np.arange(left - (high - low) + apart_mm, right - 0.1, apart_mm):
+        x = max(along, left), min(along + high - low, right)
+        lines.append(polyline((x[0], low + x[0] - along), (x[1], low + x[1] - along)))
+    return lines
+
+
+@pytest.mark.parametrize("inside", ["bars", "hatching"])
+def test_of_several_contours_too_the_outline_goes_before_a_way_through_its_inside(
+    inside: str,
+) -> None:
+    outline = (
+        PLATE if inside == "bars" else polyline((8, 8), (48, 8), (48, 38), (8, 38), (8, 8))
+    )
+    lines = [PLATE, *BARS] if inside == "bars" else hatched(outline, 4.0)
+    found = trace_lines(inked(*lines, seed=3)).lines
+    (first,) = [line for line in found if line.number == 1]
+    assert first.ending == "closed" and lies_on(first, outline, 0.15)
