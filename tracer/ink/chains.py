@@ -31,6 +31,9 @@ from morfax.tracer.sensing.probe import end_of, reach_of_ink
 FOOT_WIDTHS = 4.0  # as far ahead a line that ends on others is sought
 ON_IT = 0.5  # widths: its straight way on has come to them
 FOOT_STEP_MM = 0.01
+POKES_WIDTHS = 5.0  # the end of a line that pokes out further has a stretch of its own
+BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
+AWAY_WIDTHS = 8.0  # along the other lines at a junction, from where they are clean
 # widths: legs of a wider junction are taken from further off, by a share of its size, and longer
 WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
 # of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it
@@ -252,7 +255,7 @@ class Junctions:
         if there.pairs:
             foot = self._foot_mm(there, leg)
             if foot is not None:
-                return foot
+                return _lifted_mm(there, leg, end_of(view, leg), foot) or foot
         if there.is_free or len(there.sides) == 1:
             lifted = end_of(view, leg)
             return max(0.0, lifted or 0.0)
@@ -271,3 +274,20 @@ class Junctions:
             return None
         near = away[come[0] : come[0] + round(2 * leg.width_mm / FOOT_STEP_MM)]
         return float(ahead_mm[come[0] + int(np.argmin(near))])
+
+
+def _lifted_mm(there: Junction, leg: Leg, end_mm: float | None, foot_mm: float) -> float | None:
+    """How far from its clean end a leg ends whose ink pokes out on the far side of the lines that pass, mm.
+
+    None if what lies ahead is the ink of the others. `end_mm` is where all of the ink ahead ends, `foot_mm`
+    where the leg comes onto the others.
+    """
+    if end_mm is None or not 0 < end_mm - foot_mm < POKES_WIDTHS * leg.width_mm:
+        return None
+    if 0.5 * abs(leg.bend_per_mm) * end_mm**2 > BENT_WIDTHS * leg.width_mm:
+        return None
+    place, back_mm = leg.at(end_mm), np.arange(0.0, AWAY_WIDTHS * leg.width_mm, FOOT_STEP_MM)
+    others = np.vstack([other.at(-back_mm) for other in there.legs if other is not leg])
+    away_mm = np.hypot(*(others - place).T).min()
+    passing_mm, _ = there.crossing.passing.query(place)
+    return end_mm if min(away_mm, passing_mm) > ON_IT * leg.width_mm else None

@@ -74,6 +74,23 @@ def test_a_stroke_ends_on_the_middle_of_the_line_that_it_meets() -> None:
     assert abs(ends[:, 1] - 20).min() < LED_ON_MM
 
 
+@pytest.mark.parametrize(
+    ("out_mm", "across_deg"), [(0.3, 90), (0.6, 90), (0.45, 60), (0.45, 40)]
+)
+def test_a_stroke_that_ends_just_beyond_another_goes_on_to_its_end(
+    out_mm: float, across_deg: float
+) -> None:
+    """What pokes out is no longer than a burr of the other line's edge would be."""
+    across = np.radians(across_deg)
+    way = np.array([np.cos(across), np.sin(across)])
+    end = np.array([20, 20]) + out_mm / np.sin(across) * way
+    strokes = all_of(BAR, polyline((20 - 12 * way[0], 20 - 12 * way[1]), (end[0], end[1])))
+    short = min(strokes, key=lambda stroke: stroke.length_mm)
+    assert (
+        np.hypot(*(short.xy_mm[[0, -1]] - end).T).min() < 0.07
+    )  # it was as far as it pokes out
+
+
 def test_white_paper_is_not_crossed_for_struck_ink() -> None:
     """Two dashes 1.4 mm apart: nearer than a struck line may be wide, and wider than the allowed gap.
 
