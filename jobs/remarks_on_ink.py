@@ -126,9 +126,17 @@ def _of_rest(line: Line) -> Iterator[str]:
 
 def _of_unexplained(trace: Trace) -> Iterator[str]:
     """Closed lines that may be other lines than those drawn."""
-    beside = [place for place in trace.unexplained if place.is_ink]
+    tips = [place for place in trace.unexplained if place.is_tip]
+    beside = [place for place in trace.unexplained if place.is_ink and not place.is_tip]
     bare = [p for p in trace.unexplained if not p.is_ink and p.wants_dpi is None]
     pale = [p for p in trace.unexplained if p.wants_dpi is not None]
+    if tips:
+        (x, y), cut_mm = tips[0][:2]
+        many = "1 tip" if len(tips) == 1 else f"{len(tips)} tips"
+        yield (
+            f"the path cuts {many} of the shape short, by up to {cut_mm:.2f} mm at {x:.1f},{y:.1f} mm; "
+            "printed twice as large, and with --scale 0.5, by half of that"
+        )
     if beside:
         (x, y), long_mm = beside[0][:2]
         many = "1 piece of ink" if len(beside) == 1 else f"{len(beside)} pieces of ink"

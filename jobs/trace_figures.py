@@ -101,6 +101,8 @@ def unexplained(trace: Trace) -> list[dict[str, Any]]:
 
 def _what(place: Unexplained) -> str:
     """What is at a place that closed lines do not explain."""
+    if place.is_tip:
+        return "tip cut short"
     if place.is_ink:
         return "ink beside the way"
     return "way without ink" if place.wants_dpi is None else "pixels too large to tell"

@@ -17,7 +17,7 @@ be a shape: paper is what covers most of the sheet's border.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,6 +29,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
+from morfax.tracer.drawing import tips
 from morfax.tracer.drawing.closing import Closed, covers, note, places_of, streaks_of
 from morfax.tracer.drawing.sharpening import APART_PX, Edge, sharpened
 from morfax.tracer.drawing.spacing import finer, too_near
@@ -93,6 +94,7 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     closed += streaks_of(share, softness_px, pitch_mm)
     if closed:
         notes = (*notes, note(closed, softness_px * pitch_mm))
+    notes = (*notes, *_of_tips(sharp, softness_px, share.shape, pitch_mm))
     # 2. where they are, as a line
     times = finer(sharp, share.shape, pitch_mm)
     fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
@@ -100,6 +102,21 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     darkness = pen_along(fine, (rows * times, columns * times), EDGE_MM / pitch_mm)
     edges_mm = tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
     return Outlined(darkness, shade, times, edges_mm, notes)
+
+
+def _of_tips(
+    edges: Sequence[Edge], softness_px: float, shape: tuple[int, ...], pitch_mm: float
+) -> Iterator[str]:
+    """What the operator should know of tips that end short."""
+    found = sorted(
+        (tip for edge in edges for tip in tips.tips_of(edge, softness_px)),
+        key=lambda tip: -tip.short_px,
+    )
+    if found:
+        at_mm = [_mm(tip.place[None], shape, pitch_mm)[0] for tip in found]
+        yield tips.note(
+            [(tip, (x, y)) for tip, (x, y) in zip(found, at_mm, strict=True)], pitch_mm
+        )
 
 
 def shade_of(grey: NDArray[Any], pitch_mm: float) -> Grey:

@@ -80,12 +80,18 @@ def sharpened(outline: Array, softness_px: float) -> Edge:
     return Edge(np.vstack([*parts, places[come:], places[:1]]), np.array(middles, int))
 
 
-def corners_of(places: Array, softness_px: float, *, is_closed: bool = True) -> list[PutBack]:
-    """The corners that the lens has rounded on an outline, or a piece of one, a place every `APART_PX`."""
+def corners_of(
+    places: Array, softness_px: float, *, is_closed: bool = True, step_px: float = 0.0
+) -> list[PutBack]:
+    """The corners that the lens has rounded on an outline, or a piece of one, a place every `APART_PX`.
+
+    An outline that was felt step by step may go on beyond a tip by a step.
+    """
     turns = _corners(places, softness_px, is_closed)
     corners, come = list[PutBack](), 0
     for k in range(len(turns)):
-        found = _corner(places, _room(places, turns, k, softness_px, is_closed), softness_px)
+        room = _room(places, turns, k, softness_px, is_closed)
+        found = _corner(places, room, softness_px, step_px / softness_px)
         if found is not None and found.last > found.first >= come:
             corners.append(found)
             come = found.last
@@ -184,13 +190,21 @@ class _Fit(NamedTuple):
         """What the lens has taken off the corner's own outline."""
         return self.way - self.radius * (1 / math.sin(self.angle / 2) - 1)
 
-    def is_explained(self, away: float) -> bool:
-        """Whether the lens explains it, with legs that are felt from so far away on."""
-        return self.touch <= away and self.way >= (1 - SHORT) * self.sharp - LEGS
+    def is_explained(self, away: float, step: float) -> bool:
+        """Whether the lens explains it, with legs that are felt from so far away on, and by such steps."""
+        beyond = step * max(
+            0.0, math.cos(self.angle)
+        )  # along a tip, not along the leg of a right angle
+        return self.touch <= away and self.way >= (1 - SHORT) * self.sharp - LEGS - beyond
 
 
-def _corner(places: Array, room: _Room, softness_px: float) -> PutBack | None:
-    """What stands in the place of a corner; None if it is no corner, or if the lens does not explain it."""
+def _corner(
+    places: Array, room: _Room, softness_px: float, step: float = 0.0
+) -> PutBack | None:
+    """What stands in the place of a corner; None if it is no corner, or if the lens does not explain it.
+
+    The outline was felt by steps of so many standard deviations.
+    """
     at, dense = room.at, softness_px / APART_PX
     # 1. feel the legs, from further away where the corner that they make is narrow or round
     fit, angle, touch = None, math.pi / 2, 0.0
@@ -205,11 +219,10 @@ def _corner(places: Array, room: _Room, softness_px: float) -> PutBack | None:
         legs = _felt(places, at, -away, -ends[0]), _felt(places, at, away, ends[1])
         first, last = max(0, round(at - away)), min(len(places) - 1, round(at + away))
         fit = _fit(places[first : last + 1], legs, softness_px)
-        if fit is None:
-            return None
-        angle, touch = fit.angle, fit.touch
+        # legs that do not meet stand on the round of a narrow tip
+        angle, touch = (fit.angle, fit.touch) if fit is not None else (0.0, 0.0)
     # 2. put the corner back if the lens explains the outline
-    if fit is None or not fit.is_explained(away / dense):
+    if fit is None or not fit.is_explained(away / dense, step):
         return None
     corner = _rounded(fit, softness_px)
     if (corner[0] - places[first]) @ fit.t < 0 or (corner[-1] - places[last]) @ fit.w < 0:

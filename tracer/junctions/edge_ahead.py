@@ -82,7 +82,12 @@ class EdgeAhead:
         along_px = lengths_mm(places) / pitch_mm
         at_px = np.arange(0.0, along_px[-1], APART_PX)
         evenly = np.column_stack([np.interp(at_px, along_px, c) for c in places.T / pitch_mm])
-        found = corners_of(evenly, self.softness_mm / pitch_mm, is_closed=False)
+        found = corners_of(
+            evenly,
+            self.softness_mm / pitch_mm,
+            is_closed=False,
+            step_px=self.view.step_mm / pitch_mm,
+        )
         station = np.searchsorted(along_px, at_px)
         corners = [
             corner._replace(

@@ -31,6 +31,7 @@ from morfax.motion.polyline import lengths_mm, nearest_mm
 from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.edge_check import OFF_MM
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
@@ -41,6 +42,8 @@ BARE = 0.25  # darkness: paler places are paper
 # darkness: on a coarse scan a line's middle is darker; of 135 right paths on lines of 1 to 2 pixels 3 come
 # below it, in blurred corners, and all of 10 wrong ones; by trial
 PALE = 0.6
+TIP = np.radians(120.0)  # a corner that turns by more is a tip
+CUT_MM = 0.1  # ten times a corner's error
 # darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
 # less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
 ASTRAY = 0.2
@@ -50,13 +53,15 @@ class Unexplained(NamedTuple):
     """A place that the ways do not explain: where, how much (mm), and whether it is ink.
 
     Of ink how far it reaches beside the ways, of a way over bare paper its length. Of a way over ink that is
-    only pale, on a coarse scan, the resolution that would show what is there.
+    only pale, on a coarse scan, the resolution that would show what is there. `is_tip`: a tip of a filled
+    shape, off which the way cuts so much.
     """
 
     place_mm: tuple[float, float]
     length_mm: float
     is_ink: bool
     wants_dpi: int | None = None
+    is_tip: bool = False
 
 
 def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
@@ -71,6 +76,7 @@ def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
         return ()
     sheet, gap_mm = setup.sheet, setup.settings.gap_mm
     found = [*_ink_beside(sheet, come_round, lines), *_bare_ways(sheet, closed, gap_mm)]
+    found += _tips_cut(sheet.drawing.edges_mm, closed)
     found = found or list(_astray(sheet, closed))
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
@@ -118,6 +124,27 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
         for middle, long_mm in _stretches(dark < PALE, come_mm, 0.0):
             x, y = places[middle]
             yield Unexplained((float(x), float(y)), long_mm, False, _wanted_dpi(sheet))
+
+
+def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Unexplained]:
+    """Tips of filled shapes that the picture shows, and the way does not come to."""
+    tips = [edge[:-1][_turned(edge) > TIP] for edge in edges_mm]
+    places = np.vstack([np.empty((0, 2)), *tips])
+    if not len(places) or not closed:
+        return
+    # an edge that was not followed is further away
+    away_mm = nearest_mm(places, np.vstack([line.places_mm for line in closed]))
+    for k in np.flatnonzero((away_mm > CUT_MM) & (away_mm < OFF_MM)):
+        x, y = places[k]
+        yield Unexplained((float(x), float(y)), float(away_mm[k]), True, is_tip=True)
+
+
+def _turned(edge: Array) -> Array:
+    """By how much a closed edge (its last place its first) turns at each of its places but the last, rad."""
+    ways = np.diff(edge, axis=0)
+    before = np.roll(ways, 1, axis=0)
+    cross = before[:, 0] * ways[:, 1] - before[:, 1] * ways[:, 0]
+    return np.asarray(np.abs(np.arctan2(cross, np.einsum("ij,ij->i", before, ways))))
 
 
 def _stretches(
