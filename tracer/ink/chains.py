@@ -20,7 +20,7 @@ import numpy as np
 
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.crossing import Crossing
-from morfax.tracer.ink.doubled import BROADER
+from morfax.tracer.ink.doubled import BROADER, TWO
 from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
@@ -246,7 +246,7 @@ class Junctions:
                 return None
             widths += onward
         width_mm = float(np.mean(widths))
-        return width_mm if line.width_mm < 2 * width_mm else None
+        return width_mm if line.width_mm < TWO * width_mm else None
 
     def end_mm(self, side: Side) -> float:
         """How far beyond its leg's clean end a line ends that has no partner, mm."""

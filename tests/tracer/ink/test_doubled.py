@@ -69,6 +69,18 @@ def test_two_lines_that_others_cut_into_short_pieces_are_two_strokes() -> None:
         assert nearest_mm(line[np.abs(along) < 0.1], places).max() < 0.1 * WIDTH_MM
 
 
+@pytest.mark.parametrize("apart_mm", [0.5, 0.55])
+def test_two_lines_whose_rims_touch_for_a_while_are_two_strokes(apart_mm: float) -> None:
+    """The lens closes the slit between them: their ink is a little over two widths wide there, and even."""
+    along = np.linspace(-1, 1, 400)
+    aside_mm = 0.5 * apart_mm + 3 * np.maximum(np.abs(along) - 0.3, 0) ** 2
+    pair = [np.column_stack([30 + 12 * along, 20 + side * aside_mm]) for side in (1, -1)]
+    found = trace_ink(inked(*pair, CLEAR, seed=1))
+    assert len(found.lines) == 3
+    run_mm = sum(line.length_mm for line in found.lines)
+    assert run_mm == pytest.approx(sum(map(length_mm, (*pair, CLEAR))), rel=0.01)
+
+
 def test_the_ledger_counts_the_line_that_no_second_stroke_follows() -> None:
     drawing = inked(*near_lines(crossed=True), CLEAR, seed=1)
     left = ink_left(drawing.sheet)
