@@ -51,6 +51,9 @@ ALLOWED_CYCLES = 0.05  # that any cause may turn a phase: 2.5 um at 20 cycles pe
 LEAST_CREST = 1.24
 # RMS at standstill: five times as much is a twentieth of a cycle; 20 dB of noise make 0.0079
 UNSTEADY_CYCLES = 0.009
+# median surprise at standstill: 24.2 dB of noise (26 dB shake by 0.0028 to 0.003). With 23.1 dB a drive came
+# 0.0506 cycle off, at the limit of its acceleration where the speed jumps
+CALM_CYCLES = 0.0035
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
 # half of the half cycle at which a phase would be counted as another turn
 SURPRISE_CYCLES = 0.25
@@ -136,6 +139,7 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
         # a dropout may have cost whole cycles by now
         off = standing - zero - np.round(standing - zero)
         _demand_steady(off, names)
+        _demand_calm(phases.surprise[: len(standing)], names)
         zero = zero + np.median(off, axis=0)
     return Bearings(levels, zero, found_hz, names)
 
@@ -177,6 +181,18 @@ def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
             "standstill, at most "
             f"{UNSTEADY_CYCLES:g} is allowed: noise, crosstalk or tape that weaves; copy the tape "
             "on a better machine"
+        )
+
+
+def _demand_calm(surprise: Float32s, names: Sequence[str]) -> None:
+    """Raise TapeFault for phases that shake at standstill by more than a drive can follow later."""
+    shakes = np.median(np.abs(surprise), axis=0)
+    axis = int(np.argmax(shakes))
+    if not shakes[axis] <= CALM_CYCLES:
+        raise TapeFault(
+            f"the phase of {names[axis].upper()} shakes by {shakes[axis]:.4f} cycle (median) at standstill, "
+            f"at most {CALM_CYCLES:g} is allowed: noise, crosstalk or print-through, which the motors cannot "
+            "follow; copy the tape on a better machine"
         )
 
 
