@@ -29,8 +29,9 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.polyline import lengths_mm
+from morfax.tracer.junctions.arcs import ARC, outward
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
-from morfax.tracer.sensing.photocell import TWO_PI, darkness_at, ring
+from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings; stations are a view's step apart.
@@ -46,24 +47,7 @@ FORK_PLACES = 12  # of ink, all the way
 BEGIN = 0.3  # of the width: the first ring
 FARTHEST_MM, FARTHEST_WIDTHS = 5.0, 10.0  # rings do not grow beyond the larger of these
 CLEAN_RINGS = 3  # on which an arc has the line's width: a leg
-# of the width, and half the arc: as wide as the line
-NARROWEST, WIDEST, WIDEST_RAD = 0.5, 1.45, 1.2
 MORE_LEGS = 0.5  # of a leg's length: rings grow on by this after a leg was found
-
-# an arc of ink on a ring: where it begins and ends, its middle, and those of the two rings within, rad; for
-# how many rings it has been clean; whether it is the way in, or a leg already
-ARC = np.dtype(
-    [
-        ("begin", np.float64),
-        ("end", np.float64),
-        ("middle", np.float64),
-        ("middle_one_back", np.float64),
-        ("middle_two_back", np.float64),
-        ("clean", np.int64),
-        ("incoming", np.bool_),
-        ("found", np.bool_),
-    ]
-)
 
 
 def corner_in(seen: Array, first: int) -> int | None:
@@ -149,29 +133,59 @@ def _is_inked(cells, ray, end_mm):  # type: ignore[no-untyped-def]
 def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
     """The clean legs that leave a junction, but for the one by which the `trail` (n, 2) came in."""
     trail = _up_to(trail, centre)
-    trail_mm = np.hypot(*(trail - centre).T)
-    arcs = np.empty(0, ARC)
-    found: list[Leg] = []
+    way_in = trail, np.hypot(*(trail - centre).T)
+    arcs, found, at = np.empty(0, ARC), list[Leg](), 0
     last_mm = max(FARTHEST_MM, FARTHEST_WIDTHS * view.width_mm)
-    for radius in np.arange(BEGIN * view.width_mm, last_mm, view.step_mm):
-        if radius > last_mm:
-            break
-        # 1. the ring's arcs, as they hang on the ring within
-        trail_rad = _crossing(trail, trail_mm, centre, radius)
-        arcs = _outward(view.cells, centre, (radius, view.width_mm, trail_rad), arcs)
-        if not len(arcs):
-            break
+    more_mm = MORE_LEGS * view.leg_mm
+    radii = np.arange(BEGIN * view.width_mm, last_mm, view.step_mm)
+    while True:
+        # 1. rings outward to one with arcs that may be legs
+        sizes_mm = radii, float(view.width_mm), float(last_mm), float(more_mm if found else 0.0)
+        at, last_mm, arcs = _to_legs(view.cells, centre, way_in, (at, arcs), sizes_mm)
+        if at == len(radii):
+            return found
         # 2. those that have been clean for long enough are legs
         before = len(found)
         for k in np.flatnonzero(_undecided(arcs) & (arcs["clean"] >= CLEAN_RINGS)):
-            leg = _leg_outward(view, centre, radius, arcs[k])
+            leg = _leg_outward(view, centre, radii[at], arcs[k])
             if leg is not None:
                 found.append(leg)
                 arcs["found"][k] = True
         # 3. rings go on a little after the first leg, and for as long as some ink is undecided
         if found and (not before or _undecided(arcs).any()):
-            last_mm = radius + MORE_LEGS * view.leg_mm
-    return found
+            last_mm = radii[at] + more_mm
+        at += 1
+
+
+@njit(cache=True)
+def _to_legs(cells, centre, way_in, rings, sizes_mm):  # type: ignore[no-untyped-def]
+    """Go outward from a ring and the arcs within it, to one that has arcs which may be legs: that ring's
+    number, or how many there are; the radius of the last ring; the arcs.
+
+    `way_in`: the trail, and how far from the centre it is; `sizes_mm`: the radii, the line's width, the last
+    radius, and how much further rings go while ink is undecided (0: no further).
+    """
+    (trail, trail_mm), (first, arcs), (radii, width_mm, last_mm, more_mm) = (
+        way_in,
+        rings,
+        sizes_mm,
+    )
+    for k in range(first, len(radii)):
+        if radii[k] > last_mm:
+            break
+        trail_rad = _crossing(trail, trail_mm, centre, radii[k])
+        arcs = outward(cells, centre, (radii[k], width_mm, trail_rad), arcs)
+        if len(arcs) == 0:
+            break
+        is_undecided = False
+        for n in range(len(arcs)):
+            if not (arcs[n]["found"] or arcs[n]["incoming"]):
+                is_undecided = True
+                if arcs[n]["clean"] >= CLEAN_RINGS:
+                    return k, last_mm, arcs
+        if is_undecided and more_mm > 0.0:
+            last_mm = radii[k] + more_mm
+    return len(radii), last_mm, arcs
 
 
 def _undecided(arcs: NDArray[np.void]) -> NDArray[np.bool_]:
@@ -186,13 +200,13 @@ def _up_to(trail: Array, centre: Array) -> Array:
     return trail[: len(trail) - int(np.argmin(np.hypot(*(newest - centre).T)))]
 
 
-def _crossing(trail: Array, trail_mm: Array, centre: Array, radius: float) -> float:
+@njit(cache=True, _nrt=False)
+def _crossing(trail, trail_mm, centre, radius):  # type: ignore[no-untyped-def]
     """Direction in which the trail, back from its newest place, crosses a ring; NaN if it is too short."""
-    beyond = np.flatnonzero(trail_mm >= radius)
-    if not len(beyond):
-        return math.nan
-    place = trail[beyond[-1]] - centre
-    return math.atan2(place[1], place[0])
+    for k in range(len(trail) - 1, -1, -1):
+        if trail_mm[k] >= radius:
+            return math.atan2(trail[k, 1] - centre[1], trail[k, 0] - centre[0])
+    return math.nan
 
 
 def _leg_outward(view: View, centre: Array, radius: float, arc: np.void) -> Leg | None:
@@ -209,80 +223,3 @@ def _leg_outward(view: View, centre: Array, radius: float, arc: np.void) -> Leg 
     # less may be the blunt end of a tip
     least = max(FEWEST_STATIONS, math.ceil(LEAST_WIDTHS * view.width_mm / view.step_mm))
     return leg_of(seen, False, view.leg_mm) if len(seen) >= least else None
-
-
-@njit(cache=True)
-def _outward(cells, centre, ring_mm, inner):  # type: ignore[no-untyped-def]
-    """The arcs of a ring that are joined by ink to those of the ring within it.
-
-    `ring_mm` holds the ring's radius, the line's width, and the direction in which the trail crosses (rad).
-    """
-    radius_mm, width_mm, trail_rad = ring_mm
-    seen = ring(cells, centre, radius_mm)
-    arcs = np.zeros(len(seen), ARC)
-    count = 0
-    for k in range(len(seen)):
-        begin, end = seen[k, 0], seen[k, 1]
-        # 1. the arcs within on which it hangs
-        parents, parent, incoming, settled, found = _parents(inner, begin, end)
-        if len(inner) > 0 and parents == 0:
-            continue
-        arc = arcs[count]
-        count += 1
-        arc["begin"], arc["end"], arc["middle"] = begin, end, 0.5 * (begin + end)
-        arc["found"] = found
-        # 2. the way in: the trail crosses it, or it hangs on the way in, and not on the junction
-        if parents > 0 and settled == parents:
-            arc["incoming"] = True
-        elif math.isnan(trail_rad):
-            arc["incoming"] = incoming > 0
-        else:
-            arc["incoming"] = _overlap(begin, end, trail_rad, trail_rad)
-        # 3. clean: as wide as the line, with its parent's rings if it is the only child of an only parent
-        if _is_as_wide(end - begin, radius_mm, width_mm):
-            arc["clean"] = 1
-            if parents == 1 and _children(inner[parent], seen) == 1:
-                arc["clean"] = inner[parent]["clean"] + 1
-                arc["middle_one_back"] = inner[parent]["middle"]
-                arc["middle_two_back"] = inner[parent]["middle_one_back"]
-    return arcs[:count].copy()
-
-
-@njit(cache=True)
-def _parents(inner, begin, end):  # type: ignore[no-untyped-def]
-    """How many arcs of the ring within an arc (rad) hangs on; the last of them; how many are the way in,
-    and how many of these were clean twice; whether one is found.
-    """
-    parents, parent, incoming, settled, found = 0, 0, 0, 0, False
-    for p in range(len(inner)):
-        if _overlap(inner[p]["begin"], inner[p]["end"], begin, end):
-            parents, parent = parents + 1, p
-            incoming += inner[p]["incoming"]
-            settled += inner[p]["incoming"] and inner[p]["clean"] > 1
-            found = found or inner[p]["found"]
-    return parents, parent, incoming, settled, found
-
-
-@njit(cache=True)
-def _children(arc, seen):  # type: ignore[no-untyped-def]
-    """How many arcs (n, 2) rad of the next ring hang on an arc."""
-    count = 0
-    for k in range(len(seen)):
-        count += _overlap(arc["begin"], arc["end"], seen[k, 0], seen[k, 1])
-    return count
-
-
-@njit(cache=True)
-def _overlap(begin, end, other_begin, other_end):  # type: ignore[no-untyped-def]
-    """Whether two arcs, rad, have a direction in common."""
-    apart = 0.5 * (other_begin + other_end) - 0.5 * (begin + end)
-    apart -= TWO_PI * round(apart / TWO_PI)
-    return abs(apart) < 0.5 * (end - begin + other_end - other_begin)
-
-
-@njit(cache=True)
-def _is_as_wide(arc_rad, radius_mm, width_mm):  # type: ignore[no-untyped-def]
-    """Whether an arc is about as wide as the line."""
-    half = min(0.5 * arc_rad, 0.5 * math.pi)
-    width = 2 * radius_mm * math.sin(half)
-    return NARROWEST * width_mm < width < WIDEST * width_mm and half < WIDEST_RAD
