@@ -42,7 +42,7 @@ NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
 # of the pen's width about it; of the ink, which is as narrow
 SO_NARROW, LEAST_NARROW = 0.05, 0.05
 # times as much ink is as narrow as the pen as is a little broader, or more: of a nib, whose width follows its
-# heading or the hand, 1.4 at most (a width that swells as a sine); of 216 nets of one pen 3.9 or more
+# heading or the hand, 1.4 at most (a width that swells as a sine); of 14 nets of one pen 3.9 or more
 ONE_WIDTH = 2.0
 SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
 EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is one line
