@@ -28,7 +28,7 @@ from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
 from morfax.player.tape.bridges import Gap
 from morfax.player.tape.check_reader import CheckReader
-from morfax.player.tape.delays import Delay
+from morfax.player.tape.delays import TAIL_S, Delay, apart
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
@@ -45,8 +45,8 @@ from morfax.recorder.tape.told_figures import Stated, demand_agreement
 
 # of a delay off the line through seven: 0.036 cycle; 26 dB of noise leave 2
 LARGEST_OFF_S = 6e-6
-# that an axis may move behind the last delay told, where it is said to stand
-TAIL_CYCLES = 0.04
+# that an axis may move behind the last delay told: 26 dB of noise move it by 0.006, a reel by 0.026
+TAIL_CYCLES = 0.03
 
 
 class Vouching:
@@ -178,7 +178,7 @@ class Vouching:
         places = held.axis(axis, 0, len(held))
         way = delay.corrected(places, held.first_row)[first - held.first_row :]
         allowed = TAIL_CYCLES + (bound.speed * len(way) if bound else 0.0)
-        off, doubt_s = float(np.ptp(way)) - allowed, delay.doubt_s(last)
+        off, doubt_s = apart(way, round(TAIL_S * self._rate_hz)) - allowed, delay.doubt_s(last)
         if off <= 0 and doubt_s * self._format.reference_hz <= ALLOWED_CYCLES:
             return None
         off_s = max(off / self._format.reference_hz, doubt_s)

@@ -108,3 +108,11 @@ def test_noise_that_a_drive_makes_larger_where_the_speed_jumps(
     assert "at standstill" in str(verdict.fault)
     quiet = Kind("26 dB", lambda t, r: do.with_noise(t, r, 26.0), RIGHT)
     assert benches[1].tried(quiet, 21131).keeps(RIGHT)
+
+
+def test_a_delay_that_swings_behind_the_last_that_is_told(benches: tuple[Bench, Bench]) -> None:
+    """It leaves the line through the last seven by 10 us until the tape ends: 0.063 cycle off."""
+    kind = next(kind for kind in KINDS if kind.name == "a delay swings, 0.05 to 0.5 Hz")
+    verdict = benches[1].tried(kind, 40249)
+    assert verdict.keeps(EITHER), verdict.error_cycles
+    assert "swings by" in str(verdict.fault)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.player.tape.delays import DOUBT_ERRORS, WINDOW, Delay
+from morfax.player.tape.delays import DOUBT_ERRORS, WINDOW, Delay, apart
 
 ROWS = 720.0  # from one told delay to the next: a quarter of a frame at 6 kHz
 ERROR_S = 1e-6
@@ -39,3 +39,9 @@ def test_the_doubt_is_what_the_line_may_be_off(beyond: float) -> None:
 
 def test_what_was_told_too_seldom_is_not_judged() -> None:
     assert Delay(6000.0, 6000.0).doubt_s(1e4) == 0.0
+
+
+def test_averages_of_a_way_lie_apart_as_far_as_it_goes_less_one_of_them() -> None:
+    assert apart(0.001 * np.arange(100), 10) == pytest.approx(0.090)
+    assert apart(np.resize([0.0, 0.1], 100), 10) == pytest.approx(0.0, abs=1e-12)  # noise goes
+    assert apart(np.array([3.0]), 10) == 0.0
