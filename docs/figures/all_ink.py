@@ -12,7 +12,7 @@ from benchmarks.nets import cells, drawn
 from morfax.console.cli import main as morfax
 
 SEED = 12
-COLOURS = 16
+COLOURS, WIDEST = 48, Image.Quantize.MAXCOVERAGE  # so that thin lines keep their colours
 
 
 def main(folder: Path) -> None:
@@ -27,4 +27,4 @@ def main(folder: Path) -> None:
             if code := morfax([*words, "--quiet"]):
                 raise SystemExit(code)
             # the paper's noise would take ten times the space
-            Image.open(picture).convert("RGB").quantize(COLOURS).save(picture, optimize=True)
+            Image.open(picture).convert("RGB").quantize(COLOURS, WIDEST).save(picture, optimize=True)
