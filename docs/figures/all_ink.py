@@ -27,4 +27,6 @@ def main(folder: Path) -> None:
             if code := morfax([*words, "--quiet"]):
                 raise SystemExit(code)
             # the paper's noise would take ten times the space
-            Image.open(picture).convert("RGB").quantize(COLOURS, WIDEST).save(picture, optimize=True)
+            Image.open(picture).convert("RGB").quantize(COLOURS, WIDEST).save(
+                picture, optimize=True
+            )

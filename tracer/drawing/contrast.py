@@ -42,7 +42,9 @@ from morfax.tracer.drawing.scan import Grey
 Darkness = NDArray[np.float32]
 
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
-BLACK = 255.0  # grey levels below paper: nothing is darker
+MOST_ASKED = (
+    128.0  # grey levels darker than the paper: where more is asked, no other scan helps
+)
 ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
 DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
 LEAST_STROKE_MM, LEAST_STROKE_PX = 2.0, 12  # shorter strokes are specks
@@ -60,10 +62,10 @@ def strokes_of(patches: Patches, least: float, pitch_mm: float) -> NDArray[np.bo
     strokes = patches.longer_sides >= max(LEAST_STROKE_PX, LEAST_STROKE_MM / pitch_mm)
     if strokes.any():
         return np.asarray(strokes)
-    if least > BLACK:
+    if least > MOST_ASKED:
         raise DrawingFault(
-            "no line on the drawing: its grey levels vary everywhere, as of noise or a pattern, and no line "
-            "stands out; check the file"
+            "no line on the drawing: its grey levels vary everywhere, as of noise, hatching or a pattern, "
+            "and no line stands out; check the file"
         )
     raise DrawingFault(
         f"no line on the drawing: nothing longer than {LEAST_STROKE_MM:g} mm is {least:.0f} or more"

@@ -340,15 +340,18 @@ def test_a_file_that_is_not_there_or_cannot_be_read_is_told(tmp_path: Path) -> N
         Drawing.open(tmp_path)
 
 
-def test_a_pattern_that_is_all_over_the_sheet_is_told(tmp_path: Path) -> None:
-    """It was told as "580 or more of 255 grey levels"."""
+@pytest.mark.parametrize(("period_px", "ink_px"), [(16, 8), (5, 2)])
+def test_a_pattern_that_is_all_over_the_sheet_is_told(
+    tmp_path: Path, period_px: int, ink_px: int
+) -> None:
+    """It was told as "580 or more of 255 grey levels", and "scan it with more contrast": black on white."""
     y, x = np.mgrid[:400, :400]
-    board = np.asarray((x // 8 + y // 8) % 2 * 255, np.uint8)
-    Image.fromarray(board).save(tmp_path / "board.png", dpi=DPI)
+    hatched = np.where((x + y) % period_px < ink_px, 0, 255).astype(np.uint8)
+    Image.fromarray(hatched).save(tmp_path / "hatched.png", dpi=DPI)
     with pytest.raises(
-        DrawingFault, match="grey levels vary everywhere, as of noise or a pattern"
+        DrawingFault, match="vary everywhere, as of noise, hatching or a pattern"
     ):
-        Drawing.open(tmp_path / "board.png")
+        Drawing.open(tmp_path / "hatched.png")
 
 
 def test_a_tiff_whose_next_page_has_no_size_is_damaged(tmp_path: Path) -> None:
