@@ -56,6 +56,9 @@ SHORT_ROWS = 24  # the same where the acceleration changes further off: 4 ms at 
 # what may be left of the travel, halved, and of the way between: half of what is allowed, for the drives;
 # what sides of 4 ms may be off beside a change of acceleration (0.013 in 12 ms at 0.5 m/s²) is well within
 AGREED_CYCLES = ALLOWED_CYCLES / 2
+# by how much the speeds of both sides may differ beyond what the program's acceleration explains: parts of a
+# row's noise (six standard deviations; the parabola's end, of rows that are noisy together), and of a misfit
+SPEED_NOISE, SPEED_MISFIT, SHARPER = 0.26, 12 / SIDE_ROWS, 1.1
 TURNED_ROWS = 3.0  # beside the gap: half of what the band filter blurs
 
 
@@ -206,10 +209,21 @@ class Gap:
         """Whether it may be ridden over, if the count behind it is vouched for.
 
         Either no motion within the bound lies further off; or both sides agree and are smooth, so that a
-        motion which turns its acceleration over there and back within the gap alone is left out.
+        motion which turns its acceleration over there and back within the gap alone is left out. Neither
+        counts where a side is foreign.
         """
         agreed = self.bridge.certain and (self.short or self.bridge.misfit < SMOOTH_CYCLES)
-        return (self.known or agreed) and not (self.steady and self.astray)
+        return (self.known or agreed) and not (self.is_foreign or (self.steady and self.astray))
+
+    @property
+    def is_foreign(self) -> bool:
+        """Whether the speeds of both sides differ by more than the program gains in the gap.
+
+        Then one of them is not the program's own.
+        """
+        gained = abs(self.after.speed - self.before.speed)
+        doubt = SPEED_NOISE * self.noise + SPEED_MISFIT * self.bridge.misfit
+        return gained > SHARPER * self.bound.acceleration * self.rows + doubt
 
     @property
     def astray(self) -> bool:

@@ -116,3 +116,11 @@ def test_a_delay_that_swings_behind_the_last_that_is_told(benches: tuple[Bench, 
     verdict = benches[1].tried(kind, 40249)
     assert verdict.keeps(EITHER), verdict.error_cycles
     assert "swings by" in str(verdict.fault)
+
+
+def test_a_tone_whose_speed_the_program_does_not_reach(benches: tuple[Bench, Bench]) -> None:
+    """The gap at its beginning was laid up to the tone's own speed: 0.135 cycle off, until the fault."""
+    kind = next(kind for kind in KINDS if kind.name == "a dropout full of a tone")
+    verdict = benches[1].tried(kind, 50215)
+    assert verdict.keeps(EITHER), verdict.error_cycles
+    assert "Y was lost for 4.2 ms" in str(verdict.fault)
