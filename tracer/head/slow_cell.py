@@ -46,7 +46,6 @@ WINDOW_STEADY, WINDOW = 1.3, 0.75
 STEADY = 0.2  # of the bend: an arc's changes by less from one half of a stretch to the other
 BENT_WIDTHS = 0.7  # by more than this over its width the line may not bend: the cell, which cuts it aslant,
 # would see its middle w²/8·l²·k³ further inside: 8 um at a lead l of 0.36 mm and a radius of 0.9 mm
-UNBENT = 0.5  # of the bend that a cell may follow: a way that was felt and bends by no more hides no corner
 
 
 class Tried(NamedTuple):
@@ -115,9 +114,6 @@ def along(cells: Cells, state: Any, t: Tuning, home: Home, stretch: Stretch) -> 
     way_mm = length_mm(stretch.way)
     if way_mm < SHORTEST_MM:
         return None
-    if _is_unbent(stretch.way, t):
-        # on lines of few pixels the cell's own parabola bends by noise; the way that was felt does not
-        t = t._replace(narrowest_per_mm=math.inf)
     for start, felt_mm in ((_drawn_in, 0.0), (_on_felt, t.lead_mm - t.point_mm)):
         begun = start(state, t, stretch.way)
         tried = _for(cells, begun, t, home, way_mm)
@@ -129,16 +125,6 @@ def along(cells: Cells, state: Any, t: Tuning, home: Home, stretch: Stretch) -> 
         if off_mm(tried, stretch.way) < stretch.within_mm:
             return tried._replace(felt_mm=felt_mm)
     return None
-
-
-def _is_unbent(way: Array, t: Tuning) -> bool:
-    """Whether a way (n, 2) mm bends nowhere by more than half of what the cell may follow."""
-    over_mm = 2.0 * t.half_window_mm
-    at_mm = np.arange(0.0, length_mm(way), over_mm)
-    if len(at_mm) < 3:
-        return True
-    headings = np.unwrap(np.arctan2(*np.diff(at_lengths(way, at_mm), axis=0).T[::-1]))
-    return bool((np.abs(np.diff(headings)) <= UNBENT * t.narrowest_per_mm * over_mm).all())
 
 
 def _drawn_in(state: Any, t: Tuning, _: Array) -> Any:

@@ -120,13 +120,6 @@ def test_tight_bends_are_the_cell_s() -> None:
     assert distance(line.xy_mm, wave()).path_to_reference.rms_mm < 8 * UM
 
 
-def test_bends_of_a_coarse_scan_are_the_cell_s_where_what_was_felt_is_unbent() -> None:
-    """80 dpi: its own parabola bends by noise. With that as limit nothing of this wave was the cell's."""
-    line = trace(inked(wave(), width_mm=0.6, dpi=80, seed=1)).lines[0]
-    led = line.led.lengths_mm(line.xy_mm)
-    assert led[CELL] > 0.4 * (led[CELL] + led[STATIONS])
-
-
 def test_a_small_circle_is_not_cut() -> None:
     """A sweep across a tight bend would move the path inward by 11 um; the lens moves it by 2 um."""
     radius_mm = 1.2
