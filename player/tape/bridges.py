@@ -56,9 +56,11 @@ SHORT_ROWS = 24  # the same where the acceleration changes further off: 4 ms at 
 # what may be left of the travel, halved, and of the way between: half of what is allowed, for the drives;
 # what sides of 4 ms may be off beside a change of acceleration (0.013 in 12 ms at 0.5 m/s²) is well within
 AGREED_CYCLES = ALLOWED_CYCLES / 2
-# by how much the speeds of both sides may differ beyond what the program's acceleration explains: parts of a
-# row's noise (six standard deviations; the parabola's end, of rows that are noisy together), and of a misfit
-SPEED_NOISE, SPEED_MISFIT, SHARPER = 0.26, 12 / SIDE_ROWS, 1.1
+# by how much the speeds of both sides may differ beyond what the program's acceleration explains: of a row's
+# noise, sqrt(2) * 13.9 / 36^1.5 (the end of a parabola) * sqrt(8) (rows that are noisy together) ...
+SPEED_NOISE = 0.26
+# ... and of a misfit, which bends the end of a side's parabola; estimated. A tenth for what is told late
+SPEED_MISFIT, SHARPER = 12 / SIDE_ROWS, 1.1
 TURNED_ROWS = 3.0  # beside the gap: half of what the band filter blurs
 
 

@@ -104,10 +104,10 @@ def _evenly(outline: Array) -> Array:
     at = np.linspace(0, s[-1], max(8, round(s[-1] / APART_PX)), endpoint=False)
     places = np.column_stack([np.interp(at, s, column) for column in outline.T])
     reach = min(len(places) // 4, 40)
-    return np.roll(places, -int(np.argmin(_turned(places, reach))), axis=0)
+    return np.roll(places, -int(np.argmin(turned_at(places, reach))), axis=0)
 
 
-def _turned(places: Array, reach: int) -> Array:
+def turned_at(places: Array, reach: int) -> Array:
     """By how much the outline turns within so many places of each, rad, without sign."""
     back, on = places - np.roll(places, reach, axis=0), np.roll(places, -reach, axis=0) - places
     cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
@@ -119,17 +119,22 @@ def _corners(places: Array, softness_px: float, is_closed: bool) -> list[int]:
     from scipy.ndimage import uniform_filter1d
 
     reach = max(2, min(round(CLEAR * softness_px / APART_PX), len(places) // 4))
-    turned = uniform_filter1d(_turned(places, reach), reach, mode="wrap")
+    turned = uniform_filter1d(turned_at(places, reach), reach, mode="wrap")
     if not is_closed:  # about the ends it turns from one to the other
         turned[: 2 * reach] = turned[-2 * reach :] = 0.0
+    return sorted(most_turned(turned, LEAST_TURN, 2 * reach))
+
+
+def most_turned(turned: Array, least: float, apart: int) -> list[int]:
+    """Numbers of the places about which a closed outline turns most, rad, further than so many apart."""
     found = list[int]()
     for k in np.argsort(-turned):
-        if turned[k] < LEAST_TURN:
+        if turned[k] < least:
             break
         away = np.abs(k - np.array(found))
-        if np.all(np.minimum(away, len(places) - away) > 2 * reach):
+        if np.all(np.minimum(away, len(turned) - away) > apart):
             found.append(int(k))
-    return sorted(found)
+    return found
 
 
 class PutBack(NamedTuple):

@@ -18,7 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.drawing.sharpening import APART_PX, CLEAR, Edge
+from morfax.motion.polyline import evenly
+from morfax.tracer.drawing.sharpening import APART_PX, CLEAR, Edge, most_turned, turned_at
 
 SHARPEST, BLUNTEST = math.radians(3), math.radians(45)  # between the legs of a tip
 TURNED = math.radians(100)  # the outline about it, at least
@@ -37,17 +38,11 @@ class Tip(NamedTuple):
 
 def tips_of(edge: Edge, softness_px: float) -> list[Tip]:
     """The tips of a closed outline that end short, the worst first."""
-    places = _evenly(edge.outline)
+    places = evenly(edge.outline, APART_PX)
     reach = max(2, round(CLEAR * softness_px / APART_PX))
     if len(places) < 2 * round(FAR * softness_px / APART_PX):
         return []
-    turned, found = _turned(places, reach), list[int]()
-    for k in np.argsort(-turned):
-        if turned[k] < TURNED:
-            break
-        away = np.abs(k - np.array(found))
-        if np.all(np.minimum(away, len(places) - away) > 2 * reach):
-            found.append(int(k))
+    found = most_turned(turned_at(places, reach), TURNED, 2 * reach)
     tips = [tip for k in found if (tip := _tip(places, k, softness_px)) is not None]
     return sorted(tips, key=lambda tip: -tip.short_px)
 
@@ -61,20 +56,6 @@ def note(tips: list[tuple[Tip, tuple[float, float]]], pitch_mm: float) -> str:
         f"{x:.1f},{y:.1f} mm ({math.degrees(tip.angle_rad):.0f} degrees); printed twice as large, and with "
         "--scale 0.5, it ends half as far short"
     )
-
-
-def _evenly(outline: Array) -> Array:
-    """Places every `APART_PX` along a closed outline, the first not repeated."""
-    come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(outline, axis=0).T))])
-    at = np.arange(0.0, come[-1], APART_PX)
-    return np.column_stack([np.interp(at, come, column) for column in outline.T])
-
-
-def _turned(places: Array, reach: int) -> Array:
-    """By how much the outline turns within so many places of each, rad, without sign."""
-    back, on = places - np.roll(places, reach, axis=0), np.roll(places, -reach, axis=0) - places
-    cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
-    return np.asarray(np.abs(np.arctan2(cross, np.einsum("ij,ij->i", back, on))))
 
 
 def _tip(places: Array, at: int, softness_px: float) -> Tip | None:

@@ -151,11 +151,6 @@ def _pairings(left: tuple[int, ...]) -> Iterator[tuple[Pair, ...]]:
         yield from _pairings(rest)
 
 
-def _cost(pairs: tuple[Pair, ...], costs: Array) -> float:
-    """What a pairing costs, rad; pairs that are no line are left out of it."""
-    return sum(min(costs[pair] ** 2, NOT_JOINED) for pair in pairs)
-
-
 def _straightest_first(costs: Array) -> list[Pair]:
     """Pairs taken one after the other, the straightest first."""
     left, pairs = costs.copy(), list[Pair]()
@@ -178,7 +173,7 @@ def _exchanged(pairs: list[Pair], costs: Array) -> list[Pair]:
         for one, other in combinations(range(len(now)), 2):
             (a, b), (c, d) = now[one], now[other]
             for tried in (((a, c), (b, d)), ((a, d), (b, c))):
-                if _cost_of(tried, costs) < _cost_of((now[one], now[other]), costs) - ROUNDED:
+                if _cost(tried, costs) < _cost((now[one], now[other]), costs) - ROUNDED:
                     now[one], now[other] = tried
                     is_better = True
     return [(min(pair), max(pair)) for pair in now if _is_joined(pair, costs)]
@@ -189,7 +184,7 @@ def _is_joined(pair: Pair, costs: Array) -> bool:
     return NOBODY not in pair and math.isfinite(costs[pair])
 
 
-def _cost_of(pairs: tuple[Pair, ...], costs: Array) -> float:
+def _cost(pairs: tuple[Pair, ...], costs: Array) -> float:
     """What some pairs cost, rad²; half as much as two legs that are not joined if there is but one."""
     return sum(
         min(costs[pair] ** 2, NOT_JOINED)

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import lengths_mm
+from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.tracer.ink.run import Run
 
 # All limits below were chosen by trial on drawings of nets.
@@ -31,15 +31,12 @@ ALONG_COS = 0.94  # 20 degrees: a stretch that goes another way is not this line
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
 AVERAGED, FADES = 2.0, 1.0  # widths of the line
 SLACK = 0.12  # of the line's width: where two lines cross, the rims of their ink are felt so much too near
-NOTCH = (
-    0.1  # widths: nearer to the middle of its ink a line crosses another, and its rim is none
-)
+# widths: nearer to the middle of its ink a line crosses another, and its rim is none
+NOTCH = 0.1
 FEWEST = 8  # places that tell a bend
 EXACT_MM = 0.03  # a rim, felt every `EVERY_MM`: neighbours err alike
-TURNED, HUMP_MM = (
-    0.01,
-    1.0,
-)  # deviation: of the heading of a leg at its end; how far a way may bulge, 16 times
+# deviations: of the heading of a leg at its end, rad; 16 times of how far a way bulges
+TURNED, HUMP_MM = 0.01, 1.0
 FITS = 0.8  # of the places are as near to their rims as these are exact
 AGAIN = 6  # times weights are found anew
 SAME_MM = 1e-6  # ends of one way
@@ -84,7 +81,7 @@ def kept_in_ink(
     if not len(stations) or come_mm[-1] < FADES * width_mm:
         return way
     at_mm = np.linspace(0.0, come_mm[-1], 2 + math.ceil(come_mm[-1] / EVERY_MM))
-    some = _at(way, come_mm, at_mm)
+    some = at_lengths(way, at_mm)
     # 1. bent smoothly along the rims
     bent = some + _bent(some, at_mm / at_mm[-1], _off(some, stations, width_mm, others))
     # 2. where it is out of the ink still, moved, smoothly and not at the ends
@@ -94,11 +91,6 @@ def kept_in_ink(
     fade = np.minimum(at_mm, at_mm[-1] - at_mm) / (FADES * width_mm)
     moves = bent - some + moves * np.clip(fade, 0.0, 1.0)[:, None]
     return np.asarray(way + np.column_stack([np.interp(come_mm, at_mm, m) for m in moves.T]))
-
-
-def _at(way: Array, come_mm: Array, at_mm: Array) -> Array:
-    """Places of a way at lengths along it, (n, 2) mm."""
-    return np.column_stack([np.interp(at_mm, come_mm, column) for column in way.T])
 
 
 class _Off(NamedTuple):

@@ -30,6 +30,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm, nearest_mm
 from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import joined
+from morfax.tracer.drawing.sharpening import turned_at
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.edge_check import OFF_MM
 from morfax.tracer.following.line import Line
@@ -128,7 +129,7 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
 
 def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Unexplained]:
     """Tips of filled shapes that the picture shows, and the way does not come to."""
-    tips = [edge[:-1][_turned(edge) > TIP] for edge in edges_mm]
+    tips = [edge[:-1][turned_at(edge[:-1], 1) > TIP] for edge in edges_mm]
     places = np.vstack([np.empty((0, 2)), *tips])
     if not len(places) or not closed:
         return
@@ -137,14 +138,6 @@ def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Une
     for k in np.flatnonzero((away_mm > CUT_MM) & (away_mm < OFF_MM)):
         x, y = places[k]
         yield Unexplained((float(x), float(y)), float(away_mm[k]), True, is_tip=True)
-
-
-def _turned(edge: Array) -> Array:
-    """By how much a closed edge (its last place its first) turns at each of its places but the last, rad."""
-    ways = np.diff(edge, axis=0)
-    before = np.roll(ways, 1, axis=0)
-    cross = before[:, 0] * ways[:, 1] - before[:, 1] * ways[:, 0]
-    return np.asarray(np.abs(np.arctan2(cross, np.einsum("ij,ij->i", before, ways))))
 
 
 def _stretches(
