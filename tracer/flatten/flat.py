@@ -48,6 +48,7 @@ class Flattening:
     fit: Fit | None = None  # of marks or edges
     bar_mm: float | None = None
     reduced: Picture | None = None  # the photograph, smaller
+    doubt: str = ""  # about which format the sheet has
 
     @property
     def mm_per_px(self) -> tuple[float, float]:
@@ -58,7 +59,7 @@ class Flattening:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What may not be meant so."""
-        told = []
+        told = [self.doubt] if self.doubt else []
         if self.fit is not None and self.fit.size_share > WORTH_A_WARNING:
             told.append(
                 f"the {self.seen} are up to {self.fit.max_mm:.2f} mm off a flat sheet, which is"
@@ -139,11 +140,11 @@ def _found(picture: Picture, wanted: Wanted, bar_mm: float, focal: Focal) -> Fla
                 " it, and photograph the whole sheet, sharp and evenly lit"
             )
     if wanted.paper is None:
-        paper, fit = format_choice.fit_any(picture, focal)
+        paper, fit, doubt = format_choice.fit_any(picture, focal)
     else:
-        paper, fit = format_choice.fit_named(picture, wanted.paper, focal)
+        paper, fit, doubt = format_choice.fit_named(picture, wanted.paper, focal)
     tilt = fit.projection.tilt_rad(focal)
-    return Flattening(Wanted("paper", paper), paper, fit.projection, tilt, fit=fit)
+    return Flattening(Wanted("paper", paper), paper, fit.projection, tilt, fit=fit, doubt=doubt)
 
 
 def _of_marks(picture: Picture, scale: float, focal: Focal) -> Flattening | None:

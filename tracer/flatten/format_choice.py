@@ -5,7 +5,8 @@ Signals: a picture, and what is known of the lens, in; a format, upright or lyin
 Four edges fit a rectangle of any sides: a homography takes every quadrangle to every other. But a rigid
 sheet before a lens of a known focal length has one ratio of sides only. So a format fits as well as its
 sheet stands rigidly there (see `projection.Pose`). The sheets of the A series all have one ratio, and fit
-together.
+together. A picture that was cropped to one side, or stretched, is no view of a camera's whole frame: where a
+sheet of no sides at all would stand rigidly, its shape tells nothing, and a named format is believed.
 
 Source: Zhang and He 2007, whiteboards (the ratio of a rectangle in one view). Questions: without a focal
 length in the file phones' usual one is taken; a sheet tilted far may then fit two formats.
@@ -14,6 +15,7 @@ length in the file phones' usual one is taken; a sheet tilted far may then fit t
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,7 +36,15 @@ PLACES_WAY = '--flatten "X,Y X,Y X,Y X,Y=200x100mm" with four places in the phot
 Sides = list[tuple[Array, Array]]  # see outline.sides
 
 
-def fit_named(picture: Picture, paper: Format, focal: Focal) -> tuple[Format, Fit]:
+class Choice(NamedTuple):
+    """The format of a sheet as it lies, its fit, and what about the choice is worth a word."""
+
+    paper: Format
+    fit: Fit
+    doubt: str = ""
+
+
+def fit_named(picture: Picture, paper: Format, focal: Focal) -> Choice:
     """Fit a sheet of a format, upright or lying; raises DrawingFault if no edges show, or do not fit."""
     found = _sides(picture)
     if found is None:
@@ -44,7 +54,13 @@ def fit_named(picture: Picture, paper: Format, focal: Focal) -> tuple[Format, Fi
         )
     each, off = _likelier(picture, found, paper, focal)
     if off <= FITS_NAMED:
-        return each, _fit(picture, found, each)
+        return Choice(each, _fit(picture, found, each))
+    if _likeliest(outline.corners_of(found), photo_of(picture), focal)[1] > FITS_ALONE:
+        doubt = (
+            "no sheet of any sides stands so before a camera: the picture was cropped to one side or"
+            f" stretched, so nothing but --flatten tells that the sheet is {paper.name}"
+        )
+        return Choice(each, _fit(picture, found, each), doubt)
     fitting = _fitting(picture, found, focal)
     others = f"; {' or '.join(other.name for other in fitting)} would fit" if fitting else ""
     raise DrawingFault(
@@ -53,7 +69,7 @@ def fit_named(picture: Picture, paper: Format, focal: Focal) -> tuple[Format, Fi
     )
 
 
-def fit_any(picture: Picture, focal: Focal) -> tuple[Format, Fit]:
+def fit_any(picture: Picture, focal: Focal) -> Choice:
     """Fit a sheet of the one known format that it can have; raises DrawingFault if none or several fit."""
     found = _sides(picture)
     if found is None:
@@ -63,14 +79,21 @@ def fit_any(picture: Picture, focal: Focal) -> tuple[Format, Fit]:
         )
     fitting = _fitting(picture, found, focal)
     if len(fitting) == 1:
-        return fitting[0], _fit(picture, found, fitting[0])
-    names = [each.name for each in fitting] or ["148x105mm"]
-    can_be = (
-        f"can be {', '.join(names[:-1])} or {names[-1]}" if fitting else "has no known format"
-    )
+        each = fitting[0]
+        doubt = (
+            f"by its shape alone the sheet is taken for {each.name}, {each.width_mm:g} x {each.height_mm:g}"
+            " mm; if it is another, give it, such as --flatten paper=a4"
+        )
+        return Choice(each, _fit(picture, found, each), doubt)
+    if fitting:
+        names = [each.name for each in fitting]
+        can_be = f"can be {', '.join(names[:-1])} or {names[-1]}"
+        size = f"--flatten paper={names[0]} if that is its size"
+    else:
+        can_be = "has the shape of no known format"
+        size = "its size, such as --flatten paper=148x105mm (or paper=a4 if the picture was cropped)"
     raise DrawingFault(
-        f"the photograph shows no marks, and its sheet {can_be}; give --flatten paper={names[0]} if that is"
-        f" its size, {MARKS_WAY}, or {PLACES_WAY}"
+        f"the photograph shows no marks, and its sheet {can_be}; give {size}, {MARKS_WAY}, or {PLACES_WAY}"
     )
 
 
@@ -79,21 +102,7 @@ def tilt_and_cost(picture: Picture, focal: Focal) -> tuple[float, float] | None:
     corners = outline.outline(picture)
     if corners is None:
         return None
-    from scipy.optimize import minimize_scalar
-
-    photo = photo_of(picture)
-
-    def projection(log_stretch: float) -> Projection:
-        """The sheet as if its width were so many times its height."""
-        sheet = Rectangle(math.exp(log_stretch), 1.0)
-        return Projection(sheet, photo, homography_of(corners_of(sheet), corners, sheet, photo))
-
-    best = minimize_scalar(
-        lambda log_stretch: Pose.of(projection(log_stretch).homography, focal).off,
-        bounds=(-1.0, 1.0),
-        method="bounded",
-    )
-    likely = projection(best.x)
+    likely, _ = _likeliest(corners, photo_of(picture), focal)
     finest, coarsest = likely.mm_per_px()
     return likely.tilt_rad(focal), coarsest / finest - 1
 
@@ -107,6 +116,23 @@ def corners_of(sheet: Rectangle) -> Array:
 def photo_of(picture: Picture) -> Rectangle:
     """A picture's size, px."""
     return Rectangle(picture.shape[1], picture.shape[0])
+
+
+def _likeliest(corners: Array, photo: Rectangle, focal: Focal) -> tuple[Projection, float]:
+    """The sheet of whatever sides that stands most rigidly so, and how far off it is (see Pose.off)."""
+    from scipy.optimize import minimize_scalar
+
+    def projection(log_stretch: float) -> Projection:
+        """The sheet as if its width were so many times its height."""
+        sheet = Rectangle(math.exp(log_stretch), 1.0)
+        return Projection(sheet, photo, homography_of(corners_of(sheet), corners, sheet, photo))
+
+    best = minimize_scalar(
+        lambda log_stretch: Pose.of(projection(log_stretch).homography, focal).off,
+        bounds=(-1.0, 1.0),
+        method="bounded",
+    )
+    return projection(best.x), float(best.fun)
 
 
 def _sides(picture: Picture) -> Sides | None:

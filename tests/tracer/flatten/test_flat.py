@@ -223,6 +223,24 @@ def test_a_format_that_the_sheet_does_not_have_is_refused() -> None:
         made(picture, parsed("paper=a4"))
 
 
+def test_a_named_format_is_believed_where_no_sheet_stands_so_and_this_is_told() -> None:
+    camera = replace(phone(20), fills=0.7)
+    shear = np.array([[1, 0.12, -80], [0, 1, 0]])
+    sheet = plain(camera, A4)
+    sheared = cv2.warpAffine(sheet, shear, sheet.shape[1::-1], borderValue=sheet[0, 0].tolist())
+    found = made(np.asarray(sheared, np.uint8), parsed("paper=a4"))
+    assert len(found.warnings) == 1
+    assert re.match(r"no sheet of any sides .* tells that the sheet is a4$", found.warnings[0])
+    inside = np.array([(30, 30), (180, 40), (105, 150), (20, 270), (190, 260)], float)
+    seen = camera.to_photo(inside, A4) @ shear[:, :2].T + shear[:, 2]
+    assert np.abs(found.projection.to_sheet(seen) - inside).max() < 0.15 * MM  # 5 px a mm
+
+
+def test_a_rigid_sheet_of_other_sides_is_not_the_named_one() -> None:
+    with pytest.raises(DrawingFault, match="does not have the sides of a4"):
+        made(plain(phone(10), (200.0, 200.0)), parsed("paper=a4"))
+
+
 # --- by itself
 
 
@@ -230,6 +248,10 @@ def test_the_one_format_that_fits_is_taken() -> None:
     camera = phone(10, 0.01)
     found = made(plain(camera, LETTER), AUTO)
     assert found.told == "edges of letter, 215.9 x 279.4 mm"
+    assert found.warnings == (
+        "by its shape alone the sheet is taken for letter, 215.9 x 279.4 mm; if it is another, give it, such"
+        " as --flatten paper=a4",
+    )
 
 
 def test_sheets_of_the_a_series_cannot_be_told_apart() -> None:
@@ -243,7 +265,8 @@ def test_sheets_of_the_a_series_cannot_be_told_apart() -> None:
 def test_a_sheet_of_no_known_format() -> None:
     size: Size = (200.0, 200.0)
     with pytest.raises(
-        DrawingFault, match="its sheet has no known format; give --flatten paper=148"
+        DrawingFault,
+        match="has the shape of no known format; give its size, such as --flatten paper=148",
     ):
         made(plain(phone(10), size), AUTO)
 
