@@ -8,10 +8,10 @@ rims of their ink.
     ══════──────────      between one and about two widths wide, which swells and shrinks slowly
 
 Only a clean sheet tells that: one whose lines have smooth edges and on which much of the ink is as narrow as
-the narrowest. A nib or a brush swells and shrinks, too, and no width of it stands out. Ink of one even width
-is a line of a broader pen.
+the narrowest. A nib or a brush swells and shrinks, too (see `nib`). Ink of one even width is a line of a
+broader pen.
 
-Source: our own. Questions: a brush that is pressed evenly to just such widths looks the same.
+Source: our own.
 """
 
 from __future__ import annotations
@@ -25,10 +25,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import median
 from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.ink.felt import FEWEST_STATIONS
+from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends
+from morfax.tracer.ink.nib import Ink, is_by_heading, what_swells
 from morfax.tracer.ink.run import Run, smooth
+from morfax.tracer.ink.swelling import Swelling, pen_of, stands_out
 
 Flags = NDArray[np.bool_]
 
@@ -36,15 +37,6 @@ Flags = NDArray[np.bool_]
 SHARED = 1.15  # times the line's width: ink that two lines share is wider
 BROADER = 1.05  # times the pen's width: of ink into which two lines run at both its ends
 TWO = 2.5  # times the pen's width: ink that is wider is no two lines of it
-AVERAGED = 2.0  # widths over which a width is averaged
-BESIDE = 1.5  # widths from the ends of a stretch: there others cross it
-NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
-# of the pen's width about it; of the ink, which is as narrow
-SO_NARROW, LEAST_NARROW = 0.05, 0.05
-# times as much ink is as narrow as the pen as is a little broader, or more: of a nib, whose width follows its
-# heading or the hand, 1.4 at most (a width that swells as a sine); of 14 nets of one pen 3.9 or more
-ONE_WIDTH = 2.0
-SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
 EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is one line
 ABOUT = 3.0  # widths of a pen: two stretches whose ends are so near meet at one crossing
 # of its way: ink of two lines that becomes wider by more has come to others that cross it
@@ -60,28 +52,34 @@ CUT_WIDTHS = 1.8  # of its own: a shorter piece is where others cross
 ALIKE = 0.15  # of its width: a piece of the same two lines is about as broad, and as broad all along
 STRAIGHT_COS = 0.98  # 11 degrees
 PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the same two lines
-FEWEST = 10  # stations that tell a width
 LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 
 
 class Doubled(NamedTuple):
-    """The pen's width, mm, and the stretches that two lines share: which of the stations of each."""
+    """The pen's width, mm, and the stretches that two lines share: which of the stations of each.
+
+    If that is not sure they are run once, and told.
+    """
 
     pen_mm: float = math.nan
     stations: dict[int, Flags] = {}  # noqa: RUF012 - a NamedTuple's default, never written to
     cut: frozenset[int] = (
         frozenset()
     )  # short pieces of the same lines, between others that cross them
+    is_sure: bool = True
 
     @classmethod
-    def of(cls, felt: Sequence[Run]) -> Doubled:
-        """Find the doubled stretches of a sheet; none of one that is not clean."""
-        # 1. how wide the ink is along each stretch, without its ends
+    def of(cls, felt: Sequence[Run], ends: Sequence[Ends]) -> Doubled:
+        """Find the doubled stretches of a sheet, some of which end the ink; none of one that is not clean."""
+        # 1. how wide the ink is along each stretch, and whether one pen's line or two lines are
         found = {
-            n: widths for n, run in enumerate(felt) if (widths := _widths(run)) is not None
+            n: swelling
+            for n, run in enumerate(felt)
+            if (swelling := Swelling.of(run, ends[n])) is not None
         }
-        pen_mm = _pen_mm([(some.averaged, some.rough, felt[n]) for n, some in found.items()])
-        if not math.isfinite(pen_mm):
+        every = list(found.values())
+        pen_mm = pen_of(every)
+        if not math.isfinite(pen_mm) or (ink := _what_is(every, pen_mm)) == Ink.NIB:
             return cls()
         # 2. those that swell and shrink, and even ones where these go on
         broad = {
@@ -92,7 +90,10 @@ class Doubled(NamedTuple):
         doubled = {n for n in broad if not _is_even(found[n].averaged)}
         while more := {n for n in broad.keys() - doubled if _goes_on(felt, n, doubled, pen_mm)}:
             doubled |= more
-        return cls(pen_mm, {n: broad[n] for n in sorted(doubled)}, _cut(felt, doubled, pen_mm))
+        stations = {n: broad[n] for n in sorted(doubled)}
+        if ink == Ink.EITHER:
+            return cls(pen_mm, stations, is_sure=False)
+        return cls(pen_mm, stations, _cut(felt, doubled, pen_mm))
 
     def length_mm(self, felt: Sequence[Run], number: int) -> float:
         """The length of the ink of a stretch that two lines share, mm."""
@@ -102,6 +103,8 @@ class Doubled(NamedTuple):
     def throughout(self, felt: Sequence[Run]) -> set[int]:
         """The stretches that two lines share from end to end: of others one of the lines ends on the way."""
         found = set[int]()
+        if not self.is_sure:
+            return found
         for n, flags in self.stations.items():
             there = np.flatnonzero(flags)
             end_mm = max(there[0], len(flags) - 1 - there[-1]) * felt[n].view.step_mm
@@ -110,58 +113,11 @@ class Doubled(NamedTuple):
         return found
 
 
-class _Widths(NamedTuple):
-    """Widths along a stretch, averaged, mm (NaN near its ends), and how they differ from that, of a width."""
-
-    averaged: Array
-    rough: float
-
-
-def _widths(run: Run) -> _Widths | None:
-    """The averaged widths of a stretch; None if it is too short."""
-    known = np.isfinite(run.widths_mm)
-    if known.sum() < FEWEST:
-        return None
-    usual_mm = median(run.widths_mm[known])
-    off = math.ceil(BESIDE * usual_mm / run.view.step_mm)
-    inside = known.copy()
-    inside[:off] = inside[len(run) - off :] = False
-    if inside.sum() < FEWEST:
-        return None
-    at = np.arange(len(run))
-    filled = np.interp(at, at[inside], run.widths_mm[inside])
-    reach = max(1, round(0.5 * AVERAGED * usual_mm / run.view.step_mm))
-    padded = np.pad(filled, reach, mode="edge")
-    averaged = np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
-    rough = float(np.sqrt(np.mean((run.widths_mm - averaged)[inside] ** 2))) / usual_mm
-    return _Widths(np.where(inside, averaged, np.nan), rough)
-
-
-def _pen_mm(some: Sequence[tuple[Array, float, Run]]) -> float:
-    """The width of a sheet's pen, mm; NaN if the sheet is not clean."""
-    if not some:
-        return math.nan
-    lengths = np.array(
-        [np.isfinite(averaged).sum() * run.view.step_mm for averaged, _, run in some]
-    )
-    rough = float(np.average([rough for _, rough, _ in some], weights=lengths))
-    widths = np.sort(
-        np.concatenate([averaged[np.isfinite(averaged)] for averaged, _, _ in some])
-    )
-    pen_mm = float(widths[round(NARROWEST * (len(widths) - 1))])
-    are_narrow = np.abs(widths / pen_mm - 1) < SO_NARROW
-    is_clean = rough < SMOOTH_EDGES and float(np.mean(are_narrow)) > LEAST_NARROW
-    if not is_clean:
-        return math.nan
-    pen_mm = float(np.median(widths[are_narrow]))
-    return pen_mm if _is_one_width(widths / pen_mm) else math.nan
-
-
-def _is_one_width(shares: Array) -> bool:
-    """Whether a pen's width stands out among widths in parts of it: a nib's are spread evenly."""
-    narrow = float(np.mean(np.abs(shares - 1) < SO_NARROW))
-    broader = float(np.mean(np.abs(shares - 1 - 2 * SO_NARROW) < SO_NARROW))
-    return narrow > ONE_WIDTH * broader
+def _what_is(some: Sequence[Swelling], pen_mm: float) -> Ink:
+    """What ink is that swells. If the width of one pen stands out, what is broader is two lines."""
+    if is_by_heading(some):
+        return Ink.NIB
+    return Ink.TWO_LINES if stands_out(some, pen_mm) else what_swells(some, pen_mm)
 
 
 def _broad(run: Run, averaged: Array, pen_mm: float) -> Flags | None:

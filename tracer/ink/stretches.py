@@ -122,7 +122,8 @@ class FeltSheet:
 
     def is_broad(self, number: int) -> bool:
         """Whether a stretch is broader than the pen of a clean sheet; of another sheet that is not known."""
-        return self.measured[number].width_mm > BROADER * self.doubled.pen_mm
+        doubled = self.doubled
+        return doubled.is_sure and self.measured[number].width_mm > BROADER * doubled.pen_mm
 
     @classmethod
     def of(cls, drawing: Drawing, settings: Settings, ink: Mask) -> FeltSheet:
@@ -131,8 +132,8 @@ class FeltSheet:
         felt = _felt(graph, drawing, settings)
         measured, at = [Measured.of(run) for run in felt], graph.at_nodes()
         widths = _line_widths(StraightOn(graph, felt, at), measured, settings)
-        doubled = Doubled() if settings.line_width_mm else Doubled.of(felt)
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
+        doubled = Doubled() if settings.line_width_mm else Doubled.of(felt, ends)
         return cls(graph, felt, measured, widths, settings, ends, doubled)
 
 

@@ -197,7 +197,7 @@ class InkHead:
         if left_mm < SHORTEST_MM:
             return False
         on = at + round(min(left_mm, SLOWLY_LEGS * view.leg_mm) / view.step_mm)
-        way = self._course(run, at, (run.places_mm[on], float(run.headings_rad[on])))
+        way = self._course(run.part(0, on + 1), at, _stands_at(run, on))
         stretch = bare_stretch(view, self.carriage, way, run.stations()[at : on + 1])
         if stretch is None:
             return False
@@ -247,20 +247,21 @@ class InkHead:
     def _along(self, run: Run, at: int, stations: int, view: View) -> int:
         """Run along so many stations from memory, aimed at what follows; the station come to."""
         on = min(len(run) - 1, at + stations)
-        end = run.places_mm[on], float(run.headings_rad[on])
-        self.carriage.run([self._course(run, at, end)], self.settings.speed_mm_s, STATIONS)
+        way = self._course(run.part(0, on + 1), at, _stands_at(run, on))
+        self.carriage.run([way], self.settings.speed_mm_s, STATIONS)
         self.carriage.aim(view, _leg_at(run, on))
         return on
 
     def _course(self, run: Run, at: int, end: tuple[Array, float]) -> Array:
-        """From where the head stands along a run's stations to a place and heading, (n, 2) mm."""
+        """From where the head stands along a run's stations to a place and heading at its end, (n, 2) mm."""
         stands = self.carriage.stands()
         spacing = max(1, round(NODES_MM / run.view.step_mm))
         nodes = [stands]
         way = np.array([math.cos(end[1]), math.sin(end[1])])
         for k in range(at + spacing, len(run), spacing):
-            place = run.places_mm[k]
-            if (end[0] - place) @ way < 0.5 * NODES_MM and math.dist(end[0], place) < 2.0:
+            place, left_mm = run.places_mm[k], (len(run) - 1 - k) * run.view.step_mm
+            # a loop comes by its end at its beginning, too
+            if (end[0] - place) @ way < 0.5 * NODES_MM and left_mm < NEAR_MM:
                 break
             nodes.append((place, float(run.headings_rad[k])))
         return course.through_nodes([*nodes, end])
@@ -274,11 +275,15 @@ class InkHead:
         return at + near
 
 
+def _stands_at(run: Run, at: int) -> tuple[Array, float]:
+    """The place and heading of a run at a station."""
+    return run.places_mm[at], float(run.headings_rad[at])
+
+
 def _leg_at(run: Run, at: int) -> Leg:
     """A leg that begins at a station of a run."""
     return Leg(
-        run.places_mm[at],
-        float(run.headings_rad[at]),
+        *_stands_at(run, at),
         float(run.bends_per_mm[at]),
         run.view.width_mm,
         run.stations()[at:],

@@ -12,7 +12,6 @@ from morfax.jobs.remarks_on_ink import of_ink
 from morfax.jobs.trace_figures import ink as figures_of
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import Doubled
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.stretches import FeltSheet
@@ -127,4 +126,4 @@ def test_rough_lines_do_not_tell() -> None:
     rough = np.column_stack([np.r_[x, x[::-1]], np.r_[20 + rng.uniform(-0.1, 0.1, 800)]])
     drawing = inked(rough, CLEAR, seed=1)
     left = ink_left(drawing.sheet)
-    assert not Doubled.of(FeltSheet.of(left.drawing, Settings(), left.ink).felt).stations
+    assert not FeltSheet.of(left.drawing, Settings(), left.ink).doubled.stations

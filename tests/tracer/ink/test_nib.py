@@ -1,0 +1,82 @@
+"""Ink that swells everywhere: a nib's stroke is run once, two lines both; what may be either is told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.motion.polyline import length_mm, nearest_mm
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace_ink import trace_ink
+from tests.tracer.inked import Points, inked, loops, together
+
+PEN_MM = 0.4
+THIN_MM, BROAD_MM = 0.27, 0.6
+
+
+def run_mm(found: Trace) -> float:
+    """The length of all strokes, mm."""
+    return sum(line.length_mm for line in found.lines)
+
+
+def lissajous(a: int, b: int, apart_mm: float, radius_mm: float = 28.0) -> Points:
+    """A Lissajous figure that comes back beside its own way, by no more than so much anywhere."""
+    turns = np.linspace(0, 2 * np.pi, 4000)
+    phase = np.pi / (2 * b) + 0.5 * apart_mm / radius_mm
+    x, y = np.sin(a * turns + phase), np.sin(b * turns)
+    return np.column_stack([radius_mm + 7 + radius_mm * x, radius_mm + 7 + radius_mm * y])
+
+
+def ellipse(across_mm: float, high_mm: float) -> Points:
+    """An ellipse about one place."""
+    turns = np.linspace(0, 2 * np.pi, 2000)
+    return np.column_stack([30 + across_mm * np.cos(turns), 30 + high_mm * np.sin(turns)])
+
+
+@pytest.mark.parametrize("a, b", [(2, 3), (3, 4), (4, 5)])
+def test_a_line_that_comes_back_within_its_own_width_is_run_both_times(a: int, b: int) -> None:
+    way = lissajous(a, b, 0.79 * PEN_MM)
+    found = trace_ink(inked(way, width_mm=PEN_MM, seed=1))
+    assert run_mm(found) == pytest.approx(length_mm(way), rel=0.005)
+    # one stroke in the middle of both would be 0.16 mm off, and does not tell it
+    places = np.vstack([line.places_mm for line in found.lines])
+    assert nearest_mm(way, places).max() < 0.15 * PEN_MM
+    assert found.ink is not None and found.ink.followed_share > 0.99
+
+
+def test_two_rings_nearer_than_a_pen_are_both_run() -> None:
+    rings = [ellipse(18.3, 18.0), ellipse(18.0, 18.3)]
+    found = trace_ink(inked(*rings, width_mm=PEN_MM, seed=1))
+    assert run_mm(found) == pytest.approx(sum(map(length_mm, rings)), rel=0.005)
+    places = np.vstack([line.places_mm for line in found.lines])
+    for ring in rings:
+        assert nearest_mm(ring, places).max() < 0.15 * PEN_MM  # the other is 0.3 mm away
+
+
+def nib_widths(way: Points, form: str) -> Points:
+    """How broad the strokes of some rigid nibs are, 1 rad from the X axis, mm."""
+    steps = np.gradient(way, axis=0)
+    sine = np.sin(np.arctan2(steps[:, 1], steps[:, 0]) - 1.0)
+    if form == "a slit with a round point":
+        return np.maximum(THIN_MM, BROAD_MM * np.abs(sine))
+    if form == "a slit":
+        return THIN_MM + (BROAD_MM - THIN_MM) * np.abs(sine)
+    return np.hypot(THIN_MM * np.sqrt(1 - sine**2), BROAD_MM * sine)
+
+
+@pytest.mark.parametrize("form", ["a slit with a round point", "a slit", "an ellipse"])
+@pytest.mark.parametrize("closed", [False, True])
+def test_the_stroke_of_a_rigid_nib_is_one_line(form: str, closed: bool) -> None:
+    way = ellipse(15.0, 19.0) if closed else loops(4)
+    widths, pieces = nib_widths(way, form), range(0, len(way) - 5, 5)
+    found = trace_ink(together(*((way[k : k + 6], widths[k]) for k in pieces), seed=1))
+    # taken for two lines it would be run along both rims
+    assert run_mm(found) < 1.03 * length_mm(way)
+    assert found.ink is not None and not found.ink.single
+
+
+def test_ink_that_may_be_either_is_run_once_and_told() -> None:
+    """A parabola that comes back beside itself: it narrows once, as a stroke begun and ended there would."""
+    found = trace_ink(inked(lissajous(1, 2, 0.58 * PEN_MM), width_mm=PEN_MM, seed=1))
+    assert len(found.lines) == 1 and found.ink is not None
+    assert found.ink.single and found.ink.followed_share < 0.8

@@ -1,0 +1,89 @@
+"""Swelling: how the width of the ink goes along a stretch, and how wide the pen of a clean sheet is.
+
+Signals: the stations along a stretch (places mm, widths mm) in; its widths averaged out, mm.
+
+A sheet is clean if its lines have smooth edges and much of the ink is about as narrow as the narrowest.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.median import median
+from morfax.tracer.ink.felt import Ends
+from morfax.tracer.ink.run import Run
+
+# All limits below were chosen by trial on drawings of nets and on line art.
+AVERAGED = 2.0  # widths over which a width is averaged
+BESIDE = 1.5  # widths from the ends of a stretch: there others cross it
+NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
+# of the pen's width about it; of the ink, which is as narrow
+SO_NARROW, LEAST_NARROW = 0.05, 0.05
+# times as much ink is as narrow as the pen as is a little broader, or more: of 14 nets of one pen 3.9 or more
+ONE_WIDTH = 2.0
+SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
+FEWEST = 10  # stations that tell a width
+
+
+class Swelling(NamedTuple):
+    """A stretch: its stations, where the ink ends, its widths averaged, mm (NaN near its ends), and how they
+    differ from that, of a width.
+    """
+
+    run: Run
+    ends: Ends
+    averaged: Array
+    rough: float
+
+    @classmethod
+    def of(cls, run: Run, ends: Ends) -> Swelling | None:
+        """Average the widths of a stretch; None if it is too short."""
+        known = np.isfinite(run.widths_mm)
+        if known.sum() < FEWEST:
+            return None
+        usual_mm = median(run.widths_mm[known])
+        off = math.ceil(BESIDE * usual_mm / run.view.step_mm)
+        inside = known.copy()
+        inside[:off] = inside[len(run) - off :] = False
+        if inside.sum() < FEWEST:
+            return None
+        at = np.arange(len(run))
+        filled = np.interp(at, at[inside], run.widths_mm[inside])
+        reach = max(1, round(0.5 * AVERAGED * usual_mm / run.view.step_mm))
+        padded = np.pad(filled, reach, mode="edge")
+        averaged = np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
+        rough = float(np.sqrt(np.mean((run.widths_mm - averaged)[inside] ** 2))) / usual_mm
+        return cls(run, ends, np.where(inside, averaged, np.nan), rough)
+
+    @property
+    def known(self) -> Array:
+        """The averaged widths where they are known, mm."""
+        return np.asarray(self.averaged[np.isfinite(self.averaged)])
+
+
+def pen_of(some: Sequence[Swelling]) -> float:
+    """The width of a sheet's pen, the narrowest, mm; NaN if the sheet is not clean."""
+    if not some:
+        return math.nan
+    lengths = np.array([len(each.known) * each.run.view.step_mm for each in some])
+    rough = float(np.average([each.rough for each in some], weights=lengths))
+    widths = np.sort(np.concatenate([each.known for each in some]))
+    pen_mm = float(widths[round(NARROWEST * (len(widths) - 1))])
+    are_narrow = np.abs(widths / pen_mm - 1) < SO_NARROW
+    is_clean = rough < SMOOTH_EDGES and float(np.mean(are_narrow)) > LEAST_NARROW
+    return float(np.median(widths[are_narrow])) if is_clean else math.nan
+
+
+def stands_out(some: Sequence[Swelling], pen_mm: float) -> bool:
+    """Whether a pen's width stands out among all widths: a nib's are spread evenly."""
+    shares = np.concatenate([each.known for each in some]) / pen_mm
+    narrow = float(np.mean(np.abs(shares - 1) < SO_NARROW))
+    broader = float(np.mean(np.abs(shares - 1 - 2 * SO_NARROW) < SO_NARROW))
+    return narrow > ONE_WIDTH * broader
