@@ -10,11 +10,16 @@ The paper between the places of the reduced picture is interpolated, across firs
 with one rounding, as OpenCV does it: where the picture is reduced by 4, 8 or 16, the result is the same to
 the bit.
 
+    ░░░░░░░░░░░░      bare paper, farther from anything dark than the head's cells look: it is 0, and takes
+    ░░░▒▒▒▒░░░░░      neither time nor memory
+    ░░░▒██▒░░░░░      paper near something dark keeps its noise
+
 Source: our own.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import cv2
@@ -50,6 +55,9 @@ DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lig
 LEAST_STROKE_MM, LEAST_STROKE_PX = 2.0, 12  # shorter strokes are specks
 SOFT_PX = 1.0  # standard deviation of the spot behind which strokes are looked for
 ROUNDED = 1e-3  # grey levels: more than interpolation and a spot's weights are rounded by
+FAINT = 0.1  # darkness: what is lighter is paper and its noise
+# from what is darker: no cell that is held against a level sees as far (see `photocell`)
+BARE_FROM_MM = 5.0
 EVERY_ROW, EVERY_COLUMN = 32, 4  # of a sample: pixels that are nearer are alike behind a spot
 MOST_ROWS = 64  # of a sample
 
@@ -103,23 +111,38 @@ class Contrast:
         return self._filled(np.zeros(self.grey.shape, np.float32), near(blocks.view(bool)), 1.0)
 
     def darkness(self, ink: float) -> Darkness:
-        """The whole sheet, where the contrast of ink is 1."""
-        everywhere = np.ones(self.blocks.mean.shape, np.uint8)
-        return self._filled(np.empty(self.grey.shape, np.float32), everywhere, ink)
+        """The sheet, where the contrast of ink is 1; bare paper far from anything dark is 0."""
+        about = 2 * math.ceil(BARE_FROM_MM / self.paper.pitch_mm) + 1
+        blocks = cv2.dilate(self.above(FAINT * ink), np.ones((about, about), np.uint8))
+        seen = np.zeros(self.grey.shape, np.float32)
+        return self._filled(seen, np.asarray(blocks, np.uint8), ink)
+
+    def everywhere(self) -> Darkness:
+        """Contrast on the whole sheet."""
+        blocks = np.ones(self.blocks.mean.shape, np.uint8)
+        return self._filled(np.empty(self.grey.shape, np.float32), blocks, 1.0)
 
     def sample(self, spread_px: float) -> Darkness:
         """The contrast of some pixels behind a spot of a standard deviation."""
-        rows, columns = self.grey.shape
+        rows = len(self.grey)
         every = max(EVERY_ROW, rows // MOST_ROWS)
         chosen = np.arange(min(every // 2, rows - 1), rows, every)
-        seen = np.empty((len(chosen), columns), np.float32)
-        weights, how = weights_of(spread_px), self._by_and_sign(1.0)
+        return self._rows(chosen, weights_of(spread_px))[:, ::EVERY_COLUMN].ravel()
+
+    def pixels(self, every: int) -> Darkness:
+        """The contrast of pixels so far apart, across and down."""
+        chosen = np.arange(0, len(self.grey), every)
+        return self._rows(chosen, np.ones(1, np.float32))[:, ::every]
+
+    def _rows(self, chosen: NDArray[np.int64], weights: Darkness) -> Darkness:
+        """The contrast of some rows behind a spot of these weights."""
+        seen, how = np.empty((len(chosen), self.grey.shape[1]), np.float32), self._how(1.0)
         _softened(self.grey, self.paper.reduced, how, chosen, weights, seen)
-        return seen[:, ::EVERY_COLUMN].ravel()
+        return seen
 
     def _filled(self, seen: Darkness, blocks: Near, unit: float) -> Darkness:
         """Fill in the contrast, in parts of a unit, within some blocks."""
-        how = self._by_and_sign(unit)
+        how = self._how(unit)
         in_parts(
             self.grey.size,
             len(blocks),
@@ -127,7 +150,7 @@ class Contrast:
         )
         return seen
 
-    def _by_and_sign(self, unit: float) -> tuple[int, bool, np.float32]:
+    def _how(self, unit: float) -> tuple[int, bool, np.float32]:
         """By what the paper is reduced, whether the strokes are darker than it, and the unit."""
         return self.blocks.by, self.paper.is_light, np.float32(unit)
 

@@ -29,7 +29,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing import coarse, grain, inks, large, paper, raster, ruling
+from morfax.tracer.drawing import coarse, grain, inks, large, noise, paper, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot
 from morfax.tracer.drawing.border import without_border
 from morfax.tracer.drawing.components import Patches, runs_of
@@ -74,7 +74,8 @@ class Drawing:
     `flattening` is how well a photograph was made flat; `corrected` what the operator has put right, and
     `bare` the drawing before its ink was put right. The pixels of a coarse scan are made so many times
     `finer`. Of `both` solid areas are as dark as lines (see `shapes_among_lines`). Lines look `seen_px` wide
-    on the picture's own pixels.
+    on the picture's own pixels. `paper_noise` is the standard deviation of the paper's darkness, where that
+    was measured before bare paper was made 0.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -91,6 +92,7 @@ class Drawing:
     finer: int = 1
     both: bool = False
     seen_px: float = math.inf
+    paper_noise: float | None = None
 
     def times_at(self, place_mm: NDArray[np.float64]) -> int:
         """How many times enlarged the head follows the edge nearest to a place; 1 on a drawing of lines.
@@ -153,7 +155,7 @@ class Drawing:
     @cached_property
     def noise(self) -> Noise:
         """What the picture is like: noise of paper and ink, softness of edges, width of the pen."""
-        return measured(self.darkness, self.pitch_mm)
+        return measured(self.darkness, self.pitch_mm, self.paper_noise)
 
     @classmethod
     def open(
@@ -212,14 +214,15 @@ class Drawing:
             )
         darkness: Any  # or tiles
         is_large = grey.size >= large.LARGE_PX
-        darkness, shapes = (large.levelled if is_large else levelled)(grey, pitch[0])
+        made = (large.levelled if is_large else levelled)(grey, pitch[0])
+        darkness, shapes, paper_noise = made
         darkness, note = ruling.left_out(darkness, pitch[0], printed)
         notes = notes if note is None else (*notes, note)
         edges = without_border(darkness)
         if edges:
             notes = (*notes, border_note(edges))
         # 3. grain, and too large pixels
-        in_lines, width_px, seen_px = within(darkness)
+        in_lines, width_px, seen_px = within(darkness, paper_noise)
         if seen_px < coarse.SEEN_PX:
             notes = (*notes, coarse.note(seen_px, pitch[0]))
         slit = grain.slit_for(in_lines, width_px, pitch[0])
@@ -237,6 +240,7 @@ class Drawing:
             notes=notes,
             finer=finer,
             seen_px=seen_px,
+            paper_noise=paper_noise,
         )
 
 
@@ -250,15 +254,16 @@ def on_square_pixels(grey: Grey, pitch_mm: tuple[float, float]) -> Grey:
     return np.asarray(square, np.float32)
 
 
-def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes]:
-    """Darkness of a grey picture (0..255): paper levelled to 0, the strokes' contrast 1; and filled shapes.
-
-    Where these are is told on a picture reduced by a whole number. Raises DrawingFault if nothing is long and
-    dark enough to be a line.
+def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes, float]:
+    """Darkness of a grey picture (0..255): paper 0, the strokes 1; where filled shapes are, on a picture
+    reduced by a whole number; the noise of the paper. Raises DrawingFault if nothing is long and dark enough
+    to be a line.
     """
     contrast = Contrast.of(grey, pitch_mm)
     ink = _ink_contrast(contrast, pitch_mm)
-    return contrast.darkness(ink), contrast.paper.shapes(ink)
+    sample = contrast.pixels(noise.every_px(grey.size)) / np.float32(ink)
+    noise_of_paper = noise.paper_noise(sample)
+    return contrast.darkness(ink), contrast.paper.shapes(ink), noise_of_paper
 
 
 def border_note(edges: tuple[str, ...]) -> str:
@@ -278,7 +283,7 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> float:
         seen = contrast.within(dark)
         runs = runs_behind_spot(seen, dark, contrast.blocks.by, SOFT_PX, least)
     else:
-        seen = contrast.darkness(1.0)
+        seen = contrast.everywhere()
         soft = np.asarray(cv2.GaussianBlur(seen, (0, 0), SOFT_PX), np.float32)
         least = max(least, _above_noise(soft[::EVERY, ::EVERY].ravel()))
         runs = runs_of(soft > least, 0)

@@ -33,6 +33,7 @@ from morfax.tracer.drawing.contrast import (
     strokes_of,
 )
 from morfax.tracer.drawing.memory import make_sure_of_ink
+from morfax.tracer.drawing.noise import paper_noise
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
 
@@ -62,8 +63,9 @@ class _Look:
     every: int
 
 
-def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes]:
-    """Darkness of a grey picture whose rows can be read: paper 0, the strokes 1; and filled shapes.
+def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes, float]:
+    """Darkness of a grey picture whose rows can be read: paper 0, the strokes 1; filled shapes; and the noise
+    of the paper.
 
     Raises DrawingFault if nothing is long and dark enough to be a line, or the ink does not fit into memory.
     """
@@ -76,11 +78,12 @@ def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes]:
     marked = _inked(grey, look, paper, max(LEAST_CONTRAST, centre + ABOVE_NOISE * noise))
     inked_px = TILE_PX**2 * int(np.count_nonzero(marked != PAPER))
     make_sure_of_ink(inked_px, grey.shape[0] * grey.shape[1])
-    tiles = replace(_kept(grey, paper, marked), sample=sample)
+    tiles = _kept(grey, paper, marked)
     ink = _ink_contrast(
         tiles, max(LEAST_CONTRAST, centre + ABOVE_NOISE * SOFTENED * noise), pitch_mm
     )
-    return replace(tiles, unit=1 / ink, sample=sample / np.float32(ink)), paper.shapes(ink)
+    noise_of_paper = paper_noise(sample / np.float32(ink))
+    return replace(tiles, unit=1 / ink), paper.shapes(ink), noise_of_paper
 
 
 def _look(grey: Any, by: int) -> _Look:
@@ -155,7 +158,7 @@ def _kept(grey: Any, paper: Paper, marked: NDArray[np.int32]) -> Tiles:
         part = _rows(grey, up * TILE_PX, min(len(grey), (up + 1) * TILE_PX))
         _fill(part, (up, paper.by_px), paper.reduced, sign, number[up], kept)
     rows, columns = grey.shape
-    return Tiles((rows, columns), number, kept, 1.0, np.empty((0, 0), np.float32))
+    return Tiles((rows, columns), number, kept, 1.0)
 
 
 def softened(tiles: Tiles, spot_px: float) -> Iterator[tuple[int, int, Any]]:

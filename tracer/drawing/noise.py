@@ -34,6 +34,7 @@ from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.paper import ROBUST
 from morfax.tracer.drawing.tiles import Tiles
 
+Kept = NDArray[np.float32] | Tiles
 INK = 0.5  # darker is ink
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
 PAPER_SAMPLES = 1 << 16  # pixels of paper: they give its standard deviation to 1/360
@@ -51,8 +52,9 @@ GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
 DARKER = 84.13  # percentile one standard deviation above the median
 RIGHT_ON_IT = 25.0  # percentile of how wide lines look: there a pixel lies right on the line
 OUTLIERS = 3.0  # robust standard deviations
-# darkness, softness and width settle to 1 % where a line is three times as wide as soft
-ROUNDS = 20
+ROUNDS = (
+    20  # darkness, softness and width settle to 1 % where a line is three times as wide as soft
+)
 # linear interpolation, over all places between pixels: variance of its kernel, share of white noise left
 INTERPOLATED_PX2, INTERPOLATED_NOISE = 1 / 6, 4 / 9
 
@@ -84,9 +86,9 @@ class _Profiles(NamedTuple):
     across: Array
 
 
-def measured(darkness: NDArray[np.float32] | Tiles, pitch_mm: float) -> Noise:
-    """The noise of a drawing of darkness 0..1, (rows, columns), on pixels of a pitch."""
-    paper = _paper(darkness)
+def measured(darkness: Kept, pitch_mm: float, paper: float | None = None) -> Noise:
+    """The noise of a drawing of darkness 0..1 on pixels of a pitch; `paper` is its paper's, where known."""
+    paper = _paper(darkness) if paper is None else paper
     profiles = _profiles(darkness)
     if profiles is None:
         return Noise(paper, math.nan, math.nan, math.nan, math.nan, math.nan)
@@ -107,13 +109,8 @@ class Within(NamedTuple):
     seen_px: float
 
 
-def grain_within(darkness: NDArray[np.float32] | Tiles) -> tuple[float, float]:
-    """The grain of the ink within single lines, and the width of the pen, pixels (see `within`)."""
-    return within(darkness)[:2]
-
-
-def within(darkness: NDArray[np.float32] | Tiles) -> Within:
-    """How even the ink of single lines is, and how wide they are.
+def within(darkness: Kept, paper: float | None = None) -> Within:
+    """How even the ink of single lines is, and how wide they are; `paper` as `measured` has it.
 
     Other than `Noise.grain` it does not grow where lines of several pens differ: the ink is held against the
     ink of the same line a width farther on. NaN without any line.
@@ -121,7 +118,7 @@ def within(darkness: NDArray[np.float32] | Tiles) -> Within:
     profiles = _profiles(darkness)
     if profiles is None:
         return Within(math.nan, math.nan, math.nan)
-    paper = _paper(darkness)
+    paper = _paper(darkness) if paper is None else paper
     middle = np.maximum(_middle(profiles), PAPER)
     looks_px = STEP_PX * profiles.seen.sum(axis=1) / middle
     seen_px = float(np.percentile(looks_px, RIGHT_ON_IT))
@@ -137,14 +134,22 @@ def within(darkness: NDArray[np.float32] | Tiles) -> Within:
     return Within(grain, width_px, seen_px)
 
 
-def _paper(darkness: NDArray[np.float32] | Tiles) -> float:
-    """Standard deviation of the paper's pixels, by the darker ones: scanners clip the white."""
-    every = max(1, math.isqrt(darkness.size // PAPER_SAMPLES))
-    sample = darkness.sample if isinstance(darkness, Tiles) else darkness[::every, ::every]
+def _paper(darkness: Any) -> float:
+    """The noise of the paper of a sheet that is nowhere made bare (see `contrast`)."""
+    return paper_noise(darkness[:: every_px(darkness.size), :: every_px(darkness.size)])
+
+
+def paper_noise(sample: NDArray[np.float32]) -> float:
+    """Standard deviation of the paper's pixels, by the darker ones of a sample: scanners clip the white."""
     if not np.any(sample < PAPER):
         return math.nan
     usual, darker = np.percentile(sample[sample < PAPER], [50.0, DARKER])
     return float(darker - usual)
+
+
+def every_px(size: int) -> int:
+    """How far apart, across and down, those of so many pixels are that tell the paper's noise."""
+    return max(1, math.isqrt(size // PAPER_SAMPLES))
 
 
 def _spread(values: NDArray[Any]) -> float:
@@ -157,7 +162,7 @@ def _spread(values: NDArray[Any]) -> float:
 # the profiles
 
 
-def _profiles(darkness: NDArray[np.float32] | Tiles) -> _Profiles | None:
+def _profiles(darkness: Kept) -> _Profiles | None:
     """Profiles across the lines; None if there are too few."""
     crossings = [_runs(darkness, across) for across in (False, True)]
     places = np.vstack(
@@ -202,7 +207,7 @@ def _profiles(darkness: NDArray[np.float32] | Tiles) -> _Profiles | None:
     return found if is_line else None
 
 
-def _runs(darkness: NDArray[np.float32] | Tiles, across: bool) -> Array:
+def _runs(darkness: Kept, across: bool) -> Array:
     """Runs of ink in some of the rows, (n, 2, 2): row and column of their first and last edges; or in some of
     the columns, which then stand for rows.
     """
@@ -222,16 +227,14 @@ def _even(count: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(0, max(count - 1, 0), min(count, MOST_PROFILES)).astype(int))
 
 
-def _slope(
-    darkness: NDArray[np.float32] | Tiles, places: Array, reach_px: float = SLOPE_PX
-) -> Array:
+def _slope(darkness: Kept, places: Array, reach_px: float = SLOPE_PX) -> Array:
     """How much darker it gets per pixel down and to the right at places (n, 2), felt so far to both sides."""
     sides = reach_px * np.eye(2)
     steps = [_seen(darkness, (places + d).T) - _seen(darkness, (places - d).T) for d in sides]
     return np.column_stack(steps) / (2 * reach_px)
 
 
-def _seen(darkness: NDArray[np.float32] | Tiles, places: Array) -> Array:
+def _seen(darkness: Kept, places: Array) -> Array:
     """Darkness between pixels: places (2, n) or (n, 2, k), rows and columns."""
     return between(darkness, *np.moveaxis(places, -2, 0), edge_goes_on=True)
 
@@ -246,7 +249,7 @@ def _smooth(seen: Array) -> Array:
 # what they say
 
 
-def _ink(darkness: NDArray[np.float32] | Tiles, profiles: _Profiles) -> tuple[float, float]:
+def _ink(darkness: Kept, profiles: _Profiles) -> tuple[float, float]:
     """Standard deviations of the ink: from pixel to pixel, and along the lines beyond that."""
     # 1. neighbouring pixels along the line differ by the noise of two
     pixel = np.round(profiles.middles).astype(int)

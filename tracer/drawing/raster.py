@@ -22,7 +22,7 @@ from morfax.motion.faults import DrawingFault, Fault, FileFault
 from morfax.motion.files import check_regular
 from morfax.tracer.drawing import by_rows, exif, large
 from morfax.tracer.drawing import memory as room
-from morfax.tracer.drawing.components import strips
+from morfax.tracer.drawing.components import FEW_PX, strips
 from morfax.tracer.drawing.scan import (
     MM_PER_INCH,
     Camera,
@@ -179,8 +179,8 @@ def _grey(image: Image) -> Grey:
     columns, rows = image.size
     deep = image.mode in ("I;16", "I;16B", "I;16L", "I", "F")
     grey = np.empty((rows, columns), np.float32 if deep else np.uint8)
-    for top, bottom, _ in strips(grey.shape):
-        # the whole image would be held twice more
+    for top, bottom, _ in strips(grey.shape, pixels=FEW_PX):
+        # a strip's memory is that of the strip before
         strip = image.crop((0, top, columns, bottom))
         grey[top:bottom] = np.asarray(strip) if deep else _darkest_channel(strip)
     if deep:

@@ -11,7 +11,7 @@ Signals: bytes by tiles in; the darkness of any part of the sheet out: float32, 
 A sheet of A0 at 600 dpi has 558 million pixels, and a line of 10 m on it takes 15 MB.
 
 Source: our own. Questions: 200 steps of darkness move the head by less than 0.01 um (measured on smooth
-outlines: 1.842 and 1.846 um RMS). Paper between the tiles has lost its noise; `sample` keeps some of it.
+outlines: 1.842 and 1.846 um RMS). Paper between the tiles has lost its noise.
 """
 
 from __future__ import annotations
@@ -42,7 +42,6 @@ class Tiles:
     number: NDArray[np.int32]  # (rows of tiles, tiles in a row)
     kept: NDArray[np.uint8]  # (n, TILE_PX, TILE_PX)
     unit: float  # darkness of one step
-    sample: Floats  # darkness of pixels all over the sheet, paper with its noise too
 
     @property
     def size(self) -> int:

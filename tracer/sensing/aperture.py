@@ -71,13 +71,8 @@ class MadeTiles(NamedTuple):
 
     def wider(self, spread_px: float) -> MadeTiles:
         """The same sheet behind a further spot."""
-        whole = sheet.Tiles(
-            (self.rows, self.columns),
-            self.number,
-            self.kept,
-            self.unit,
-            np.empty((0, 0), np.float32),
-        )
+        shape = self.rows, self.columns
+        whole = sheet.Tiles(shape, self.number, self.kept, self.unit)
         return MadeTiles.of(whole, math.hypot(self.spread_px, spread_px))
 
 

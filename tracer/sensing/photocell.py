@@ -28,6 +28,7 @@ import numpy as np
 
 from morfax.motion.compiled import njit
 from morfax.tracer.drawing.blocks import BLOCK_PX
+from morfax.tracer.drawing.contrast import FAINT
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.strokes import Window
 from morfax.tracer.drawing.tiles import Tiles
@@ -37,7 +38,6 @@ TWO_PI = 2.0 * math.pi
 LEVEL = 0.5  # an edge is at this share of the line's darkness
 STEP_PX = 0.35  # how finely cells look along a ray and round a ring: three steps to a pixel
 HALO_SPREADS = 5.0  # standard deviations of a spot that OpenCV looks at, and one more
-FAINT = 0.1  # darkness: what is lighter is paper and its noise
 # from what is drawn: no cell that is held against a level looks further; by trial
 ABOUT_MM = 4.0
 TILE_BLOCKS = 16  # blocks of a sheet to the side of a tile that is seen behind a spot at a time

@@ -15,7 +15,7 @@ import pytest
 from morfax.motion.contour import distance
 from morfax.tracer.drawing import grain
 from morfax.tracer.drawing.drawing import Darkness, Drawing
-from morfax.tracer.drawing.noise import grain_within
+from morfax.tracer.drawing.noise import within
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
 from morfax.tracer.program.trace import trace
@@ -71,12 +71,12 @@ def test_a_pencilled_line_ends_where_it_was_drawn_to() -> None:
 def test_the_slit_takes_grain_away_and_leaves_the_paper() -> None:
     levels = pencilled(arc((22.0, 22.0), 16.0), 0.45, 6)
     darkness = np.asarray((235 - levels) / (BLACK_LEVELS * FAINT), np.float32)
-    before, width_px = grain_within(darkness)
+    before, width_px, _ = within(darkness)
     slit = grain.slit_for(before, width_px, PITCH_MM)
     assert slit is not None
     seen = grain.behind(slit, darkness)
     assert before > 0.2
-    assert grain_within(seen)[0] < 0.5 * before
+    assert within(seen).grain < 0.5 * before
     assert np.abs(seen[150:220, 150:220]).max() < 0.3  # paper inside of the circle
     assert darkness[150:220, 150:220].max() > 0.3
 
@@ -86,6 +86,6 @@ def test_clean_ink_and_lines_of_several_pens_have_no_grain() -> None:
     dark, pale = polyline((5, 5), (45, 8)), polyline((5, 20), (45, 26))
     both = together((dark, 0.5), (pale, 0.5), seed=1).darkness
     both[: len(both) // 2] *= 0.6
-    assert grain_within(both)[0] < 0.06
+    assert within(both).grain < 0.06
     clean = inked(arc((22.0, 22.0), 16.0), seed=2)
-    assert grain.slit_for(*grain_within(clean.darkness), PITCH_MM) is None
+    assert grain.slit_for(*within(clean.darkness)[:2], PITCH_MM) is None

@@ -164,7 +164,7 @@ def test_parts_of_tiles_are_those_of_the_whole():
     for k in range(5):
         part = whole[32:64, 32 * k : 32 * k + 32] * 200
         kept[k, : part.shape[0], : part.shape[1]] = np.rint(part)
-    tiles = Tiles(whole.shape, number, kept, 1 / 200, np.empty((0, 0), np.float32))
+    tiles = Tiles(whole.shape, number, kept, 1 / 200)
     assert np.allclose(np.asarray(tiles), whole, atol=1e-6 * STEP)
     assert np.allclose(tiles[35:70, 11:140], whole[35:70, 11:140], atol=1e-6 * STEP)
     i, j = np.random.default_rng(2).integers(0, 100, (2, 500))

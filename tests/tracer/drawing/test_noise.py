@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from PIL import Image
 from scipy.special import erf
 
 from morfax.tracer.drawing.drawing import Drawing
@@ -93,6 +95,17 @@ def test_the_drawings_of_the_tests_are_as_they_say() -> None:
 def test_paper_whose_white_is_clipped_has_its_noise_on_the_dark_side() -> None:
     darkness = noisy(ruled(8.0, 1.0, 0.3), 0.04, 0.04)
     assert measured(np.maximum(darkness, 0.0), PITCH_MM).paper == pytest.approx(0.04, abs=0.006)
+
+
+def test_the_noise_of_paper_that_is_made_bare_is_known(tmp_path: Path) -> None:
+    """Nine tenths of the sheet are bare."""
+    grey = np.random.default_rng(4).normal(240, 2.0, (1500, 1500))
+    grey[100:106, 100:300] -= 200
+    Image.fromarray(grey.astype(np.uint8)).save(tmp_path / "sheet.png", dpi=(600, 600))
+    drawing = Drawing.open(tmp_path / "sheet.png")
+    assert np.mean(drawing.darkness == 0) > 0.9
+    # a twentieth: the rounding to whole levels, and 65 000 pixels
+    assert drawing.noise.paper == pytest.approx(2.0 / 200, rel=0.05)
 
 
 def test_noise_is_measured_once() -> None:
