@@ -17,7 +17,7 @@ from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
-from morfax.tracer.head.slow_cell import Stretch, keeps_mm
+from morfax.tracer.head.slow_cell import Stretch, keeps_mm, keeps_straight_mm
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, heading_of, leg_of
 from morfax.tracer.sensing.scout import REACH, REACH_PX
 from morfax.tracer.sensing.view import View
@@ -64,7 +64,8 @@ def bare_stretch(view: View, carriage: Carriage, way: Array, seen: Array) -> Str
         way = way[lengths_mm(way) < bare_mm - lead_mm]
     if len(way) < 2:
         return None
-    return Stretch(way, keeps_mm(view, seen), ROOM_LEADS * lead_mm)
+    room_mm = ROOM_LEADS * lead_mm
+    return Stretch(way, keeps_mm(view, seen), room_mm, keeps_straight_mm(view))
 
 
 def _bare_mm(view: View, way: Array) -> float:

@@ -55,7 +55,7 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
         sheet.seen.clear()
         cells = photocell.behind_aperture(sheet.drawing, aperture_mm, window=sheet.window)
         sheet.seen[aperture_mm] = cells
-    return View(sheet.seen[aperture_mm], width_mm)
+    return View(sheet.seen[aperture_mm], width_mm, parted=sheet.drawing.finer)
 
 
 def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:

@@ -171,8 +171,7 @@ class Carriage:
 
     def follow_slowly(self, view: View, home: Home, stretch: Stretch) -> int | None:
         """Follow a stretch that was felt by the slow cell, if it keeps to that; why it stopped."""
-        tuning = slow_cell.slowly(self.tuning, view.width_mm, stretch.way)
-        tried = slow_cell.along(view.cells, self.state, tuning, home, stretch)
+        tried = slow_cell.follow(view, self.state, self.tuning, home, stretch)
         if tried is None:
             return None
         if tried.felt_mm > 0:

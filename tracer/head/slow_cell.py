@@ -7,7 +7,9 @@ Signals: the head's state and tuning, and the way that was felt (sheet mm), in; 
 the motion rate, out. If it leaves the way, the head has not moved, and stations lead instead (see `leaders`).
 
 In a tight bend a long lead swings the cell across a line that has turned away from it, and a wide window cuts
-the bend. A head that goes slowly needs neither: more sweeps fall on each mm.
+the bend. A head that goes slowly needs neither: more sweeps fall on each mm. But a parabola over few pixels
+bends by what the pixels do to the line's edges, by h^-2.5 for half a window of h. Where that stops the cell,
+it tries once more, with the widest window over which the way that was felt hardly bends.
 
 Source: our own. Optical tracers slow down at tight bends, and so does the patent's relay RL.
 """
@@ -24,7 +26,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.contour import distances_mm
 from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
-from morfax.tracer.head.settings import LEAD_SWEEPS
+from morfax.tracer.head.settings import LEAD_SWEEPS, TIGHTEST_RAD
 from morfax.tracer.head.state import HOME, MORE, Home, Tuning
 from morfax.tracer.sensing.leg import ROBUST, turn
 from morfax.tracer.sensing.photocell import Cells
@@ -44,6 +46,8 @@ FELT_EVERY_MM = 0.04  # as fast sweeps lie on the drum, at 10 mm/s
 # of the narrowest half window of a fast cell: in an arc, and where the bend changes
 WINDOW_STEADY, WINDOW = 1.3, 0.75
 STEADY = 0.2  # of the bend: an arc's changes by less from one half of a stretch to the other
+WINDOWS = 5  # that are tried, from the fast cell's half window to the narrowest
+CHORDS = 4  # places of a way to half a window, between which its headings are taken
 BENT_WIDTHS = 0.7  # by more than this over its width the line may not bend: the cell, which cuts it aslant,
 # would see its middle w²/8·l²·k³ further inside: 8 um at a lead l of 0.36 mm and a radius of 0.9 mm
 
@@ -64,11 +68,14 @@ class Stretch(NamedTuple):
     """What was felt: a way (n, 2) mm from where the head stands, and how far beside it the cell may go, mm.
 
     `room_mm`: so far before the place where the cell stops the head stays, if it stops on the way.
+    `straight_mm`: how far beside it the cell may go with a window over which the way hardly bends: it cannot
+    cut a bend there, and sees the edges of hard pixels otherwise than stations do.
     """
 
     way: Array
     within_mm: float
     room_mm: float = 0.0
+    straight_mm: float = 0.0
 
 
 def keeps_mm(view: View, seen: Array) -> float:
@@ -83,6 +90,11 @@ def keeps_mm(view: View, seen: Array) -> float:
     return max(by_view_mm, KEEPS_ROUGH * rough_mm)
 
 
+def keeps_straight_mm(view: View) -> float:
+    """The same where the way hardly bends, mm: by the scan's own pixels, though they were parted."""
+    return KEEPS_PX * view.parted * view.pitch_mm
+
+
 def is_steady(way: Array) -> bool:
     """Whether a way (n, 2) mm is an arc: it bends as much in its second half as in its first."""
     thirds = at_lengths(way, np.linspace(0.0, length_mm(way), 4))
@@ -91,9 +103,33 @@ def is_steady(way: Array) -> bool:
     return abs(second - first) < STEADY * max(abs(first), abs(second))
 
 
-def slowly(t: Tuning, width_mm: float, way: Array) -> Tuning:
-    """The tuning for a tight bend: a low speed, a narrow window and the lead that suffices for them."""
-    half_mm = (WINDOW_STEADY if is_steady(way) else WINDOW) * t.narrow_mm
+def narrow_mm(t: Tuning, way: Array) -> float:
+    """Half of the window for a tight bend, mm."""
+    return (WINDOW_STEADY if is_steady(way) else WINDOW) * t.narrow_mm
+
+
+def wide_mm(t: Tuning, way: Array) -> float | None:
+    """Half of the widest window over which a way (n, 2) mm hardly bends, mm; None if it bends over all."""
+    for half_mm in np.geomspace(t.half_window_mm, t.narrow_mm, WINDOWS + 1)[:-1].tolist():
+        if most_turned(way, half_mm) < TIGHTEST_RAD:
+            return float(half_mm)
+    return None
+
+
+def most_turned(way: Array, half_mm: float) -> float:
+    """By how much a way (n, 2) mm turns at most from one half of a window to the other, rad; infinite if it
+    is shorter than a window.
+    """
+    places = at_lengths(way, np.arange(0.0, length_mm(way), half_mm / CHORDS))
+    if len(places) <= 2 * CHORDS:
+        return math.inf
+    dx, dy = (places[CHORDS:] - places[:-CHORDS]).T
+    headings = np.unwrap(np.arctan2(dy, dx))
+    return float(np.abs(headings[CHORDS:] - headings[:-CHORDS]).max())
+
+
+def slowly(t: Tuning, width_mm: float, half_mm: float) -> Tuning:
+    """The tuning for a low speed, half of a window, mm, and the lead that suffices for them."""
     speed_mm_s = t.slowed * t.speed_mm_s
     sweeps_mm = LEAD_SWEEPS * speed_mm_s * t.sweep_periods * t.period_s
     return t._replace(
@@ -104,6 +140,20 @@ def slowly(t: Tuning, width_mm: float, way: Array) -> Tuning:
         aslant_mm2=width_mm * width_mm,
         narrowest_per_mm=max(t.narrowest_per_mm, BENT_WIDTHS / width_mm),
     )
+
+
+def follow(view: View, state: Any, t: Tuning, home: Home, stretch: Stretch) -> Tried | None:
+    """Follow from a state, which is not changed, along a stretch: as through a tight bend, or else with a
+    wide window; None if the cell keeps to it with neither. `t` is the fast cell's tuning.
+    """
+    tight = slowly(t, view.width_mm, narrow_mm(t, stretch.way))
+    tried = along(view.cells, state, tight, home, stretch)
+    half_mm = wide_mm(t, stretch.way)
+    if tried is not None or half_mm is None:
+        return tried
+    within_mm = max(stretch.within_mm, stretch.straight_mm)
+    straight = stretch._replace(within_mm=within_mm)
+    return along(view.cells, state, slowly(t, view.width_mm, half_mm), home, straight)
 
 
 def along(cells: Cells, state: Any, t: Tuning, home: Home, stretch: Stretch) -> Tried | None:

@@ -146,6 +146,7 @@ class _Seen:
     """The sheet through its cells, made once for each aperture of some."""
 
     def __init__(self, drawing: Drawing, apertures_mm: Array) -> None:
+        self._parted = drawing.finer
         self._cells = {
             mm: photocell.behind_aperture(drawing, mm)
             for mm in np.unique(apertures_mm).tolist()
@@ -153,7 +154,7 @@ class _Seen:
 
     def view(self, guide_mm: Array, width_mm: float, aperture_mm: float) -> View:
         """How the head sees a line along a guide."""
-        view = View(self._cells[aperture_mm], width_mm)
+        view = View(self._cells[aperture_mm], width_mm, parted=self._parted)
         some = guide_mm[:: max(1, len(guide_mm) // 50)]
         dark = median(view.darkness_along(some))
         return view.at_level(LEVEL * max(dark, FAINTEST))

@@ -43,7 +43,8 @@ class View:
 
     `usual_mm` is the line's width as a rule, where the width here differs. What the head sees is `enlarged`
     times as large as on the drawing. `on_edge`: it is the edge of a filled shape, dark to one side, and the
-    width is that of a line which would be as fine.
+    width is that of a line which would be as fine. `parted`: so many of the sheet's pixels lie side by side
+    in one of the scan's.
     """
 
     cells: Cells
@@ -51,6 +52,7 @@ class View:
     usual_mm: float | None = None
     enlarged: float = 1.0
     on_edge: bool = False
+    parted: int = 1
 
     @property
     def pitch_mm(self) -> float:
