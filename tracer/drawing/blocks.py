@@ -111,6 +111,12 @@ def runs_behind_spot(
     return row, begin, end
 
 
+def runs_in(darkness: Levels, level: float) -> Runs:
+    """Row, begin and end of the runs of a picture that are darker than a level."""
+    row, begin, end = _runs_in(np.ascontiguousarray(darkness), np.float32(level))
+    return row, begin, end
+
+
 def weights_of(spread_px: float) -> Levels:
     """OpenCV's weights of a spot of a standard deviation."""
     size = round(8 * spread_px + 1) | 1
@@ -184,18 +190,37 @@ def _runs(darkness, blocks, by, weights, level, first, last):  # type: ignore[no
                 part = seen[: end - begin]
                 _column_of_spot(across, begin, k - top + reach, weights, part)
                 crossed = _crossed(part, level, crossings)
-                if count + crossed // 2 > len(found):
-                    more = np.empty((2 * (count + crossed), 3), np.int32)
-                    more[:count] = found[:count]
-                    found = more
-                for c in range(0, crossed, 2):
-                    found[count, 0] = k
-                    found[count, 1], found[count, 2] = (
-                        begin + crossings[c],
-                        begin + crossings[c + 1],
-                    )
-                    count += 1
+                found, count = _added(found, count, (k, begin), crossings[:crossed])
     return found[:count, 0].copy(), found[:count, 1].copy(), found[:count, 2].copy()
+
+
+@njit(cache=True, nogil=True)
+def _runs_in(seen, level):  # type: ignore[no-untyped-def]
+    """The runs of all rows."""
+    crossings, found, count = (
+        np.empty(seen.shape[1] + 1, np.int64),
+        np.empty((64, 3), np.int32),
+        0,
+    )
+    for k in range(len(seen)):
+        crossed = _crossed(seen[k], level, crossings)
+        found, count = _added(found, count, (k, 0), crossings[:crossed])
+    return found[:count, 0].copy(), found[:count, 1].copy(), found[:count, 2].copy()
+
+
+@njit(cache=True, nogil=True)
+def _added(found, count, place, crossings):  # type: ignore[no-untyped-def]
+    """Runs with those of a row from a place (row, column) on, and how many there are then."""
+    row, column = place
+    if count + len(crossings) // 2 > len(found):
+        more = np.empty((2 * (count + len(crossings)), 3), np.int32)
+        more[:count] = found[:count]
+        found = more
+    for c in range(0, len(crossings), 2):
+        found[count, 0] = row
+        found[count, 1], found[count, 2] = column + crossings[c], column + crossings[c + 1]
+        count += 1
+    return found, count
 
 
 @njit(cache=True, nogil=True)

@@ -30,9 +30,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing import coarse, grain, inks, large, noise, paper, raster, ruling
-from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot
+from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot, runs_in
 from morfax.tracer.drawing.border import without_border
-from morfax.tracer.drawing.components import Patches, runs_of
+from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
     DARKER,
@@ -286,7 +286,7 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> float:
         seen = contrast.everywhere()
         soft = np.asarray(cv2.GaussianBlur(seen, (0, 0), SOFT_PX), np.float32)
         least = max(least, _above_noise(soft[::EVERY, ::EVERY].ravel()))
-        runs = runs_of(soft > least, 0)
+        runs = runs_in(soft, least)
     patches = Patches.of([runs])
     strokes = strokes_of(patches, least, pitch_mm)
     every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))

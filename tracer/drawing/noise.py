@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.between import between
+from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.paper import ROBUST
 from morfax.tracer.drawing.tiles import Tiles
 
@@ -214,12 +215,10 @@ def _runs(darkness: Kept, across: bool) -> Array:
     every = max(1, darkness.size // SEARCHED)
     long, wide = darkness.shape[::-1] if across else darkness.shape
     rows = np.arange(every // 2, long, every)
-    dark = np.zeros((len(rows), wide + 2), bool)
     places = np.ix_(rows, np.arange(1, wide - 1))
-    dark[:, 2:-2] = darkness[places[::-1] if across else places] > INK
-    row, column = np.nonzero(dark[:, 1:] != dark[:, :-1])
-    edges = np.column_stack([rows[row], column - 0.5]).astype(float)
-    return np.stack([edges[::2], edges[1::2]], axis=2)
+    row, begin, end = runs_in(darkness[places[::-1] if across else places], INK)
+    edges = [np.column_stack([rows[row], at + 0.5]) for at in (begin, end)]
+    return np.stack(edges, axis=2)
 
 
 def _even(count: int) -> NDArray[np.int64]:

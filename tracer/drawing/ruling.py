@@ -20,6 +20,7 @@ over that length; the head goes over such gaps as it does over others.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import cv2
@@ -138,9 +139,14 @@ def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> tuple[Kept, s
 
 def _is_all_over(darkness: Darkness) -> bool:
     """Whether there is ink nearly everywhere on a sheet: on a drawing on plain paper there is not."""
-    inked = np.asarray(darkness > INKED, np.float32)
-    tiles = cv2.resize(inked, (TILES, TILES), interpolation=cv2.INTER_AREA)
-    return bool(np.mean(tiles > INK_IN) >= INK_OVER)
+    down, along = ([side * k // TILES for k in range(TILES + 1)] for side in darkness.shape)
+    tiles = [
+        darkness[top:bottom, left:right]
+        for top, bottom in pairwise(down)
+        for left, right in pairwise(along)
+    ]
+    inked = [np.count_nonzero(tile > INKED) > INK_IN * tile.size for tile in tiles]
+    return bool(np.mean(inked) >= INK_OVER)
 
 
 def _may_be_all_over(darkness: Darkness, by: int) -> bool:

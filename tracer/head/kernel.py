@@ -228,7 +228,7 @@ def _at_home(state, t, home):  # type: ignore[no-untyped-def]
     return on_it and math.cos(heading_rad - state.heading_rad) > HOME_COSINE
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, inline="always")
 def _steer(state, t, way):  # type: ignore[no-untyped-def]
     """One period of relay, steering servo, sine and cosine, and the two drives; the way it then goes."""
     # 1. speed, as the relay has it

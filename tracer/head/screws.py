@@ -26,7 +26,7 @@ def owed_s(gain, period_s):  # type: ignore[no-untyped-def]
     return period_s * (1.0 - gain) / gain
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, inline="always")
 def move(state, t, demand_x_mm_s, demand_y_mm_s):  # type: ignore[no-untyped-def]
     """One period of the two drives: their screws turn, and the head moves with them."""
     x, y = state.x_mm, state.y_mm

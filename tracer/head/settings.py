@@ -20,11 +20,12 @@ from typing import Any
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.drive import Drive
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Tuning
-from morfax.tracer.sensing.photocell import sweep
+from morfax.tracer.sensing.photocell import TWO_PI, sweep
 from morfax.tracer.sensing.view import View
 
 OF_DRIVE = "drive_"  # the names of the drives' settings begin so
@@ -216,13 +217,15 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     steering_gain = 1.0
     if settings.steering_lag_s > 0:
         steering_gain = 1 - math.exp(-1 / rate_hz / settings.steering_lag_s)
+    pin = _pin(max(LEAST_SWEEP_PERIODS, round(rate_hz / settings.sweep_hz)))
     return Tuning(
         period_s=1 / rate_hz,
         speed_mm_s=settings.speed_mm_s,
         slowed=settings.slowed,
         slow_periods=settings.slow_s * rate_hz,
         acceleration_mm_s2=settings.acceleration_mm_s2,
-        sweep_periods=max(LEAST_SWEEP_PERIODS, round(rate_hz / settings.sweep_hz)),
+        sweep_periods=len(pin),
+        pin=pin,
         lead_mm=lead,
         point_mm=point,
         half_window_mm=half_window,
@@ -246,6 +249,12 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         detector_gain=settings.detector_gain,
         cell_noise=settings.cell_noise,
     )
+
+
+def _pin(periods: int) -> Array:
+    """Where the eccentric pin stands in each period of a sweep: sine and cosine of its phase, (n, 2)."""
+    phases = [TWO_PI * (period + 0.5) / periods for period in range(periods)]
+    return np.array([(math.sin(phase), math.cos(phase)) for phase in phases])
 
 
 def tuned_along(view: View) -> int:

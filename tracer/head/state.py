@@ -70,6 +70,7 @@ class Tuning(NamedTuple):
     slow_periods: float  # how long the relay holds
     acceleration_mm_s2: float
     sweep_periods: int
+    pin: Array  # 48, where it stands in each period of a sweep: across and along the line, (n, 2)
     lead_mm: float  # to which the mount slides out
     point_mm: float  # from the axis to the point that it steers for
     half_window_mm: float  # of the parabola about that point

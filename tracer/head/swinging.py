@@ -25,7 +25,7 @@ import math
 
 from morfax.motion.compiled import njit
 from morfax.tracer.head.state import DRUM
-from morfax.tracer.sensing.photocell import TWO_PI, darkness_at
+from morfax.tracer.sensing.photocell import darkness_at
 
 # Shares of the line's ink; chosen by trial on the test drawings.
 INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
@@ -63,13 +63,12 @@ def _hiss(state):  # type: ignore[no-untyped-def]
     return hiss
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, inline="always")
 def swing(cells, state, t, way):  # type: ignore[no-untyped-def]
     """One period of the swinging cell on a way (see `way_of`): its current goes into the detector."""
-    phase = TWO_PI * (state.sweep_periods + 0.5) / t.sweep_periods
-    sine = math.sin(phase)
+    sine, cosine = t.pin[state.sweep_periods, 0], t.pin[state.sweep_periods, 1]
     aside = state.middle_mm + t.amplitude_mm * sine
-    ahead = state.lead_mm + t.along_mm * math.cos(phase)
+    ahead = state.lead_mm + t.along_mm * cosine
     darkness = t.cell_gain * seen(cells, state, way, ahead, aside)
     if t.cell_noise > 0.0:
         darkness += t.cell_noise * _hiss(state)
