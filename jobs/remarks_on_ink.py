@@ -17,12 +17,16 @@ if TYPE_CHECKING:
 LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
 # of the ink that is joined to a line: if the line is less, the rest is worth a remark
 FEW_SHARE = 0.7
+# an edge that strays further is rough: clean outlines of seven parts stray by 0 to 8 um, at 150 to
+# 600 dpi, quiet or noisy
+ROUGH_MM = 0.015
 
 
 def of_ink(trace: Trace, *, several: bool) -> Iterator[str]:
     """Remarks on the ink of a sheet of which one line was asked for, or several."""
     yield from _of_all(trace)
     yield from _of_solids(trace)
+    yield from _of_rough_edges(trace)
     yield from _of_unread(trace)
     alone = not several and trace.fault is None
     rest = tuple(_of_rest(trace.lines[0])) if alone else ()
@@ -101,6 +105,19 @@ def _of_solids(trace: Trace) -> Iterator[str]:
             f"the ink at {x:.1f},{y:.1f} mm is the rim of a dark area broader than a line: if that is a "
             "filled "
             "shape, --edge follows its outline, and --lines all --edge the lines beside it too"
+        )
+
+
+def _of_rough_edges(trace: Trace) -> Iterator[str]:
+    """Edges that stray from their own smooth way."""
+    rough = [line for line in trace.lines if (line.roughness_mm or 0.0) > ROUGH_MM]
+    if rough:
+        worst = max(rough, key=lambda line: line.roughness_mm or 0.0)
+        what = "the edge is" if len(trace.lines) == 1 else f"the edge of line {worst.number} is"
+        yield (
+            f"{what} rough: within 3 mm it strays by {worst.roughness_mm:.3f} mm (standard deviation) from a "
+            "smooth way, and the path follows it; if that is the pen or the print, and not the shape, draw "
+            "it twice as large with the same pen, and with --scale 0.5 the path strays half as far"
         )
 
 

@@ -22,6 +22,7 @@ def lines(trace: Trace, *, on_edges: bool = False) -> dict[str, Any]:
             "length_mm": line.length_mm,
             **({} if on_edges or line.on_edge else {"line_width_mm": line.width_mm}),
             **({"outline": True} if line.on_edge else {}),
+            "edge_roughness_mm": line.roughness_mm,
             "start_place_mm": line.start_mm,
             "cell_share": line.cell_share,
         }

@@ -124,6 +124,7 @@ class Traced:
             "length_mm": trace.length_mm,
             "duration_s": float(self.path.t_s[-1] - self.path.t_s[0]),
             "line_width_mm": None if self.on_edges else trace.line_width_mm,
+            "edge_roughness_mm": trace.roughness_mm,
             "start_place_mm": trace.start_mm,
             "reference_place_mm": trace.reference_mm,
             **self._figures_of_lines(),

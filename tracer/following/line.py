@@ -23,6 +23,7 @@ from morfax.motion.long_array import one_in
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.corrections.on_sheet import StopAt
 from morfax.tracer.following.followed import THINNED, Followed
+from morfax.tracer.following.roughness import roughness_mm
 from morfax.tracer.following.told_stops import with_told
 from morfax.tracer.head.leaders import CELL, Led
 from morfax.tracer.junctions.gaps import Break, breaks
@@ -79,6 +80,7 @@ class Line:
     served: frozenset[int] = frozenset()  # numbers of the corrections that it went by
     leads: Leads | None = None  # that a cut was given; those drawn on paper are `loop_from`
     on_edge: bool = False  # round a solid area among lines; its width is no line's
+    roughness_mm: float | None = None  # of the edge that it is (see `roughness`)
     as_told: bool = False  # the operator's arrow says where it begins, and which way it goes
 
     @classmethod
@@ -114,6 +116,7 @@ class Line:
             breaks=found,
             led=run.led,
             served=run.served | served,
+            roughness_mm=roughness_mm(run),
         )
 
     @classmethod

@@ -105,6 +105,12 @@ class Trace:
         return self.lines[0].width_mm
 
     @property
+    def roughness_mm(self) -> float | None:
+        """Roughness of the roughest edge, mm; None without edges, or where it could not be measured."""
+        rough_mm = [line.roughness_mm for line in self.lines if line.roughness_mm is not None]
+        return max(rough_mm, default=None)
+
+    @property
     def length_mm(self) -> float:
         """How far the head travelled along the lines, mm."""
         return sum(line.length_mm for line in self.lines)
