@@ -75,7 +75,8 @@ def solved(sheet: FeltSheet) -> Junctions:
             two |= too_long
             bare = set()
         elif more:
-            bare |= more
+            two |= more & (doubled | sheet.together)
+            bare |= more - two
         else:
             break
     return junctions

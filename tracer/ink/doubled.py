@@ -253,4 +253,7 @@ def _without_flares(
     quiet = np.flatnonzero(steps < most_mm)
     if len(quiet) < FEWEST_STATIONS:
         return first, last
-    return first + int(quiet[0]), first + int(quiet[-1]) + reach + 1
+    # a flare is still for a moment where it is broadest
+    parts = np.split(quiet, np.flatnonzero(np.diff(quiet) > reach) + 1)
+    longest = max(parts, key=lambda part: int(part[-1] - part[0]))
+    return first + int(longest[0]), first + int(longest[-1]) + reach + 1

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import strands
+from morfax.tracer.ink.doubled import LEAST_WIDTHS, strands
 from morfax.tracer.ink.felt import Parted
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
@@ -34,7 +34,7 @@ CLEAN_SHARE = 0.5  # of its length: more of it is clean line of its own
 OWN_WIDTHS = 1.2  # a shorter one has no ink that is not the junction's
 COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
 # the middle of a line that hangs together with nothing: a shorter one is a speck or a dot; the larger
-LEAST_MM, LEAST_WIDTHS = 0.7, 1.0
+LEAST_MM, SPECK_WIDTHS = 0.7, 1.0
 TRIMMED_SHARE = 0.3  # of a run is left out at an end at most
 FACING = math.radians(35)  # ends whose headings are so near to one line face each other
 ASIDE = 0.6  # widths: and miss each other by no more
@@ -83,7 +83,7 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
         taken, length_mm = sheet.taken(n), sheet.measured[n].length_mm
         ends = [len(at.get(node, ())) for node in stretch.nodes]
         is_ring = stretch.nodes[0] == RING
-        short = length_mm < max(LEAST_MM, LEAST_WIDTHS * widths[n])
+        short = length_mm < max(LEAST_MM, SPECK_WIDTHS * widths[n])
         # 1. specks, and stretches within a junction: they make one of the nodes at their ends
         if not is_ring and ends == [1, 1] and short:
             net.left_mm += length_mm
@@ -119,7 +119,10 @@ def _is_inner(sheet: FeltSheet, number: int, fewest: int) -> bool:
     length_mm, width_mm = sheet.measured[number].length_mm, sheet.widths_mm[number]
     if length_mm > INNER_WIDTHS * width_mm:
         return False
-    if sum(run.length_mm for run in sheet.taken(number).clean) > CLEAN_SHARE * length_mm:
+    clean_mm = sum(run.length_mm for run in sheet.taken(number).clean)
+    # a short stretch of two lines tells too little of either
+    is_two = number in sheet.together and length_mm < LEAST_WIDTHS * width_mm
+    if not is_two and clean_mm > CLEAN_SHARE * length_mm:
         return False
     # one that ends in no other is the tip of two lines that run together, or a stub
     shared = sheet.is_shared(number)

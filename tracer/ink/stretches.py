@@ -14,15 +14,14 @@ Source: our own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import ONE_PEN
@@ -35,11 +34,11 @@ from morfax.tracer.ink.felt import (
     feel_along,
     is_steady,
     judged,
-    usual_width_mm,
     whole,
 )
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
+from morfax.tracer.ink.straight_on import SHORT_WIDTHS, Measured, StraightOn, of_two_lines
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.photocell import LEVEL
 from morfax.tracer.sensing.view import View
@@ -47,27 +46,9 @@ from morfax.tracer.sensing.view import View
 # All limits below were chosen by trial on drawings of nets.
 APERTURES_MM = 0.02  # apertures are whole steps of this
 PENS_SHARE = 0.1  # of the ink is drawn by a pen that is worth an aperture of its own
-SHORT_WIDTHS = 30.0  # a shorter stretch is judged by the widths of those beside it, too
 # a short one, with those into which it goes straight on, is long enough to tell its width
 ENOUGH_WIDTHS = 6.0
-FAR = 6  # stretches straight on to either side
-STRAIGHT_COS = 0.85  # 32 degrees
 HALF = 0.5  # of a stretch's stations
-AWAY_WIDTHS = 3.0  # from a node, over which a stretch shows where it leads
-
-
-class Measured(NamedTuple):
-    """A felt stretch: its length and usual width, mm, and at what share of its stations that is known."""
-
-    length_mm: float
-    width_mm: float
-    known: float
-
-    @classmethod
-    def of(cls, run: Run) -> Measured:
-        """Measure a stretch."""
-        known = float(np.mean(np.isfinite(run.widths_mm)))
-        return cls(length_mm(run.places_mm), usual_width_mm(run), known)
 
 
 @dataclass(slots=True)
@@ -131,9 +112,13 @@ class FeltSheet:
         graph = Graph.of(ink)
         felt = _felt(graph, drawing, settings)
         measured, at = [Measured.of(run) for run in felt], graph.at_nodes()
-        widths = _line_widths(StraightOn(graph, felt, at), measured, settings)
+        straight = StraightOn(graph, felt, at)
+        widths = _line_widths(straight, measured, settings)
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
         doubled = Doubled() if settings.line_width_mm else Doubled.of(felt, ends)
+        if doubled.is_sure and math.isfinite(doubled.pen_mm):
+            for n in of_two_lines(straight, measured, doubled.pen_mm):
+                widths[n] = doubled.pen_mm
         return cls(graph, felt, measured, widths, settings, ends, doubled)
 
 
@@ -245,49 +230,6 @@ def _line_widths(
             } - {n} or {n}
         found.append(of_some(further) or usual_mm or own[n])
     return found
-
-
-@dataclass(frozen=True, slots=True)
-class StraightOn:
-    """Which stretches go straight on into which: hatching on a frame of another width is not of its line."""
-
-    graph: Graph
-    felt: list[Run]
-    at: dict[int, list[int]]
-
-    def through(self, number: int) -> set[int]:
-        """A stretch, and those into which it goes straight on at its ends, a few to either side."""
-        found = {number}
-        for last in (False, True):
-            here: tuple[int, bool] | None = (number, last)
-            for _ in range(FAR):
-                here = self._onto(*here) if here is not None else None
-                if here is None or here[0] in found:
-                    break
-                found.add(here[0])
-        return found
-
-    def _onto(self, number: int, last: bool) -> tuple[int, bool] | None:
-        """The stretch straight on from an end of another, and its far end; None if none is straight on."""
-        node = self.graph.stretches[number].nodes[last]
-        way = -self._away(number, last)
-        best, most = None, STRAIGHT_COS
-        for other in self.at[node]:
-            for other_last in (False, True):
-                if other == number or self.graph.stretches[other].nodes[other_last] != node:
-                    continue
-                straight = float(self._away(other, other_last) @ way)
-                if straight > most:
-                    best, most = (other, not other_last), straight
-        return best
-
-    def _away(self, number: int, last: bool) -> Array:
-        """The direction in which a stretch leaves the node at its end, (x, y)."""
-        run = self.felt[number]
-        places = run.places_mm[::-1] if last else run.places_mm
-        far = min(len(places) - 1, round(AWAY_WIDTHS * run.view.width_mm / run.view.step_mm))
-        chord = places[far] - places[0]
-        return np.asarray(chord / max(float(np.hypot(*chord)), 1e-9))
 
 
 def _weighted_median(values: list[float], weights: list[float]) -> float | None:

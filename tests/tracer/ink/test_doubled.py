@@ -12,6 +12,7 @@ from morfax.jobs.remarks_on_ink import of_ink
 from morfax.jobs.trace_figures import ink as figures_of
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.doubled import strands
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.stretches import FeltSheet
@@ -68,6 +69,26 @@ def test_two_lines_that_others_cut_into_short_pieces_are_two_strokes() -> None:
         assert nearest_mm(line[np.abs(along) < 0.1], places).max() < 0.1 * WIDTH_MM
 
 
+@pytest.mark.parametrize("turned_deg", [4.0, 6.0, 8.0])
+def test_two_lines_that_cross_at_a_small_angle_keep_to_themselves_among_others(
+    turned_deg: float,
+) -> None:
+    """Others cut their ink into pieces, no two of which are as broad: no piece is a line of a broader pen."""
+    rise = 20 * np.tan(np.radians(turned_deg / 2))
+    pair = [polyline((10, 20 - side * rise), (50, 20 + side * rise)) for side in (1, -1)]
+    across = [polyline((x - 3, 8), (x + 3, 32)) for x in (26, 28, 32, 34)]
+    found = trace_ink(inked(*pair, *across, seed=1))
+    assert len(found.lines) == 6
+    for line in pair:
+        away_mm = min(
+            float(shapely.hausdorff_distance(*map(shapely.LineString, (line, stroke.xy_mm))))
+            for stroke in found.lines
+        )
+        assert (
+            away_mm < 0.25 * WIDTH_MM
+        )  # a stroke that changes over would end 1.4 mm away or more
+
+
 @pytest.mark.parametrize("apart_mm", [0.5, 0.55])
 def test_two_lines_whose_rims_touch_for_a_while_are_two_strokes(apart_mm: float) -> None:
     """The lens closes the slit between them: their ink is a little over two widths wide there, and even."""
@@ -107,6 +128,13 @@ def test_a_line_of_a_broader_pen_is_one_line() -> None:
     assert len(found.lines) == 2 and found.ink is not None and not found.ink.single
 
 
+def test_a_line_of_a_broader_pen_is_one_line_however_often_others_cross_it() -> None:
+    broad = polyline((5, 20), (55, 20)), 1.6 * WIDTH_MM
+    others = [(polyline((x, 10), (x + 3, 30)), WIDTH_MM) for x in range(8, 50, 4)]
+    found = trace_ink(together(broad, *others, seed=1))
+    assert len(found.lines) == 1 + len(others)
+
+
 @pytest.mark.parametrize("swell", ["by its heading", "as a sine"])
 def test_a_nib_that_swells_and_shrinks_is_one_line(swell: str) -> None:
     way = loops(5)
@@ -127,3 +155,24 @@ def test_rough_lines_do_not_tell() -> None:
     drawing = inked(rough, CLEAR, seed=1)
     left = ink_left(drawing.sheet)
     assert not FeltSheet.of(left.drawing, Settings(), left.ink).doubled.stations
+
+
+def test_lines_that_share_their_ink_do_not_turn_off_into_what_crosses_it() -> None:
+    pair = [polyline((5, 20 + side * 0.2), (55, 20 + side * 0.2)) for side in (1, -1)]
+    slope = float(np.tan(np.radians(20.0)))
+    across = polyline((10, 20 - 20 * slope), (50, 20 + 20 * slope))
+    drawing = inked(*pair, across, CLEAR, seed=1)
+    left = ink_left(drawing.sheet)
+    felt = FeltSheet.of(left.drawing, Settings(), left.ink).felt
+    both = [
+        strand
+        for run in felt
+        if abs(run.places_mm[:, 1] - 20).max() < 1.0 and run.length_mm > 10
+        for strand in strands(run, WIDTH_MM)
+    ]
+    assert len(both) == 4  # two to either side of the crossing
+    for strand in both:
+        turned = np.degrees(np.abs(np.sin(strand.headings_rad)))
+        assert (
+            turned.max() < 10.0
+        )  # ink that becomes wider by 0.15 of its way is not yet a flare: 8.5
