@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
@@ -76,6 +75,8 @@ class CorrectionSettings:
 
 def sha256_of(file: FilePath) -> str:
     """The sum of a file's bytes; raises FileFault if it cannot be read."""
+    import hashlib
+
     try:
         with file.open("rb") as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -14,7 +14,6 @@ from __future__ import annotations
 import errno
 import os
 import platform
-import secrets
 import shutil
 import stat
 import zlib
@@ -100,7 +99,7 @@ def folder_written_beside(folder: Path, aside: Path) -> Iterator[Path]:
     """Give a new folder in the folder `aside`, of the same disk; on success it becomes `folder`, in the place
     of what stood there, on failure it is removed.
     """
-    name = f"{_HIDDEN}{_here()}-{os.getpid()}-{secrets.token_hex(6)}"
+    name = f"{_HIDDEN}{_here()}-{os.getpid()}-{os.urandom(6).hex()}"
     beside, before = aside / name, aside / f"{name}-before"
     try:
         beside.mkdir(parents=True)
@@ -135,7 +134,7 @@ def _create_beside(final: Path) -> Path:
         raise FileFault(f"cannot write {final}: it {what}; give the name of a file")
     folder = final.resolve().parent
     clear_leftovers(folder)
-    name = f"{_HIDDEN}{_here()}-{os.getpid()}-{secrets.token_hex(6)}{final.suffix}"
+    name = f"{_HIDDEN}{_here()}-{os.getpid()}-{os.urandom(6).hex()}{final.suffix}"
     beside = folder / name
     try:
         os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))

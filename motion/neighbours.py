@@ -37,10 +37,10 @@ BITS = 16  # of each axis of the Z-curve
 
 
 class Neighbours:
-    """Finds the nearest of some points (n, 2), n > 0."""
+    """Finds the nearest of some points (n, 2)."""
 
     def __init__(self, points: ArrayLike) -> None:
-        given = np.asarray(points, np.float64)
+        given = np.asarray(points, np.float64).reshape(-1, 2)
         self._order = None if _is_in_order(given) else _along_z(given)
         ordered = given if self._order is None else given[self._order]
         self._points = np.ascontiguousarray(ordered)
@@ -76,8 +76,23 @@ class Neighbours:
         return away, number
 
 
+def pairs_within(points: ArrayLike, reach: float) -> NDArray[np.int64]:
+    """The pairs (m, 2) of points (n, 2) that are no further apart than a reach; m may be n² / 2."""
+    points = np.asarray(points, np.float64)
+    order = np.argsort(points[:, 0], kind="stable")
+    ordered, found = points[order], [np.empty((0, 2), np.int64)]
+    ends = np.searchsorted(ordered[:, 0], ordered[:, 0] + reach, side="right")
+    for k, end in enumerate(ends.tolist()):
+        away = np.hypot(*(ordered[k + 1 : end] - ordered[k]).T)
+        near = order[k + 1 : end][away <= reach]
+        found.append(np.column_stack([np.full(len(near), order[k]), near]))
+    return np.vstack(found)
+
+
 def _is_in_order(points: Array) -> bool:
     """Whether points of neighbouring numbers lie near each other."""
+    if not len(points):
+        return True
     sides = np.ptp(points, axis=0)
     way = float(np.hypot(*np.diff(points, axis=0).T).sum())
     return way <= IN_ORDER * (float(np.sqrt(len(points) * sides.prod())) + float(sides.sum()))

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
@@ -164,6 +163,8 @@ def parsed(text: str, name: str = "card", called: str = "the card") -> Field:
     if deep is not None:
         line, what = deep
         Field(None, (), Page(name, {(): line}, called)).refuse(f"it may hold {DEEPEST}", what)
+    import tomllib
+
     try:
         return Field(tomllib.loads(text), (), Page(name, lines_of(text), called))
     except ValueError as error:

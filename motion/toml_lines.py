@@ -13,7 +13,6 @@ Source: TOML 1.0.0 (toml.io/en/v1.0.0): keys, strings, arrays, inline tables, ta
 from __future__ import annotations
 
 import re
-import tomllib
 
 Path = tuple[str | int, ...]
 
@@ -106,6 +105,8 @@ class _Reader:
 
     def _key(self) -> list[str]:
         """The parts of a key, up to the mark behind it."""
+        import tomllib
+
         parts = []
         while self._peek()[0] in ("bare", "string", "dot"):
             kind, text, _ = self._take()

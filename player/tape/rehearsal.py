@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
+from morfax.motion.median import medians
 from morfax.motion.motion import Motion
 from morfax.player.tape.phase_lock import Drives, PhaseLock, Reference
 from morfax.player.tape.predictor import count_turns, predictor_gains
@@ -119,7 +120,7 @@ class Rehearsal:
         if len(self._shown) < window:
             return
         windows = sliding_window_view(self._shown, window, axis=0)[::step, :, ::SHAKE_STRIDE]
-        for shakes in np.median(windows, axis=2):
+        for shakes in medians(windows):
             self._loud = np.where(shakes > SHAKE_CYCLES, self._loud + 1, 0)
             if self._loud.max() >= WINDOWS:
                 axis = int(np.argmax(self._loud))

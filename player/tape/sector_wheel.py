@@ -85,8 +85,10 @@ class SectorWheel:
                 f"sectors whose edges stand {self.division_mm:g} mm off their places make no wheel; "
                 f"give 0 to {LARGEST_SHARE * width_mm:.3g} mm"
             )
-        late = np.empty((axes, screw.sectors))
-        for axis in range(axes):
+        late = np.zeros((axes, screw.sectors))
+        for axis in range(
+            axes if self.division_mm else 0
+        ):  # a true wheel needs no random numbers
             late[axis] = np.random.default_rng(SEED + axis).uniform(-1, 1, screw.sectors)
         late -= late.mean(axis=1, keepdims=True)  # zero is set on the wheel as it is
         late *= self.division_mm / width_mm

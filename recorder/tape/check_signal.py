@@ -115,10 +115,8 @@ class CheckWriter:
         ends = self._row(self._number + 2) - self._first_row + 2 * self._gauge
         rows = self._cycles[max(first - self._gauge, 0) : ends]
         at = self._number * self._rows_per_frame - self._first_row
-        speed = np.diff(rows, axis=0) * self._rate_hz
-        change = (speed[self._gauge :] - speed[: -self._gauge]) * (self._rate_hz / self._gauge)
-        fastest = np.abs(speed).max(axis=0, initial=0.0)
-        hardest = np.abs(change).max(axis=0, initial=0.0)
+        fastest, hardest = np.zeros((2, self._tracks - 1))
+        _gauged(rows, (self._rate_hz, self._gauge), fastest, hardest)
         for axis in range(self._tracks - 1):
             place = float(np.interp(at, np.arange(len(self._cycles)), self._cycles[:, axis]))
             yield CheckFrame(
@@ -129,6 +127,21 @@ class CheckWriter:
                 float(hardest[axis]),
                 last,
             )
+
+
+@njit(cache=True, _nrt=False)
+def _gauged(rows, how, fastest, hardest):  # type: ignore[no-untyped-def]
+    """Raise each track's largest speed, cycles/s, and change of it over so many rows, cycles/s², to those of
+    its rows.
+    """
+    rate_hz, gauge = how
+    for axis in range(rows.shape[1]):
+        for k in range(len(rows) - 1):
+            speed = (rows[k + 1, axis] - rows[k, axis]) * rate_hz
+            fastest[axis] = max(fastest[axis], abs(speed))
+            if k >= gauge:
+                before = (rows[k + 1 - gauge, axis] - rows[k - gauge, axis]) * rate_hz
+                hardest[axis] = max(hardest[axis], abs((speed - before) * (rate_hz / gauge)))
 
 
 @njit(cache=True)

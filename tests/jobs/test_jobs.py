@@ -13,8 +13,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
+from PIL import Image
 
 from morfax.jobs.age import AgeJob
 from morfax.jobs.check import CheckJob
@@ -379,6 +381,24 @@ def test_jobs_know_no_terminal_and_load_no_machine() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert done.stdout.splitlines() == ["[]", "[]"]
+
+
+def test_all_the_ink_of_a_plate_is_followed_without_scipy(tmp_path: Path) -> None:
+    """scipy.spatial takes as long to import as numpy, numba and OpenCV together."""
+    grey = np.full((500, 500), 240, np.uint8)
+    for k in range(9):
+        cv2.circle(grey, (100 + 150 * (k % 3), 100 + 150 * (k // 3)), 45, 40, 6, cv2.LINE_AA)
+    Image.fromarray(grey).save(tmp_path / "plate.png", dpi=(300, 300))
+    words = ["trace", str(tmp_path / "plate.png"), "--lines", "all", "-o"]
+    code = (
+        "import sys; from morfax.console.cli import main;"
+        f" code = main({[*words, str(tmp_path / 'plate.csv')]});"
+        " print(code, [name for name in sys.modules if name.startswith('scipy')])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == "0 []"
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The median of a few numbers: numpy's, to the bit."""
+"""The median of numbers: numpy's, to the bit."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from morfax.motion.median import median
+from morfax.motion.median import median, medians
 
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=40))
@@ -18,3 +18,9 @@ def test_it_is_that_of_numpy_to_the_bit(values: list[float]) -> None:
 def test_a_number_that_is_none_leaves_none() -> None:
     assert math.isnan(median([1.0, math.nan, 2.0]))
     assert math.isnan(median([]))
+
+
+@given(st.integers(1, 9), st.integers(0, 1000))
+def test_many_medians_are_those_of_numpy_to_the_bit(count: int, seed: int) -> None:
+    values = np.random.default_rng(seed).normal(size=(3, 2, count)).astype(np.float32)
+    assert np.array_equal(medians(values), np.median(values, axis=-1))

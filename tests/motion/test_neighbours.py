@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from morfax.motion.neighbours import LEAF, Neighbours
+from morfax.motion.neighbours import LEAF, Neighbours, pairs_within
 
 ROUNDING = 1e-12  # of places up to 100
 
@@ -68,3 +68,20 @@ def test_points_in_any_order_are_put_in_order_first() -> None:
     # a square for 8 of 4096 points has sides of 4.4
     assert np.median(sides) < 6.0
     assert np.array_equal(found.nearest(points)[1], np.arange(4096))
+
+
+@settings(max_examples=30)
+@given(st.integers(0, 10_000), st.integers(0, 40), st.booleans())
+def test_the_pairs_within_a_reach_are_those_of_trying_all(
+    seed: int, count: int, on_a_grid: bool
+) -> None:
+    points = np.random.default_rng(seed).uniform(0, 10, (count, 2))
+    points = np.round(points) if on_a_grid else points
+    found = pairs_within(points, 2.0)
+    every = {(a, b) for a, b in np.argwhere(tried(points, points) <= 2.0).tolist() if a < b}
+    assert sorted(tuple(sorted(pair)) for pair in found.tolist()) == sorted(every)
+
+
+def test_of_no_points_none_is_near() -> None:
+    away, number = Neighbours(np.empty((0, 2))).nearest([(1.0, 2.0), (3.0, 4.0)])
+    assert np.all(np.isinf(away)) and number.tolist() == [0, 0]

@@ -22,7 +22,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.polynomial import polynomial
 
 from morfax.motion.curves import hermite
 from morfax.motion.long_array import LongArray
@@ -209,6 +208,8 @@ class Beside:
 
 def heading(every: Array, here: int, closed: bool) -> Array | None:
     """The heading of a line at one of its places, which are `APART_MM` apart, (2,); None at a corner."""
+    from numpy.polynomial import polynomial
+
     for about_mm in ABOUT_MM:
         near, at_mm = _about(every, here, round(about_mm / APART_MM), closed)
         if len(near) < 4:

@@ -191,6 +191,16 @@ def _roots(row, begin, end, apart):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def grouped(pairs, count):  # type: ignore[no-untyped-def]
+    """The group of each of `count` things of which some pairs (n, 2) belong together, in their order."""
+    parent = np.arange(count)
+    for k in range(len(pairs)):
+        a, b = _root(parent, pairs[k, 0]), _root(parent, pairs[k, 1])
+        parent[max(a, b)] = min(a, b)
+    return _numbered(parent)[0]
+
+
+@njit(cache=True)
 def _numbered(parent):  # type: ignore[no-untyped-def]
     """The tree's number of each run, in their order, and how many trees there are."""
     patch = np.empty(len(parent), np.int32)

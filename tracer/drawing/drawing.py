@@ -29,6 +29,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.median import median
 from morfax.tracer.drawing import coarse, grain, inks, large, noise, paper, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot, runs_in
 from morfax.tracer.drawing.border import without_border
@@ -295,5 +296,5 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> float:
 
 def _above_noise(sample: Darkness) -> float:
     """What is above the noise of a sample."""
-    centre = float(np.median(sample))
-    return centre + ABOVE_NOISE * paper.ROBUST * float(np.median(np.abs(sample - centre)))
+    centre = median(sample)
+    return centre + ABOVE_NOISE * paper.ROBUST * median(np.abs(sample - centre))

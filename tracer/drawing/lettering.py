@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.neighbours import pairs_within
+from morfax.tracer.drawing.components import grouped
 from morfax.tracer.drawing.strokes import Sheet
 
 # All limits below were chosen by trial on the test drawings.
@@ -46,21 +48,16 @@ def lettering(sheet: Sheet) -> set[int]:
 
 def _rows(boxes_mm: Array) -> NDArray[np.int32]:
     """The row in which each of some boxes (top, bottom, left, right; downwards) stands."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
     top, bottom, left, right = boxes_mm.T
     middles = np.column_stack([0.5 * (left + right), 0.5 * (top + bottom)])
     high = bottom - top
     within_mm = LARGEST_MM + APART * LARGEST_MM
-    a, b = cKDTree(middles).query_pairs(within_mm, output_type="ndarray").T
+    pairs = pairs_within(middles, within_mm)
+    a, b = pairs.T
     lower = np.minimum(high[a], high[b])
     beside = np.minimum(bottom[a], bottom[b]) - np.maximum(top[a], top[b]) > BESIDE * lower
     alike = lower > ALIKE * np.maximum(high[a], high[b])
     apart_mm = np.maximum(left[a], left[b]) - np.minimum(right[a], right[b])
     mean_mm = 0.5 * (high[a] + high[b])
     near = beside & alike & (apart_mm < APART * mean_mm) & (apart_mm > -BESIDE * lower)
-    pairs = coo_array((np.ones(near.sum()), (a[near], b[near])), shape=(len(high),) * 2)
-    _, rows = connected_components(pairs, directed=False)
-    return np.asarray(rows)
+    return np.asarray(grouped(pairs[near], len(high)))

@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.paper import ROBUST
@@ -127,7 +128,7 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
     along = profiles.across[:, ::-1] * [1, -1]
     here = _seen(darkness, profiles.middles.T)
     there = _seen(darkness, (profiles.middles + width_px * along).T)
-    on_line = there > PAPER * float(np.median(here))
+    on_line = there > PAPER * median(here)
     if np.count_nonzero(on_line) < FEWEST_PROFILES:
         return Within(math.nan, width_px, seen_px)
     differ = _spread((there - here)[on_line]) / math.sqrt(2)
@@ -155,8 +156,8 @@ def every_px(size: int) -> int:
 
 def _spread(values: NDArray[Any]) -> float:
     """Standard deviation without outliers, of which there are few."""
-    off = np.abs(values - np.median(values))
-    near = values[off <= OUTLIERS * ROBUST * max(float(np.median(off)), 1e-6)]
+    off = np.abs(values - median(values))
+    near = values[off <= OUTLIERS * ROBUST * max(median(off), 1e-6)]
     return float(np.std(near, dtype=float))
 
 
@@ -175,7 +176,7 @@ def _profiles(darkness: Kept) -> _Profiles | None:
     # 1. square to the edges that the row or column has met
     ends = [_slope(darkness, places[:, :, k]) for k in (0, 1)]
     thin = np.hypot(*(ends[0] - ends[1]).T) < FLAT
-    if np.median(thin):
+    if median(thin):
         for k in (0, 1):
             ends[k][thin] = _slope(darkness, places[thin, :, k], THIN_PX)
     across = ends[0] - ends[1]
@@ -188,7 +189,7 @@ def _profiles(darkness: Kept) -> _Profiles | None:
     steep = facing > OBLIQUE
     if np.count_nonzero(steep) < FEWEST_PROFILES:
         return None
-    half_px = float(np.median(widths_px[steep])) + BESIDE_PX
+    half_px = median(widths_px[steep]) + BESIDE_PX
     at_px = np.arange(-half_px, half_px, STEP_PX)
     # a place anywhere between two pixels of the line, not always on a row: so noise is averaged alike
     share = np.arange(len(places)) * GOLDEN % 1.0 - 0.5
@@ -202,9 +203,7 @@ def _profiles(darkness: Kept) -> _Profiles | None:
         return None
     found = _Profiles(seen[good], at_px, middles[good], across[good])
     # of a pattern or a damaged picture: what is dark in them is not in their middle
-    is_line = (
-        float(np.median(_middle(found))) > 0 and float(np.median(seen[good].sum(axis=1))) > 0
-    )
+    is_line = median(_middle(found)) > 0 and median(seen[good].sum(axis=1)) > 0
     return found if is_line else None
 
 
@@ -274,14 +273,14 @@ def _pen(profiles: _Profiles, paper: float, ink: float) -> tuple[float, float]:
     """Softness and width, pixels."""
     seen, span_px = profiles.seen, STEP_PX * len(profiles.at_px)
     area, square = STEP_PX * seen.sum(axis=1), STEP_PX * (seen**2).sum(axis=1)
-    peak = float(np.median(_middle(profiles)))
-    area_px, darkness = float(np.median(area)), peak
+    peak = median(_middle(profiles))
+    area_px, darkness = median(area), peak
     softness_px = width_px = 0.0
     for _ in range(ROUNDS):
         width_px = area_px / darkness
         in_noise = ink**2 * width_px + paper**2 * (span_px - width_px)
         lost = darkness * area - square + INTERPOLATED_NOISE * in_noise
-        softness_px = _softness(float(np.median(lost)) / darkness**2, width_px)
+        softness_px = _softness(median(lost) / darkness**2, width_px)
         darkness = peak / math.erf(width_px / (math.sqrt(8) * max(softness_px, 1e-3)))
     return math.sqrt(max(softness_px**2 - INTERPOLATED_PX2, 0.0)), width_px
 

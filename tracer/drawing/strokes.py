@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
+from morfax.motion.median import median
 from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
@@ -61,7 +62,7 @@ class Stroke:
     def ends_mm(self) -> Array:
         """Places that may be ends of the line, most likely first, two widths apart or more; (n, 2) mm."""
         order = np.argsort(self.filled)
-        places = self.middles_mm[order[self.filled[order] < LESS * np.median(self.filled)]]
+        places = self.middles_mm[order[self.filled[order] < LESS * median(self.filled)]]
         kept: list[Array] = []
         while len(places) and len(kept) < MOST_ENDS:
             kept.append(places[0])

@@ -24,6 +24,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.contour import distances_mm
+from morfax.motion.median import median
 from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
 from morfax.tracer.head.settings import LEAD_SWEEPS, TIGHTEST_RAD
@@ -84,7 +85,7 @@ def keeps_mm(view: View, seen: Array) -> float:
     Both edges are as rough as each other, so that the middle is half as rough as the width.
     """
     widths = seen[:, 2]
-    rough_mm = 0.5 * ROBUST * float(np.median(np.abs(widths - np.median(widths))))
+    rough_mm = 0.5 * ROBUST * median(np.abs(widths - median(widths)))
     fine_mm = min(KEEPS_FINE_WIDTHS * view.width_mm, KEEPS_FINE_MM)
     by_view_mm = max(KEEPS_WIDTHS * view.width_mm, KEEPS_PX * view.pitch_mm, fine_mm)
     return max(by_view_mm, KEEPS_ROUGH * rough_mm)

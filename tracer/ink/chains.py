@@ -269,7 +269,7 @@ class Junctions:
         """How far from its clean end a leg comes onto the lines that pass, mm; None if it does not."""
         ahead_mm = np.arange(0.0, FOOT_WIDTHS * leg.width_mm + 1.0, FOOT_STEP_MM)
         places = leg.at(ahead_mm)
-        away, _ = there.crossing.passing.query(places)
+        away, _ = there.crossing.passing.nearest(places)
         come = np.flatnonzero(away < ON_IT * leg.width_mm)
         if not len(come):
             return None
@@ -290,5 +290,5 @@ def _lifted_mm(there: Junction, leg: Leg, end_mm: float | None, foot_mm: float) 
     place, back_mm = leg.at(end_mm), np.arange(0.0, AWAY_WIDTHS * leg.width_mm, FOOT_STEP_MM)
     others = np.vstack([other.at(-back_mm) for other in there.legs if other is not leg])
     away_mm = np.hypot(*(others - place).T).min()
-    passing_mm, _ = there.crossing.passing.query(place)
-    return end_mm if min(away_mm, passing_mm) > ON_IT * leg.width_mm else None
+    passing_mm, _ = there.crossing.passing.nearest(place)
+    return end_mm if min(away_mm, passing_mm[0]) > ON_IT * leg.width_mm else None

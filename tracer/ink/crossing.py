@@ -14,13 +14,13 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.motion.median import median
+from morfax.motion.neighbours import Neighbours
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.ink.net import COVERED, Inner
@@ -29,9 +29,6 @@ from morfax.tracer.ink.shared_ink import SharedInk
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
 
 COVERED_SHARE = (
     0.7  # of a stretch within a crossing, along which ways go; by trial on drawings of nets
@@ -84,16 +81,14 @@ class Crossing:
         return SharedInk([inner.run for inner in self.inked], ways)
 
     @cached_property
-    def passing(self) -> cKDTree:
+    def passing(self) -> Neighbours:
         """Places of the lines that pass, from clean end to clean end."""
-        from scipy.spatial import cKDTree
-
-        return cKDTree(np.vstack([self._way(pair) for pair in self.pairs]))
+        return Neighbours(np.vstack([self._way(pair) for pair in self.pairs]))
 
     def covers(self, inner: Inner) -> bool:
         """Whether ways through it go along a stretch within it."""
         if inner.stretch not in self._covers:
-            away_mm, _ = self.passing.query(inner.run.places_mm)
+            away_mm, _ = self.passing.nearest(inner.run.places_mm)
             share = float(np.mean(away_mm < COVERED * self.legs[0].width_mm))
             self._covers[inner.stretch] = share > COVERED_SHARE
         return self._covers[inner.stretch]

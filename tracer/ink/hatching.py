@@ -20,6 +20,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.polyline import length_mm
+from morfax.tracer.drawing.components import grouped
 from morfax.tracer.drawing.thinning import Indices
 
 # All limits below were chosen by trial on drawings of parts with cut faces.
@@ -45,9 +46,6 @@ class Hatching(NamedTuple):
 
 def hatching(ways: Sequence[Array]) -> list[Hatching]:
     """The families of hatching among some strokes, the longest first."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     long_mm = np.array([length_mm(one_in(way, max(1, len(way) // 200))) for way in ways])
     begins, ends = np.array([way[0] for way in ways]), np.array([way[-1] for way in ways])
     chords = ends - begins
@@ -57,9 +55,8 @@ def hatching(ways: Sequence[Array]) -> list[Hatching]:
         return []
     headings = np.mod(np.arctan2(chords[own, 1], chords[own, 0]), math.pi)
     pairs, apart_mm = _neighbours(0.5 * (begins + ends)[own], headings, long_mm[own])
-    a, b = pairs.T
-    joined = coo_array((np.ones(len(a)), (a, b)), shape=(len(own),) * 2)
-    _, family = connected_components(joined, directed=False)
+    a, _ = pairs.T
+    family = grouped(pairs, len(own))
     found = list[Hatching]()
     for k in np.flatnonzero(np.bincount(family) >= FEWEST):
         members, distances_mm = own[family == k], apart_mm[family[a] == k]

@@ -16,9 +16,11 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
@@ -95,8 +97,6 @@ class Balance(NamedTuple):
 
 def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> Balance:
     """What has been followed along some ways (n, 2) mm, and what is left."""
-    from scipy.spatial import cKDTree
-
     # 1. which of the thinned pixels are a way's
     graph = felt.graph
     places = graph.places_mm(sheet.drawing)
@@ -105,7 +105,7 @@ def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> 
     wide_mm = np.where(left.solid_px > 0, usual_mm, np.maximum(sheet.widths_mm, usual_mm))
     near_mm = BESIDE_WIDTHS * wide_mm[patch]
     run = np.vstack([evenly(one_in(way, THINNED), EVERY_MM) for way in ways])
-    is_near = cKDTree(run).query(places)[0] < near_mm
+    is_near = Neighbours(run).nearest(places)[0] < near_mm
     # 2. by patches
     pixels = np.maximum(np.bincount(patch, minlength=sheet.patches.count), 1)
     shares = np.bincount(patch, is_near, sheet.patches.count) / pixels
@@ -158,13 +158,11 @@ def _patches_at(sheet: Sheet, rows: Indices, columns: Indices) -> Indices:
 
 def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[Patch]:
     """The stretches of doubled ink along which no second stroke runs, the longest first."""
-    from scipy.spatial import cKDTree
-
     doubled, found = felt.doubled, list[Patch]()
     if not doubled.stations:
         return
     # 1. how much of the ways, places `EVERY_MM` apart, each thinned pixel has
-    away, nearest = cKDTree(places).query(run)
+    away, nearest = Neighbours(places).nearest(run)
     come = np.bincount(nearest[away < TWO_LINES * doubled.pen_mm], minlength=len(places))
     for n, flags in doubled.stations.items():
         # 2. along the doubled part of a stretch
@@ -178,7 +176,7 @@ def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[Patch]:
     yield from sorted(found, key=lambda patch: -patch[2])
 
 
-def _lost(graph: Graph, places: Array, is_near: Array) -> list[Patch]:
+def _lost(graph: Graph, places: Array, is_near: NDArray[np.bool_]) -> list[Patch]:
     """The stretches of which more than half is left, the longest first."""
     found = list[Patch]()
     for stretch in graph.stretches:

@@ -18,6 +18,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from morfax.motion.arrays import Array
+from morfax.motion.neighbours import pairs_within
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import LEAST_WIDTHS, strands
 from morfax.tracer.ink.felt import Parted
@@ -154,8 +155,6 @@ class _Same:
 
 def _bridge_gaps(net: Net, settings: Settings) -> None:
     """Make one junction of two free ends that face each other across a gap."""
-    from scipy.spatial import cKDTree
-
     ends = [
         (n, last) for n, line in enumerate(net.lines) for last in (False, True)
         if line.junctions[last] in net.free_ends
@@ -165,7 +164,7 @@ def _bridge_gaps(net: Net, settings: Settings) -> None:
     legs = [end_leg(net.lines[n], last) for n, last in ends]
     pitch_mm = legs[0].width_mm if not net.lines else net.lines[0].runs[0].view.pitch_mm
     reach_mm = max(settings.gap_mm, 2.5 * pitch_mm) + 4 * max(leg.width_mm for leg in legs)
-    near = cKDTree([leg.end_mm for leg in legs]).query_pairs(reach_mm)
+    near = pairs_within([leg.end_mm for leg in legs], reach_mm).tolist()
     lifted = [
         leg.at(end_of(_view_at(net, end), leg) or 0.0)
         for leg, end in zip(legs, ends, strict=True)

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.tracer.ink.run import Run
 
@@ -105,9 +106,7 @@ class _Off(NamedTuple):
 
 def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array]) -> _Off:
     """How far places of a way are from where the line would lie; 0 in ink that goes another way."""
-    from scipy.spatial import cKDTree
-
-    away, near = cKDTree(stations[:, :2]).query(some)
+    away, near = Neighbours(stations[:, :2]).nearest(some)
     middles, headings, widths = stations[near, :2], stations[near, 2], stations[near, 3]
     normals = np.column_stack([-np.sin(headings), np.cos(headings)])
     ways = np.gradient(some, axis=0)
@@ -118,7 +117,7 @@ def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array])
     within = wanted = np.clip(aside, -limit, limit)
     beside = np.zeros(len(some), int)
     for other in others:
-        apart, nearest = cKDTree(other).query(middles)
+        apart, nearest = Neighbours(other).nearest(middles)
         is_beside = apart < BESIDE * widths
         beside += is_beside
         further = np.sum((other[nearest] - middles) * normals, axis=1)

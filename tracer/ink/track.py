@@ -25,6 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import length_mm
 from morfax.tracer.following.felt_line import bare_stretch
 from morfax.tracer.head import course
@@ -205,8 +206,6 @@ class InkHead:
 
     def _strayed(self, run: Run, at: int, mark: Mark) -> bool:
         """Whether the newest positions have left what was felt."""
-        from scipy.spatial import cKDTree
-
         newest = self.carriage.since(mark)[::LOOKED_AT]
         if not len(newest):
             return False
@@ -215,7 +214,7 @@ class InkHead:
             / run.view.step_mm
         )
         felt = run.places_mm[max(0, at - 20) : at + beyond]
-        away, _ = cKDTree(felt).query(newest)
+        away, _ = Neighbours(felt).nearest(newest)
         return bool(away.max() > STRAYED * run.view.width_mm)
 
     def through(self, run: Run, onward: Piece) -> None:

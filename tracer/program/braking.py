@@ -26,6 +26,7 @@ import numpy as np
 
 from morfax.motion import curves, long_array
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.long_array import LongArray, blocks, released
 from morfax.motion.polyline import at_lengths, at_places, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
@@ -103,16 +104,29 @@ def _at_times(
     uniform: Array, times: Array, places: Array, took_s: Array, speeds: Array
 ) -> Array:
     """Where the axis is at some times, (n, 2) mm: between nodes, of which the times and speeds are known."""
-    # 1. the step at each period, and the share of its time that has passed
-    i = np.clip(np.searchsorted(times, uniform, side="right") - 1, 0, len(took_s) - 1)
-    share = (uniform - times[i]) / np.maximum(took_s[i], _NOTHING_S)
-    # 2. the share of its way: at even acceleration, or from rest to rest
-    gain, mean = speeds[i + 1] - speeds[i], 0.5 * (speeds[i] + speeds[i + 1])
-    even = (speeds[i] * share + 0.5 * gain * share**2) / np.maximum(mean, _NOTHING_S)
-    from_rest = np.where(share < 0.5, 2 * share**2, 1 - 2 * (1 - share) ** 2)
-    moves = mean * took_s[i] > 0.5 * steps_mm(places)[i]
-    share = np.where(moves, even, from_rest)
-    return np.asarray(places[i] + share[:, None] * (places[i + 1] - places[i]))
+    out = np.empty((len(uniform), 2))
+    _placed(uniform, (times, took_s), np.ascontiguousarray(places), speeds, out)
+    return out
+
+
+@njit(cache=True, _nrt=False)
+def _placed(uniform, clock, places, speeds, out):  # type: ignore[no-untyped-def]
+    """Fill in the places at some times; `clock`: the times of the nodes, and of their steps."""
+    (times, took_s), i = clock, 0
+    for k in range(len(uniform)):
+        # 1. the step, and the share of its time that has passed
+        while i < len(took_s) - 1 and times[i + 1] <= uniform[k]:
+            i += 1
+        share = (uniform[k] - times[i]) / max(took_s[i], _NOTHING_S)
+        # 2. the share of its way: at even acceleration, or from rest to rest
+        mean = 0.5 * (speeds[i] + speeds[i + 1])
+        dx, dy = places[i + 1, 0] - places[i, 0], places[i + 1, 1] - places[i, 1]
+        if mean * took_s[i] > 0.5 * math.hypot(dx, dy):
+            gain = speeds[i + 1] - speeds[i]
+            way = (speeds[i] * share + 0.5 * gain * share**2) / max(mean, _NOTHING_S)
+        else:
+            way = 2 * share**2 if share < 0.5 else 1 - 2 * (1 - share) ** 2
+        out[k, 0], out[k, 1] = places[i, 0] + way * dx, places[i, 1] + way * dy
 
 
 @dataclass(frozen=True, slots=True)
