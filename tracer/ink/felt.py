@@ -119,7 +119,8 @@ def feel_along(view: View, guide_mm: Array) -> Run:
         aside, widths = 0.5 * (found[:, 0] + found[:, 1]), found[:, 1] - found[:, 0]
         known = widths[np.isfinite(widths)]
         usual_mm = median(known) if len(known) else view.width_mm
-        on_it = np.abs(widths - usual_mm) < CLEAN * usual_mm + CLEAN_PX * view.pitch_mm
+        # where the ink is broader another line may join it; thinner ink is the line's own
+        on_it = widths - usual_mm < CLEAN * usual_mm + CLEAN_PX * view.pitch_mm
         on_it &= np.abs(aside) < LEAP * usual_mm + 2 * view.pitch_mm
         aside = np.where(on_it, aside, 0.0)
         normals = np.column_stack([-np.sin(headings), np.cos(headings)])
