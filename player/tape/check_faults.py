@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from morfax.motion.faults import DropoutFault, LockFault, TapeFault
 from morfax.player.tape.bridges import Gap
+from morfax.player.tape.lost_ways import COUNT_CYCLES
 from morfax.player.tape.standstill import track_name
 
 Names = Sequence[str]  # of the axes
@@ -116,10 +117,14 @@ def miscounted(
     axis: str, off_cycles: float, allowed_cycles: float, time_s: float, place_mm: float
 ) -> LockFault:
     """The fault of a count that differs from what the track says."""
+    why = (
+        "cycles were lost shortly before; copy the tape again, or mend it (morfax mend)"
+        if abs(off_cycles) > COUNT_CYCLES
+        else "its phase was turned on shortly before, as a filter or an echo does; copy the tape again"
+    )
     return LockFault(
         f"{axis.upper()} is {off_cycles:+.2f} cycles off what its check signal says at {time_s:.3f} s, "
-        f"{allowed_cycles:g} is allowed; last certain position {place_mm:.3f} mm: cycles were lost shortly "
-        "before; copy the tape again, or mend it (morfax mend)",
+        f"{allowed_cycles:.2f} is allowed; last certain position {place_mm:.3f} mm: {why}",
         axis=axis,
         time_s=time_s,
         error_cycles=off_cycles,

@@ -58,7 +58,7 @@ MOST_AHEAD = (
 )  # frames of the tape: four times what 192 kHz and a reference of 5 kHz need
 # of the power of 24 symbols: noise as strong as the symbols has a share of 1/24
 SYNC_LIKENESS = 0.5
-CENTRING = 3  # times: what is left after each is a tenth
+CENTRING = 6  # times: 7 us are left after three, 4 us after six
 # behind a frame before it is read, in cycles: the windows of its last symbol
 REACH_CYCLES = 2 * CYCLES_PER_SYMBOL
 
@@ -139,6 +139,11 @@ class CheckReader:
         return any(self.found)
 
     @property
+    def is_timed(self) -> bool:
+        """Whether the reference itself says when its frames begin."""
+        return bool(self.found[0])
+
+    @property
     def tracks(self) -> list[int | None]:
         """Which track each of them says to be, from 0; None where it says nothing."""
         return [found[0].said.track if found else None for found in self.found]
@@ -211,7 +216,7 @@ class CheckReader:
             for found in self.found
             if found
         ]
-        self._theta = float(np.median(begins))
+        self._theta = first.theta if self.is_timed else float(np.median(begins))
         for track, found in enumerate(self.found):
             if not found:
                 continue

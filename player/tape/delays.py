@@ -3,8 +3,8 @@
 Signals in: rows of the tape and the delays told there, s, eight or nine a second; phases in cycles. Signals
 out: phases without the delay.
 
-    settled   the mean of seven that are told, three before and three behind; at both ends of the tape a
-              straight line through seven
+    settled   the mean of seven that are told, three before and three behind, or of the middle three where
+              that lies off it by more than noise does; at both ends of the tape a straight line through seven
     used      follows what is settled as far as leaves a dead zone of 0.5 us; a straight line between, and
               beyond the first and the last as fast as the seven there change
     doubt     three standard errors of the straight line, at the last row of the tape:
@@ -30,6 +30,10 @@ from morfax.motion.arrays import Array
 
 WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2
+BENT_ERRORS = (
+    3.0  # standard errors of seven against three: beyond, the delay bends within seven
+)
+NEAR = (1 / 3 - 1 / WINDOW) ** 0.5  # standard error of the difference, for one told delay of 1
 DEAD_ZONE_S = 0.5e-6  # noise of 26 dB tells 0.4; half a us is 0.003 cycle
 KEPT = 40  # delays: more than rows are held for
 DOUBT_ERRORS = 3.0  # standard errors: one line in 370
@@ -140,8 +144,12 @@ class Delay:
         first = min(max(at - HALF, 0), max(len(self._told) - WINDOW, 0))
         told = self._told[first : first + WINDOW]
         mean_s = sum(told) / len(told)
-        if at - first == HALF or len(told) < WINDOW:
+        if len(told) < WINDOW:
             return mean_s
+        if at - first == HALF:
+            near_s = sum(told[HALF - 1 : HALF + 2]) / 3
+            is_bent = abs(near_s - mean_s) > BENT_ERRORS * NEAR * max(self._errors_s)
+            return near_s if is_bent else mean_s
         middle = float(np.mean(self._rows[first : first + WINDOW]))
         return float(mean_s + self._slope(first) * (self._rows[at] - middle))
 

@@ -5,7 +5,7 @@ out: rows that are vouched for, about a second later, and the first that is not,
 
     order       frames of each track are its own and follow one another      frame_order.py
     delay       of a track against the reference                             delays.py: taken out of the phase
-    count       cycles of the axis at the start of each frame                a quarter of a cycle off: a fault
+    count       cycles of the axis at the start of each frame                0.04 of a cycle off: a fault
     last        the last two frames say that the tape ends                   the end is missing: a fault
 
 A frame of a track may be missing, in a dropout, if one of the next vouches for what was between. A dropout
@@ -37,7 +37,7 @@ from morfax.player.tape.lost_ways import COUNT_CYCLES, Laid, LostWays, laid
 from morfax.player.tape.standstill import ALLOWED_CYCLES
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
-from morfax.recorder.tape.check_frame import SYMBOLS
+from morfax.recorder.tape.check_frame import SYMBOLS, CheckFrame
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored
@@ -45,6 +45,8 @@ from morfax.recorder.tape.told_figures import Stated, demand_agreement
 
 # of a delay off the line through seven: 0.036 cycle; 26 dB of noise leave 2
 LARGEST_OFF_S = 6e-6
+# of a count, beside what its own grain hides: noise, delays and a frame's first instant (4 us) leave 0.03
+COUNT_OFF_CYCLES = 0.04
 # that an axis may move behind the last delay told: 26 dB of noise move it by 0.006, a reel by 0.026
 TAIL_CYCLES = 0.03
 
@@ -71,8 +73,8 @@ class Vouching:
         self.mended: list[Laid] = []
         self._rows = HeldRows()
         self._given = 0  # rows that were given out and are still held, to lend their speed
-        # row, and by axis the cycles that it tells there: not yet checked
-        self._counts: list[tuple[float, dict[int, float]]] = []
+        # row, and by axis what it tells there: not yet checked
+        self._counts: list[tuple[float, dict[int, CheckFrame]]] = []
         self._counted = [0.0] * len(fmt.axes)  # the last row at which the count was right
         self._order = FrameOrder(fmt)
         self._fault: Fault | None = None
@@ -213,7 +215,7 @@ class Vouching:
         delays_s, said = report.delay_s[axis + 1], report.said[axis + 1]
         if said is None or not math.isfinite(sum(delays_s)):
             return  # the reference says nothing
-        self._counts[-1][1][axis] = said.cycles
+        self._counts[-1][1][axis] = said
         self._bounds[axis].add(report, axis + 1)
         self._delays[axis].add(report.part_rows, delays_s, report.error_s[axis + 1])
         off_s = self._delays[axis].off_s()
@@ -230,17 +232,26 @@ class Vouching:
             open_ = [axis for axis in told if not self._ways.covers(axis, row)]
             off = {axis: self._off(axis, row, told[axis]) for axis in open_}
             for axis in open_:
-                self._settle(axis, row, off[axis], stands_mm)
+                limit_cycles = self._limit_cycles(told[axis])
+                self._settle(axis, row, (off[axis], limit_cycles), stands_mm)
             if self._lost and len(open_) == len(self._delays) and not self._fault:
                 first = min(self._lost.values(), key=lambda gap: gap.first)
                 self._fault = self._lost_way(first, (row, off))
 
-    def _off(self, axis: int, row: float, told: float) -> float:
+    def _off(self, axis: int, row: float, said: CheckFrame) -> float:
         """How far the count of an axis lies off what its track says at a row, cycles."""
         found = self._place(axis, row)
         if math.isnan(self._zero_cycles[axis]):
-            self._zero_cycles[axis] = found - told
-        return found - float(self._zero_cycles[axis]) - told
+            self._zero_cycles[axis] = found - said.cycles
+        return math.remainder(
+            found - float(self._zero_cycles[axis]) - said.cycles, said.turn_cycles
+        )
+
+    def _limit_cycles(self, said: CheckFrame) -> float:
+        """How far a count may lie off."""
+        if not self._check.is_timed:  # then an axis that moves is told as at another moment
+            return COUNT_CYCLES
+        return said.grain_cycles / 2 + COUNT_OFF_CYCLES
 
     def _place(self, axis: int, row: float) -> float:
         """Where an axis is at a row that is held, cycles, without the delay of its track."""
@@ -252,9 +263,12 @@ class Vouching:
         near = delay.corrected(held.axis(axis, first, at + span + 1), held.first_row + first)
         return between(near, row - held.first_row - first)
 
-    def _settle(self, axis: int, row: float, off: float, stands_mm: StandsMm) -> None:
+    def _settle(
+        self, axis: int, row: float, off_and_limit: tuple[float, float], stands_mm: StandsMm
+    ) -> None:
         """Let a count vouch for the way until there; or note which gap lost it, or lay that gap anew."""
-        if abs(off) <= COUNT_CYCLES and not self._weak[axis] and not self._ways.any_open(axis):
+        off, limit = off_and_limit
+        if abs(off) <= limit and not self._weak[axis] and not self._ways.any_open(axis):
             self._counted[axis] = row
             return
         before = [weak for weak in self._weak[axis] if weak < row]
@@ -272,9 +286,9 @@ class Vouching:
             return
         if gap is not None:
             self._lay(axis, gap, -whole)
-        elif abs(off) > COUNT_CYCLES:
+        elif abs(off) > limit:
             name, time_s = self._format.axes[axis], row / self._rate_hz
-            found = faults.miscounted(name, off, COUNT_CYCLES, time_s, stands_mm()[axis])
+            found = faults.miscounted(name, off, limit, time_s, stands_mm()[axis])
             self._fault = self._fault or found
             return
         self._ways.settle(axis, row, 0.0 if gap is None else float(-whole))

@@ -8,7 +8,8 @@ wrong.
 
 What the reference's track says in place of the last three: told_figures.py.
 
-`count` is the axis' displacement at the frame's first instant, in sixteenths of a cycle, with a sign. `speed`
+`count` is the axis' displacement at the frame's first instant, in sixty-fourths of a cycle (version 1:
+sixteenths), with a sign; beyond 26 m at 20 cycles per mm it begins again at the other end. `speed`
 and `acceleration` are the largest from that instant to the end of the next frame, in eighths of an octave,
 rounded up: a frame that is lost was told of by the one before it. `last`: at most one whole frame follows.
 Told and CRC are whitened by a pseudo-random sequence, so that a track that stands does not send one tone.
@@ -29,12 +30,12 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 
-VERSION = 1
+VERSION = 2
 SYMBOLS = 120  # of a frame
 SYNC_SYMBOLS = 24
 _SYNC = 0xFAF320
 _TOLD_BYTES, _CRC_BYTES = 8, 4
-COUNTS_PER_CYCLE = 16
+COUNTS_PER_CYCLE = {1: 16, 2: 64}  # by version
 NUMBERS = 1 << 16  # of frames, then they begin again: after nine hours
 MOST_TRACKS = 16
 _COUNT_BITS, _CODE_BITS = 26, 7
@@ -54,6 +55,22 @@ class CheckFrame:
     speed: float = 0.0
     acceleration: float = 0.0
     last: bool = False
+    version: int = VERSION
+
+    @property
+    def counts(self) -> int:
+        """The displacement in counts, rounded."""
+        return round(self.cycles * COUNTS_PER_CYCLE[self.version])
+
+    @property
+    def grain_cycles(self) -> float:
+        """Cycles to a count."""
+        return 1 / COUNTS_PER_CYCLE[self.version]
+
+    @property
+    def turn_cycles(self) -> float:
+        """Cycles after which the counts begin again."""
+        return (1 << _COUNT_BITS) * self.grain_cycles
 
 
 def _whitening() -> NDArray[np.uint8]:
@@ -83,18 +100,15 @@ SYNC: Bits = np.array(
 
 
 def to_bits(frame: CheckFrame) -> Bits:
-    """The frame as 120 symbols of +1 and -1; raises ValueError for a track or count that has no room."""
-    count = round(frame.cycles * COUNTS_PER_CYCLE)
-    if not abs(count) < 1 << (_COUNT_BITS - 1):
-        raise ValueError(f"{frame.cycles:.0f} cycles have no room in a check frame")
+    """The frame as 120 symbols of +1 and -1; raises ValueError for a track that has no room."""
     if not 0 <= frame.track < MOST_TRACKS:
         raise ValueError(f"track {frame.track} has no room in a check frame")
-    told = VERSION
+    told = frame.version
     for value, bits in (
         (int(frame.last), 1),
         (frame.track, 4),
         (frame.number % NUMBERS, 16),
-        (count % (1 << _COUNT_BITS), _COUNT_BITS),
+        (frame.counts % (1 << _COUNT_BITS), _COUNT_BITS),
         (to_code(frame.speed, LEAST_SPEED), _CODE_BITS),
         (to_code(frame.acceleration, LEAST_ACCELERATION), _CODE_BITS),
     ):
@@ -138,7 +152,8 @@ def tell(bits, white, byte_crcs, told, is_right):  # type: ignore[no-untyped-def
 
 def said_by(told: int) -> CheckFrame | None:
     """What the told bits say, behind a right check sum."""
-    if told >> 61 != VERSION:
+    version = told >> 61
+    if version not in COUNTS_PER_CYCLE:
         return None
     codes, code_mask = told & ((1 << 2 * _CODE_BITS) - 1), (1 << _CODE_BITS) - 1
     count = told >> 2 * _CODE_BITS & ((1 << _COUNT_BITS) - 1)
@@ -147,10 +162,11 @@ def said_by(told: int) -> CheckFrame | None:
     return CheckFrame(
         told >> 56 & (MOST_TRACKS - 1),
         told >> 40 & (NUMBERS - 1),
-        count / COUNTS_PER_CYCLE,
+        count / COUNTS_PER_CYCLE[version],
         to_value(codes >> _CODE_BITS, LEAST_SPEED),
         to_value(codes & code_mask, LEAST_ACCELERATION),
         bool(told >> 60 & 1),
+        version,
     )
 
 

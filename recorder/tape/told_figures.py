@@ -24,6 +24,7 @@ from morfax.recorder.tape.check_frame import (
     COUNTS_PER_CYCLE,
     LEAST_ACCELERATION,
     LEAST_SPEED,
+    VERSION,
     CheckFrame,
     to_code,
     to_value,
@@ -50,7 +51,7 @@ def frame_of(stated: Stated, number: int, last: bool) -> CheckFrame:
     return CheckFrame(
         0,
         number,
-        _scale(stated.cycles_per_mm) / COUNTS_PER_CYCLE,
+        _scale(stated.cycles_per_mm) / COUNTS_PER_CYCLE[VERSION],
         to_value(tens + 1, LEAST_SPEED),
         to_value(ones + 1, LEAST_ACCELERATION),
         last,
@@ -59,7 +60,7 @@ def frame_of(stated: Stated, number: int, last: bool) -> CheckFrame:
 
 def demand_agreement(said: CheckFrame, stated: Stated, used: Stated) -> None:
     """Raise TapeFault where a text states other figures than were recorded; not for those given by hand."""
-    told = round(said.cycles * COUNTS_PER_CYCLE)
+    told = said.counts
     if (
         told
         and used.cycles_per_mm == stated.cycles_per_mm
