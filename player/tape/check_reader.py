@@ -210,13 +210,7 @@ class CheckReader:
         clock = next((found for found in self.found if found), [])
         first = clock[0]
         self._number = first.said.number
-        begins = [
-            found[0].theta
-            - CYCLES_PER_FRAME * round((found[0].theta - first.theta) / CYCLES_PER_FRAME)
-            for found in self.found
-            if found
-        ]
-        self._theta = first.theta if self.is_timed else float(np.median(begins))
+        begins = []  # of the first track's frame, by each track and its delay
         for track, found in enumerate(self.found):
             if not found:
                 continue
@@ -227,6 +221,9 @@ class CheckReader:
             by_phase = first.turns - found[0].turns
             halves = round(2 * (late / CYCLES_PER_SUBCARRIER - by_phase))
             self._zero_turns[track] = first.turns + halves / 2
+            late_by_phase = CYCLES_PER_SUBCARRIER * (by_phase + halves / 2)
+            begins.append(first.theta + late - late_by_phase)
+        self._theta = float(np.median(begins))
         self._turns[:] = [found[0].turns if found else 0.0 for found in self.found]
 
     def _report(self) -> FrameReport:

@@ -227,7 +227,12 @@ class Vouching:
         """Compare the axes' counts with what their tracks say, as far as rows are held."""
         ends = self._rows.first_row + len(self._rows) - 1
         known = self._fault  # of a frame further on: what is before it is still compared
-        while self._counts and self._counts[0][0] <= ends and self._fault is known:
+        while (
+            self._counts
+            and len(self._rows)  # a frame may begin before the first
+            and self._counts[0][0] <= ends
+            and self._fault is known
+        ):
             row, told = self._counts.pop(0)
             open_ = [axis for axis in told if not self._ways.covers(axis, row)]
             off = {axis: self._off(axis, row, told[axis]) for axis in open_}

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from tests.player.attacks import changes as do
-from tests.player.attacks.bench import EITHER, RIGHT, Bench, Kind, benches
+from tests.player.attacks.bench import EITHER, RIGHT, Bench, Kind, benches, earlier_benches
 from tests.player.attacks.kinds import KINDS
 
 TRIED = KINDS[::4]
@@ -19,6 +19,12 @@ LEVELS = (0.015, 0.035)  # of a tone, of the carrier: it turns delays by 2 to 4 
 @pytest.fixture(scope="module", name="benches")
 def _benches(tmp_path_factory: pytest.TempPathFactory) -> tuple[Bench, Bench]:
     return benches(tmp_path_factory.mktemp("attacks"))
+
+
+@pytest.fixture(scope="module", name="earlier")
+def _earlier(tmp_path_factory: pytest.TempPathFactory) -> tuple[Bench, Bench]:
+    """Tapes of frames of version 1, on which the seeds below were found."""
+    return earlier_benches(tmp_path_factory.mktemp("earlier"))
 
 
 def test_the_table_is_as_long_as_it_should_be() -> None:
@@ -33,7 +39,7 @@ def test_an_attack(benches: tuple[Bench, Bench], kind: Kind) -> None:
 
 @pytest.mark.parametrize("seed", [249, 571])
 def test_a_tone_that_turns_the_delays_at_the_end(
-    benches: tuple[Bench, Bench], seed: int
+    earlier: tuple[Bench, Bench], seed: int
 ) -> None:
     """The line through the last delays runs on to the end: by it these were 0.0504 and 0.0587 cycle off."""
     kind = Kind(
@@ -43,16 +49,16 @@ def test_a_tone_that_turns_the_delays_at_the_end(
         ),
         EITHER,
     )
-    verdict = benches[seed % 2].tried(kind, seed)
+    verdict = earlier[seed % 2].tried(kind, seed)
     assert verdict.keeps(EITHER), verdict.error_cycles
     assert "swings by" in str(verdict.fault)
 
 
 @pytest.mark.parametrize("seed", [87, 487])
-def test_a_tone_of_which_only_one_end_is_seen(benches: tuple[Bench, Bench], seed: int) -> None:
+def test_a_tone_of_which_only_one_end_is_seen(earlier: tuple[Bench, Bench], seed: int) -> None:
     """What lies beside that end is the tone: bridged from there, these were 0.060 and 0.059 cycle off."""
     kind = next(kind for kind in KINDS if kind.name.startswith("a short tone nearly in phase"))
-    verdict = benches[1].tried(kind, seed)
+    verdict = earlier[1].tried(kind, seed)
     assert verdict.keeps(EITHER), verdict.error_cycles
     assert "Z was lost for 1.8 ms" in str(verdict.fault)
 
@@ -89,38 +95,38 @@ def test_the_judgement_itself_fails(benches: tuple[Bench, Bench], name: str) -> 
 
 
 def test_a_jump_of_the_speed_within_a_gap_that_the_drive_makes_larger(
-    benches: tuple[Bench, Bench],
+    earlier: tuple[Bench, Bench],
 ) -> None:
     """Z starts at 8 mm/s where a low-pass takes the level: 0.047 cycle off on the tape, 0.105 behind it."""
     kind = Kind("low-pass", lambda t, r: do.filtered(t, "lowpass", 8272.9), EITHER)
-    verdict = benches[1].tried(kind, 0)
+    verdict = earlier[1].tried(kind, 0)
     assert verdict.keeps(EITHER), verdict.error_cycles
     assert "Z was lost for 252.2 ms" in str(verdict.fault)
 
 
 def test_noise_that_a_drive_makes_larger_where_the_speed_jumps(
-    benches: tuple[Bench, Bench],
+    earlier: tuple[Bench, Bench],
 ) -> None:
     """Of 1 137 tapes with noise of 5 to 27 dB this one, of 23.1 dB, was 0.0506 cycle off at the machine."""
     kind = next(kind for kind in KINDS if kind.name == "noise of 27 to 5 dB")
-    verdict = benches[1].tried(kind, 21131)
+    verdict = earlier[1].tried(kind, 21131)
     assert verdict.keeps(EITHER), verdict.error_cycles
     assert "at standstill" in str(verdict.fault)
     quiet = Kind("26 dB", lambda t, r: do.with_noise(t, r, 26.0), RIGHT)
-    assert benches[1].tried(quiet, 21131).keeps(RIGHT)
+    assert earlier[1].tried(quiet, 21131).keeps(RIGHT)
 
 
-def test_a_delay_that_swings_behind_the_last_that_is_told(benches: tuple[Bench, Bench]) -> None:
+def test_a_delay_that_swings_behind_the_last_that_is_told(earlier: tuple[Bench, Bench]) -> None:
     """It leaves the line through the last seven by 10 us until the tape ends: 0.063 cycle off."""
     kind = next(kind for kind in KINDS if kind.name == "a delay swings, 0.05 to 0.5 Hz")
-    verdict = benches[1].tried(kind, 40249)
+    verdict = earlier[1].tried(kind, 40249)
     assert verdict.keeps(EITHER), verdict.error_cycles
     assert "swings by" in str(verdict.fault)
 
 
-def test_a_tone_whose_speed_the_program_does_not_reach(benches: tuple[Bench, Bench]) -> None:
+def test_a_tone_whose_speed_the_program_does_not_reach(earlier: tuple[Bench, Bench]) -> None:
     """The gap at its beginning was laid up to the tone's own speed: 0.135 cycle off, until the fault."""
     kind = next(kind for kind in KINDS if kind.name == "a dropout full of a tone")
-    verdict = benches[1].tried(kind, 50215)
+    verdict = earlier[1].tried(kind, 50215)
     assert verdict.keeps(EITHER), verdict.error_cycles
     assert "Y was lost for 4.2 ms" in str(verdict.fault)

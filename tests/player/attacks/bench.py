@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from unittest import mock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from morfax.motion.faults import Fault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.playback import play
 from morfax.recorder.sound.source import FileSource
+from morfax.recorder.tape import check_signal
+from morfax.recorder.tape.check_frame import COUNTS_PER_CYCLE, Bits, CheckFrame, to_bits
 from morfax.recorder.tape.tape import record
 from tests.player.worn import corners, program
 
@@ -97,17 +100,20 @@ class Bench:
         record(Motion(positions_mm), tape)
         source = FileSource(tape)
         self.text = source.text
-        self.frames = np.concatenate(list(source.stored_blocks())).astype(
-            np.float32
-        ) / np.float32(32768)
+        stored = np.concatenate(list(source.stored_blocks())).astype(np.float32)
+        self.put(stored / np.float32(32768))
         source.close()
-        finer = resample_poly(self.frames.astype(np.float64), FINER, 1, axis=0)
-        self._finer = finer.astype(np.float32)
         self.clean = join(play(tape)).positions_mm
         # rows that stand still are one: a tree of thousands of rows in one place is as slow as a list
         moves = np.abs(np.diff(np.rint(self.clean / GRAIN_MM), axis=0)).max(axis=1) > 0
         self._way = self.clean[np.r_[True, moves]]
         self._tree = cKDTree(self._way)
+
+    def put(self, frames: Frames) -> None:
+        """Take other frames for the tape's."""
+        self.frames = frames
+        finer = resample_poly(frames.astype(np.float64), FINER, 1, axis=0)
+        self._finer = finer.astype(np.float32)
 
     def at(self, places: NDArray[np.float64], track: int | None = None) -> Frames:
         """The frames of all tracks, or of one, at places between them."""
@@ -164,6 +170,19 @@ class Bench:
             foot = one + np.clip(share, 0, 1)[:, None] * along
             best = np.minimum(best, np.linalg.norm(went - foot, axis=1))
         return float(best.max())
+
+
+def to_bits_of_version_1(frame: CheckFrame) -> Bits:
+    """A frame as earlier versions of the recorder wrote it; what the reference says in it are counts."""
+    finer = COUNTS_PER_CYCLE[frame.version] / COUNTS_PER_CYCLE[1]
+    cycles = frame.cycles * (1 if frame.track else finer)
+    return to_bits(replace(frame, version=1, cycles=cycles))
+
+
+def earlier_benches(folder: object) -> tuple[Bench, Bench]:
+    """The same as `benches`, of tapes whose counts are sixteenths of a cycle."""
+    with mock.patch.object(check_signal, "to_bits", to_bits_of_version_1):
+        return benches(folder)
 
 
 def benches(folder: object) -> tuple[Bench, Bench]:

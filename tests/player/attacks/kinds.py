@@ -12,14 +12,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from tests.player.attacks import chain, drawn
 from tests.player.attacks import changes as do
-from tests.player.attacks import drawn
 from tests.player.attacks.bench import EITHER, FAULT, RIGHT, Kind
 from tests.player.attacks.changes import ALL, REFERENCE, X, Y
 from tests.player.attacks.drawn import AXES, US
 
 # ruff: noqa: E501 -- a line to a kind
-KINDS: tuple[Kind, ...] = (
+ONE: tuple[Kind, ...] = (
     Kind("nothing", lambda t, r: t.frames, RIGHT),
     # delays
     Kind("an axis late by up to 195 us", lambda t, r: do.late(t, {drawn.axis(r): r.uniform(0, 195) * US}), RIGHT),
@@ -116,4 +116,28 @@ KINDS: tuple[Kind, ...] = (
     Kind("the tape twice, one behind the other", lambda t, r: np.concatenate([t.frames, t.frames]), FAULT, False),
     Kind("a phase turns on by one to nine cycles", lambda t, r: drawn.slipped(t, r, float(r.integers(1, 10) * r.choice([-1, 1]))), EITHER),
     Kind("a phase turns on by a part of a cycle", lambda t, r: drawn.slipped(t, r, drawn.signed(r, 0.26, 0.74)), FAULT),
+    # what stands between two machines
+    Kind("a track's delay begins to drift under way, up to 45 us/s", lambda t, r: chain.drifts_from(t, r, r.uniform(5, 45)), RIGHT, False),
+    Kind("a track's delay begins to drift under way, by 10 us/s to 30 ms/s", lambda t, r: chain.drifts_from(t, r, do.log_uniform(r, 10, 30000)), EITHER, False),
+    Kind("an older recording beneath, 3 to 45 dB down", chain.older, EITHER, False),
+    Kind("an echo", chain.echoed, EITHER, False),
+    Kind("all-pass filters", chain.all_pass, EITHER, False),
+    Kind("an automatic level control", chain.level_control, EITHER),
+    Kind("a noise reduction that does not fit", chain.treble_by_level, EITHER, False),
+    Kind("treble that comes and goes", chain.treble_swings, EITHER),
+    Kind("the level swings", chain.level_swings, EITHER),
+    Kind("the level steps down", chain.level_steps, EITHER),
+    Kind("the level fades away", chain.faded, EITHER),
+    Kind("mains with many harmonics", chain.buzz, EITHER),
+    Kind("a thump", chain.thump, EITHER),
+    Kind("second harmonic", chain.second_harmonic, EITHER),
+    Kind("samples at jittering moments", chain.jittered, EITHER, False),
+    Kind("another take from a moment on", chain.another_take, EITHER, False),
+    Kind("another track's signal for a while", chain.other_track, EITHER, False),
+    Kind("a buffer is played again and again", chain.stuck, EITHER, False),
+    Kind("a track's phase swings", chain.phase_swings, EITHER, False),
 )  # fmt: skip
+KINDS = (
+    *ONE,
+    Kind("two or three at once", lambda t, r: chain.several(t, r, ONE), EITHER, False),
+)

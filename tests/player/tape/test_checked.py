@@ -6,18 +6,23 @@ from collections.abc import Callable
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pytest
 import soundfile
+from scipy.signal import lfilter
 
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.mend import mend
 from morfax.player.tape.playback import TapePlayback, play, play_pipe
+from morfax.recorder.tape import check_signal
+from morfax.recorder.tape.check_frame import COUNTS_PER_CYCLE
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
 from morfax.recorder.wear.settings import Wear
 from morfax.recorder.wear.transport import age
+from tests.player.attacks.bench import to_bits_of_version_1
 from tests.player.worn import program
 
 RATE_HZ = 48000
@@ -363,6 +368,54 @@ def test_a_reference_too_low_has_no_check_signal(tmp_path: Path) -> None:
     playback = play(tmp_path / "a.wav")
     join(playback)
     assert len(playback.notes) == 1
+
+
+@pytest.mark.parametrize("track", [REFERENCE, X])
+def test_a_delay_that_begins_to_drift_under_way_is_put_right(bench: Bench, track: int) -> None:
+    """50 us/s from 2.2 s on; a mean over seven delays alone rounded the bend off: 2.2 um."""
+
+    bend = delayed(track, lambda t: 50e-6 * np.clip(t - 2.2, 0, None))
+    went, fault = bench.played(bend)
+    assert fault is None
+    if track == REFERENCE:  # it takes the machine's clock along
+        rows = np.arange(len(went))
+        by = rows + 50e-6 * np.clip(rows - 2.2 * 6000, 0, None)
+        went = np.column_stack([np.interp(by, rows, column) for column in went.T])
+    assert bench.error_um(went) < RIGHT_UM
+
+
+@pytest.mark.parametrize("corner", [-0.8, -0.6])
+def test_a_carrier_that_a_filter_turns_on_is_a_fault(bench: Bench, corner: float) -> None:
+    """An all-pass on X turns its carrier by up to 9 um, at any level; its check signal is late by less."""
+
+    def turned(frames: Frames) -> Frames:
+        frames[:, X] = lfilter([corner, 1], [1, corner], frames[:, X])
+        return frames
+
+    went, fault = bench.played(turned)
+    assert isinstance(fault, LockFault)
+    assert fault.axis == "x" and fault.error_cycles is not None
+    assert 0.048 < abs(fault.error_cycles) < 0.25
+    assert "as a filter or an echo does" in str(fault)
+    assert bench.error_um(went) < 2.5  # 0.05 cycle
+
+
+def test_counts_that_begin_again_lead_no_axis_astray(tmp_path: Path) -> None:
+    """Counts of 1e-6 cycle begin again after 64 cycles, as those of a tape do after 52 m."""
+    with mock.patch.dict(COUNTS_PER_CYCLE, {2: 1 << 20}):
+        bench = Bench(tmp_path)
+        went, fault = bench.played(lambda frames: frames)
+    assert fault is None
+    assert np.ptp(went[:, 0]) * 20 > 5 * 64
+    assert went[-1] == pytest.approx(bench.clean[-1], abs=0.001 * UM)
+
+
+def test_a_tape_of_version_1_plays(tmp_path: Path, bench: Bench) -> None:
+    """Its counts are sixteenths of a cycle."""
+    with mock.patch.object(check_signal, "to_bits", to_bits_of_version_1):
+        earlier = Bench(tmp_path)
+    assert not np.array_equal(earlier.frames, bench.frames)
+    assert np.abs(earlier.clean - bench.clean).max() < 0.01 * UM
 
 
 def test_the_text_says_nothing_of_it(bench: Bench) -> None:

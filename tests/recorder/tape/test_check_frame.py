@@ -17,6 +17,7 @@ from morfax.recorder.tape.check_frame import (
     SYNC_SYMBOLS,
     CheckFrame,
     from_bits,
+    said_by,
     to_bits,
 )
 
@@ -26,21 +27,29 @@ OCTAVE_STEP = 2 ** (1 / 8)  # speeds and accelerations are rounded up to this
 @given(
     track=st.integers(0, 15),
     number=st.integers(0, 5 * NUMBERS),
-    cycles=st.floats(-2e6, 2e6),
+    cycles=st.floats(-5e5, 5e5),
     speed=st.floats(0.5, 2e4),
     acceleration=st.floats(32, 1e6),
     last=st.booleans(),
+    version=st.sampled_from(list(COUNTS_PER_CYCLE)),
 )
 def test_what_is_told_comes_back(
-    track: int, number: int, cycles: float, speed: float, acceleration: float, last: bool
+    track: int,
+    number: int,
+    cycles: float,
+    speed: float,
+    acceleration: float,
+    last: bool,
+    version: int,
 ) -> None:
-    bits = to_bits(CheckFrame(track, number, cycles, speed, acceleration, last))
+    bits = to_bits(CheckFrame(track, number, cycles, speed, acceleration, last, version))
     assert bits.shape == (SYMBOLS,)
     assert set(np.unique(bits)) == {-1, 1}
     found = from_bits(bits[None])[0]
     assert found is not None
     assert (found.track, found.number, found.last) == (track, number % NUMBERS, last)
-    assert found.cycles == pytest.approx(cycles, abs=0.5 / COUNTS_PER_CYCLE)
+    assert (found.version, found.grain_cycles) == (version, 1 / COUNTS_PER_CYCLE[version])
+    assert found.cycles == pytest.approx(cycles, abs=0.5 / COUNTS_PER_CYCLE[version])
     assert speed * (1 - 1e-6) <= found.speed <= speed * OCTAVE_STEP * (1 + 1e-6)
     assert acceleration * (1 - 1e-6) <= found.acceleration
     assert found.acceleration <= acceleration * OCTAVE_STEP * (1 + 1e-6)
@@ -55,13 +64,25 @@ def test_rest_is_told_as_rest_and_too_much_as_no_bound() -> None:
     assert (found.speed, found.acceleration) == (math.inf, math.inf)
 
 
-@pytest.mark.parametrize(
-    ("frame", "what"),
-    [(CheckFrame(1, 0, 3e6), "3000000 cycles"), (CheckFrame(16, 0, 0.0), "track 16")],
-)
-def test_what_has_no_room_is_refused(frame: CheckFrame, what: str) -> None:
-    with pytest.raises(ValueError, match=f"{what} .*no room"):
-        to_bits(frame)
+def test_a_track_that_has_no_room_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"track 16 .*no room"):
+        to_bits(CheckFrame(16, 0, 0.0))
+
+
+@pytest.mark.parametrize("cycles", [524288.0, 3e6, -3e6 + 0.25])
+def test_counts_begin_again_beyond_26_m(cycles: float) -> None:
+    """A sheet is no longer than that; a path on a wall may be."""
+    found = from_bits(to_bits(CheckFrame(1, 0, cycles))[None])[0]
+    assert found is not None
+    assert found.turn_cycles == 2**26 / 64
+    assert math.remainder(found.cycles - cycles, found.turn_cycles) == 0.0
+    assert abs(found.cycles) <= found.turn_cycles / 2
+
+
+def test_a_later_version_is_not_read() -> None:
+    told = 3 << 61
+    assert said_by(told) is None
+    assert said_by(2 << 61) == CheckFrame(0, 0, 0.0)
 
 
 def test_one_and_two_wrong_symbols_are_always_found() -> None:
