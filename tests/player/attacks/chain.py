@@ -192,7 +192,10 @@ def several(tape: Bench, random: Random, kinds: Sequence[Kind]) -> Frames:
     """Two or three attacks one behind the other; those that leave too little of a tape are passed over."""
     changed = copy.copy(tape)
     for _ in range(int(random.integers(2, 4))):
-        frames = kinds[int(random.integers(len(kinds)))].change(changed, random)
+        try:
+            frames = kinds[int(random.integers(len(kinds)))].change(changed, random)
+        except ValueError:  # the tape is too short for it by now
+            continue
         if frames.shape[1] == len(ALL) and len(frames) > len(tape.frames) // 2:
             changed.put(frames)
     return changed.frames
