@@ -167,7 +167,7 @@ def other_track(tape: Bench, random: Random) -> Frames:
 def stuck(tape: Bench, random: Random) -> Frames:
     """A buffer that is played two to thirty times in the place of others."""
     frames, count = tape.frames.copy(), int(do.log_uniform(random, 16, 2400))
-    times = int(random.integers(2, 31))
+    times = min(int(random.integers(2, 31)), 40000 // count)  # most of a second
     at, tracks = do.moment(tape, random, count * times), all_or_some(random)
     held = tape.frames[at : at + count, tracks]
     frames[at : at + count * times, tracks] = np.tile(held, (times, 1))
