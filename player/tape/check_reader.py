@@ -216,13 +216,13 @@ class CheckReader:
                 continue
             self._turns[track] = found[0].turns
             # how late, by the symbols, and by the phase within half a cycle
-            late = found[0].theta - first.theta
-            late -= CYCLES_PER_FRAME * round(late / CYCLES_PER_FRAME)
+            late = np.array([one.theta - first.theta for one in found])
+            late -= CYCLES_PER_FRAME * np.round(late / CYCLES_PER_FRAME)
             by_phase = first.turns - found[0].turns
-            halves = round(2 * (late / CYCLES_PER_SUBCARRIER - by_phase))
+            halves = round(2 * (late[0] / CYCLES_PER_SUBCARRIER - by_phase))
             self._zero_turns[track] = first.turns + halves / 2
             late_by_phase = CYCLES_PER_SUBCARRIER * (by_phase + halves / 2)
-            begins.append(first.theta + late - late_by_phase)
+            begins += (first.theta + late - late_by_phase).tolist()
         self._theta = float(np.median(begins))
         self._turns[:] = [found[0].turns if found else 0.0 for found in self.found]
 

@@ -39,7 +39,6 @@ KEPT = 40  # delays: more than rows are held for
 DOUBT_ERRORS = 3.0  # standard errors: one line in 370
 HELD_ERRORS = 2  # of frames: seven delays come from two
 SPEED_S = 0.002  # to either side, over which a speed is told
-TAIL_S = 0.025  # of a tape's end, over which places are averaged
 
 
 class Delay:
@@ -157,9 +156,3 @@ class Delay:
 def _towards(used_s: float, settled_s: float) -> float:
     """A delay that follows another to within the dead zone, s."""
     return min(max(used_s, settled_s - DEAD_ZONE_S), settled_s + DEAD_ZONE_S)
-
-
-def apart(places: Array, rows: int) -> float:
-    """How far averages of so many places (n,), one behind the other, lie apart."""
-    some = max(min(rows, len(places)), 1)
-    return float(np.ptp(np.convolve(places, np.full(some, 1 / some), "valid")))

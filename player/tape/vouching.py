@@ -5,7 +5,8 @@ out: rows that are vouched for, about a second later, and the first that is not,
 
     order       frames of each track are its own and follow one another      frame_order.py
     delay       of a track against the reference                             delays.py: taken out of the phase
-    count       cycles of the axis at the start of each frame                0.04 of a cycle off: a fault
+    count       cycles of the axis at the start of each frame                counts.py: off by more than a
+                                                                             frame leaves open is a fault
     last        the last two frames say that the tape ends                   the end is missing: a fault
 
 A frame of a track may be missing, in a dropout, if one of the next vouches for what was between. A dropout
@@ -26,18 +27,20 @@ import numpy as np
 from morfax.motion.arrays import Array, between
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
+from morfax.player.tape import tail
 from morfax.player.tape.bridges import Gap
 from morfax.player.tape.check_reader import CheckReader
-from morfax.player.tape.delays import TAIL_S, Delay, apart
+from morfax.player.tape.counts import Counts
+from morfax.player.tape.delays import Delay
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.held_rows import HeldRows
-from morfax.player.tape.lost_ways import COUNT_CYCLES, Laid, LostWays, laid
+from morfax.player.tape.lost_ways import Laid, LostWays, laid
 from morfax.player.tape.standstill import ALLOWED_CYCLES
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
-from morfax.recorder.tape.check_frame import SYMBOLS, CheckFrame
+from morfax.recorder.tape.check_frame import SYMBOLS
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored
@@ -45,10 +48,6 @@ from morfax.recorder.tape.told_figures import Stated, demand_agreement
 
 # of a delay off the line through seven: 0.036 cycle; 26 dB of noise leave 2
 LARGEST_OFF_S = 6e-6
-# of a count, beside what its own grain hides: noise, delays and a frame's first instant (4 us) leave 0.03
-COUNT_OFF_CYCLES = 0.04
-# that an axis may move behind the last delay told: 26 dB of noise move it by 0.006, a reel by 0.026
-TAIL_CYCLES = 0.03
 
 
 class Vouching:
@@ -62,7 +61,7 @@ class Vouching:
     def __init__(self, fmt: TapeFormat, check: CheckReader, *, mends: bool = False) -> None:
         self._format, self._check, self._mends = fmt, check, mends
         self._rate_hz, frame_s = fmt.motion_rate_hz, CYCLES_PER_FRAME / fmt.reference_hz
-        self._zero_cycles: Array = np.full(len(fmt.axes), np.nan)
+        self._counts = Counts(len(fmt.axes), is_timed=check.is_timed)
         self._place_mm: PlaceMm = lambda axis, cycles: math.nan
         self._delays = [Delay(fmt.reference_hz, fmt.motion_rate_hz) for _ in fmt.axes]
         self._bounds = [ToldBounds(fmt.motion_rate_hz, frame_s) for _ in fmt.axes]
@@ -73,8 +72,6 @@ class Vouching:
         self.mended: list[Laid] = []
         self._rows = HeldRows()
         self._given = 0  # rows that were given out and are still held, to lend their speed
-        # row, and by axis what it tells there: not yet checked
-        self._counts: list[tuple[float, dict[int, CheckFrame]]] = []
         self._counted = [0.0] * len(fmt.axes)  # the last row at which the count was right
         self._order = FrameOrder(fmt)
         self._fault: Fault | None = None
@@ -93,7 +90,7 @@ class Vouching:
         """Take the zeros of the axes; None: where their counts begin is told by the first frames."""
         self._place_mm = place_mm
         if zero_cycles is not None:
-            self._zero_cycles = zero_cycles.copy()
+            self._counts.zero_cycles = zero_cycles.copy()
 
     def bounds(self) -> Sequence[ToldBounds]:
         """What the track of each axis tells of the program, as far as its frames were read."""
@@ -175,12 +172,10 @@ class Vouching:
         """The fault of an axis whose delay at the end is in doubt, or that moves there more than it told."""
         held, delay = self._rows, self._delays[axis]
         last = held.first_row + len(held) - 1
-        first = max(int(delay.told_row), held.first_row)
-        bound = self._bounds[axis].between(first, last)
-        places = held.axis(axis, 0, len(held))
-        way = delay.corrected(places, held.first_row)[first - held.first_row :]
-        allowed = TAIL_CYCLES + (bound.speed * len(way) if bound else 0.0)
-        off, doubt_s = apart(way, round(TAIL_S * self._rate_hz)) - allowed, delay.doubt_s(last)
+        way = delay.corrected(held.axis(axis, 0, len(held)), held.first_row)
+        mean_rows = round(tail.MEAN_S * self._rate_hz)
+        off = tail.beyond_cycles(way, held.first_row, delay, self._bounds[axis], mean_rows)
+        doubt_s = delay.doubt_s(last)
         if off <= 0 and doubt_s * self._format.reference_hz <= ALLOWED_CYCLES:
             return None
         off_s = max(off / self._format.reference_hz, doubt_s)
@@ -204,7 +199,7 @@ class Vouching:
         self._fault = self._order.fault(report)
         if self._fault is not None:
             return
-        self._counts.append((report.row, {}))
+        self._counts.begin(report.row)
         for axis in range(len(self._delays)):
             if weak := report.weak_rows[0] + report.weak_rows[axis + 1]:
                 self._weak[axis] += sorted(weak)
@@ -215,7 +210,7 @@ class Vouching:
         delays_s, said = report.delay_s[axis + 1], report.said[axis + 1]
         if said is None or not math.isfinite(sum(delays_s)):
             return  # the reference says nothing
-        self._counts[-1][1][axis] = said
+        self._counts.tell(axis, said)
         self._bounds[axis].add(report, axis + 1)
         self._delays[axis].add(report.part_rows, delays_s, report.error_s[axis + 1])
         off_s = self._delays[axis].off_s()
@@ -225,38 +220,23 @@ class Vouching:
 
     def _check_counts(self, stands_mm: StandsMm) -> None:
         """Compare the axes' counts with what their tracks say, as far as rows are held."""
-        ends = self._rows.first_row + len(self._rows) - 1
         known = self._fault  # of a frame further on: what is before it is still compared
-        while (
-            self._counts
-            and len(self._rows)  # a frame may begin before the first
-            and self._counts[0][0] <= ends
-            and self._fault is known
-        ):
-            row, told = self._counts.pop(0)
+        while self._fault is known:
+            due = self._counts.due(self._rows.first_row, len(self._rows))
+            if due is None:
+                return
+            row, told = due
             open_ = [axis for axis in told if not self._ways.covers(axis, row)]
-            off = {axis: self._off(axis, row, told[axis]) for axis in open_}
+            off = {
+                axis: self._counts.off_cycles(axis, self._place(axis, row), told[axis])
+                for axis in open_
+            }
             for axis in open_:
-                limit_cycles = self._limit_cycles(told[axis])
+                limit_cycles = self._counts.limit_cycles(told[axis])
                 self._settle(axis, row, (off[axis], limit_cycles), stands_mm)
             if self._lost and len(open_) == len(self._delays) and not self._fault:
                 first = min(self._lost.values(), key=lambda gap: gap.first)
                 self._fault = self._lost_way(first, (row, off))
-
-    def _off(self, axis: int, row: float, said: CheckFrame) -> float:
-        """How far the count of an axis lies off what its track says at a row, cycles."""
-        found = self._place(axis, row)
-        if math.isnan(self._zero_cycles[axis]):
-            self._zero_cycles[axis] = found - said.cycles
-        return math.remainder(
-            found - float(self._zero_cycles[axis]) - said.cycles, said.turn_cycles
-        )
-
-    def _limit_cycles(self, said: CheckFrame) -> float:
-        """How far a count may lie off."""
-        if not self._check.is_timed:  # then an axis that moves is told as at another moment
-            return COUNT_CYCLES
-        return said.grain_cycles / 2 + COUNT_OFF_CYCLES
 
     def _place(self, axis: int, row: float) -> float:
         """Where an axis is at a row that is held, cycles, without the delay of its track."""

@@ -51,8 +51,8 @@ def older(tape: Bench, random: Random) -> Frames:
 
 
 def echoed(tape: Bench, random: Random) -> Frames:
-    """An echo of 0.1 to 100 ms, up to 3 dB down."""
-    share = random.uniform(0.02, 0.7) * random.choice([-1, 1])
+    """An echo of 0.1 to 100 ms, up to 16 dB down: a louder one turns a carrier by more than is right."""
+    share = random.uniform(0.02, 0.16) * random.choice([-1, 1])
     late, tracks = int(do.log_uniform(random, 5, 4800)), all_or_some(random)
     frames = tape.frames.copy()
     frames[late:, tracks] += np.float32(share) * tape.frames[:-late, tracks]

@@ -120,7 +120,8 @@ def test_long_ones_hold_the_machine_and_tell_where_to_go_on(
     assert (fault.exit_code, fault.axis) == (6, "x")
     assert fault.time_s == pytest.approx(AT_S, abs=0.001)
     # up to the dropout; or, where the count behind it shows a cycle more, up to the last count before it
-    assert len(went) in (round(fault.time_s * 6000), round(2.4 * 6000))
+    counted = round(2.4 * 6000)  # a row lies where the frame begins, which is known to some us
+    assert len(went) == round(fault.time_s * 6000) or counted - 1 <= len(went) <= counted
     assert fault.length_s == pytest.approx(length_s, abs=0.003)  # the filter adds 1.7 ms
     assert fault.resume_at_s is not None
     assert AT_S + length_s < fault.resume_at_s < AT_S + length_s + 0.5

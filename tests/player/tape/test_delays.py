@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.player.tape.delays import DOUBT_ERRORS, WINDOW, Delay, apart
+from morfax.player.tape.delays import DOUBT_ERRORS, WINDOW, Delay
+from morfax.player.tape.tail import apart
 
 ROWS = 720.0  # from one told delay to the next: a quarter of a frame at 6 kHz
 ERROR_S = 1e-6
