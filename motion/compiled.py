@@ -205,11 +205,12 @@ def _key(arg: Any) -> Any:
         if (known := _LASTING.get(id(arg))) is not None:
             return known[1]
         return (kind, *[of if (of := type(item)) in _PLAIN else _key(item) for item in arg])
-    if isinstance(arg, np.void | np.ndarray):
-        return (kind, arg.dtype)
-    return kind
+    if isinstance(arg, np.void):
+        return (kind, _dtype(arg))
+    return (kind, arg.dtype) if isinstance(arg, np.ndarray) else kind
 
 
+_dtype = np.generic.dtype.__get__  # type: ignore[attr-defined]  # a record looks among its fields first
 _PLAIN = {float: "f8", int: "i8", bool: "b1", np.float64: "f8", np.int64: "i8", np.bool_: "b1"}
 _PLAIN |= {kind: kind.__name__ for kind in (np.float32, np.int32, np.uint8, np.uint32)}
 

@@ -14,6 +14,7 @@ sample. The four nearest are tried.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from morfax.motion import polyline
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
 from morfax.motion.neighbours import Neighbours
@@ -186,21 +188,27 @@ class _Finder:
         k = min(_NEIGHBOURS, len(self._sampled.points_mm))
         near = self._neighbours.several(points, k)
         best = np.hypot(*(points - self._sampled.points_mm[near[:, 0]]).T)
-        for column in near.T:
-            best = np.minimum(best, self._to_piece(points, column))
-            best = np.minimum(best, self._to_piece(points, column - 1))
+        _to_pieces(points, near, (self._sampled.points_mm, self._sampled.leads_on), best)
         return best
 
-    def _to_piece(self, points: Array, piece: NDArray[np.int64]) -> Array:
-        """Distance of each point from the piece that leads on from a sample; infinite where none does."""
-        at, leads_on = self._sampled.points_mm, self._sampled.leads_on
-        start = at[piece]  # piece -1 is the last sample, from which none leads on
-        along = at[(piece + 1) % len(at)] - start
-        squared = np.einsum("ij,ij->i", along, along)
-        squared = np.where(squared > 0, squared, 1.0)
-        share = np.einsum("ij,ij->i", points - start, along) / squared
-        off = points - start - np.clip(share, 0.0, 1.0)[:, None] * along
-        return np.where(leads_on[piece], np.hypot(off[:, 0], off[:, 1]), np.inf)
+
+@njit(cache=True, nogil=True)
+def _to_pieces(points, near, sampled, best):  # type: ignore[no-untyped-def]
+    """Lower the distance of each point to that from the pieces on both sides of the samples near it, mm."""
+    at, leads_on = sampled
+    for n in range(len(points)):
+        for k in range(near.shape[1]):
+            for first in range(max(near[n, k] - 1, 0), near[n, k] + 1):
+                if not leads_on[first]:
+                    continue
+                x, y = points[n, 0] - at[first, 0], points[n, 1] - at[first, 1]
+                along_x = at[first + 1, 0] - at[first, 0]
+                along_y = at[first + 1, 1] - at[first, 1]
+                squared = along_x * along_x + along_y * along_y
+                share = (x * along_x + y * along_y) / squared if squared > 0.0 else 0.0
+                share = min(max(share, 0.0), 1.0)
+                away = math.hypot(x - share * along_x, y - share * along_y)
+                best[n] = min(best[n], away)
 
 
 def _summary(distances_mm: Array, weights_mm: Array) -> Summary:

@@ -13,12 +13,14 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.slow_cell import Stretch, keeps_mm, keeps_straight_mm
-from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, heading_of, leg_of
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
+from morfax.tracer.sensing.ray import edges
 from morfax.tracer.sensing.scout import REACH, REACH_PX
 from morfax.tracer.sensing.view import View
 
@@ -72,11 +74,19 @@ def _bare_mm(view: View, way: Array) -> float:
     """For how far nothing leaves a line along a way (n, 2) mm, as a stub that draws the cell aside."""
     places = at_lengths(way, np.arange(0.0, length_mm(way), view.step_mm))
     reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
-    for k, step in enumerate(np.diff(places, axis=0)):
-        right, left = view.edges(places[k + 1], heading_of(step), reach_mm)
-        if not left - right <= STUB_WIDTHS * view.width_mm:  # NaN: no edge in reach
-            return k * view.step_mm
-    return length_mm(way)
+    bare = int(_bare(view.cells, places, float(reach_mm), float(STUB_WIDTHS * view.width_mm)))
+    return length_mm(way) if bare == len(places) - 1 else bare * view.step_mm
+
+
+@njit(cache=True, _nrt=False)
+def _bare(cells, places, reach_mm, broadest_mm):  # type: ignore[no-untyped-def]
+    """Along how many steps of a way (n, 2) mm, at their ends, the line is no broader than so much."""
+    for k in range(len(places) - 1):
+        heading = math.atan2(places[k + 1, 1] - places[k, 1], places[k + 1, 0] - places[k, 0])
+        right, left = edges(cells, places[k + 1, 0], places[k + 1, 1], heading, reach_mm)
+        if not left - right <= broadest_mm:  # NaN: no edge in reach
+            return k
+    return len(places) - 1
 
 
 def clean_from(view: View, carriage: Carriage, plan: Plan) -> Anchor:
