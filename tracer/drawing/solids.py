@@ -21,7 +21,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.components import FEW_PX, Mask, strips
 
 # All limits below were chosen by trial on own and fetched drawings, in usual widths of a line.
 BROAD, BROAD_PX = 2.2, 1.5  # a disc as broad goes into a solid area
@@ -63,6 +63,7 @@ class Solids(NamedTuple):
         # 1. as far as a disc goes in
         away = cv2.distanceTransform(1 - cores, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
         opened = ((away <= reach_px) & (ink > 0)).view(np.uint8)
+        del away  # as large as the labels that follow
         solid = np.zeros_like(ink)
         count, labels, boxes, _ = cv2.connectedComponentsWithStats(opened, connectivity=8)
         for k in range(1, count):
@@ -79,8 +80,15 @@ class Solids(NamedTuple):
 
 def usual_width_px(depth: NDArray[np.float32]) -> float:
     """The usual width of the lines of some ink by its depth, pixels."""
-    ridge = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)) - RIDGE_PX)
-    return max(FINEST_PX, 2 * float(np.median(depth[ridge])) - 1) if ridge.any() else FINEST_PX
+    ridges = list[NDArray[np.float32]]()
+    # strip by strip: of a sheet as floats there is one at a time
+    for top, bottom, rows in strips(depth.shape, halo=1, pixels=FEW_PX):
+        inner = slice(top - rows.start, bottom - rows.start)
+        deepest = cv2.dilate(depth[rows], np.ones((3, 3), np.uint8))[inner]
+        own = depth[top:bottom]
+        ridges.append(own[(own > 0) & (own >= deepest - RIDGE_PX)])
+    ridge = np.concatenate(ridges)
+    return max(FINEST_PX, 2 * float(np.median(ridge)) - 1) if len(ridge) else FINEST_PX
 
 
 def _about(box: NDArray[np.int32], shape: tuple[int, ...]) -> tuple[slice, slice]:
