@@ -11,7 +11,8 @@ On a checked tape a row is lost as well where an axis moves as its program never
 rows on both sides say of the gap is in bridges.py.
 
     bare       a gap that is not certain by its sides is a fault; so is one of more than 0.1 s
-    checked    every gap up to 1.1 s is bridged and told of; what vouches for the rows decides
+    checked    every gap up to 1.1 s is bridged and told of; what vouches for the rows decides; one that
+               reaches the tape's end is passed over where the axis tells that it stands still there
 
 Source: patent ES 361967, figure 5 (fault circuit 162) asks for it; the bounds: docs/background/player.md.
 Questions: A is not on a bare tape: it is taken as what the machine's own motors can do, 5 m/s², and may be
@@ -215,7 +216,11 @@ class Gaps:
     def _bridge(self, rows: Phases, axis: int, a: int, b: int) -> Fault | None:
         """Fill a gap and count on behind it; the fault if it is too long to be certain."""
         cycles, time_s = rows.cycles[:, axis], (rows.first_row + a) / self._rate_hz
-        if b + self._side > len(rows) or b - a > self._longest_s * self._rate_hz:
+        is_short = b - a <= self._longest_s * self._rate_hz
+        if is_short and b + self._side > len(rows) and self._rests_from(rows, axis, a):
+            cycles[a:], rows.surprise[a:, axis] = cycles[max(a - 1, 0)], 0
+            return None
+        if b + self._side > len(rows) or not is_short:
             return self._ended(rows, axis, a, time_s)
         if a < self._side:
             return self._uncertain(axis, cycles[max(a - 1, 0)], time_s, (b - a) / self._rate_hz)
@@ -236,6 +241,14 @@ class Gaps:
         self.bridged[time_s, self._names[axis]] = (b - a) / self._rate_hz
         self._new.append(gap)
         return None
+
+    def _rests_from(self, rows: Phases, axis: int, a: int) -> bool:
+        """Whether an axis tells that it stands still from a row to the last."""
+        if self._riding.bounds is None:
+            return False
+        first, last = rows.first_row + a, rows.first_row + len(rows)
+        bound = self._riding.bounds()[axis].between(first, last)
+        return bound is not None and not bound.speed
 
     def _ended(self, rows: Phases, axis: int, a: int, time_s: float) -> TapeFault:
         """The fault of a track that does not come back."""

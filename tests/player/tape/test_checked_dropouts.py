@@ -111,6 +111,17 @@ def test_an_axis_that_rests_is_ridden_for_as_long_as_its_frames_say(tmp_path: Pa
 
 
 @pytest.mark.parametrize("tracks", [(X,), (REFERENCE,), ALL])
+def test_one_that_reaches_the_end_at_standstill_moves_nothing(
+    bench: Bench, tracks: tuple[int, ...]
+) -> None:
+    """As behind MP3, which fades the last samples out."""
+    ends_s = len(bench.frames) / RATE_HZ
+    went, fault = bench.played(bench.with_hole(0.004, tracks, at_s=ends_s - 0.004))
+    assert fault is None
+    assert went[-1] == pytest.approx(bench.clean[-1], abs=0.1 * UM)
+
+
+@pytest.mark.parametrize("tracks", [(X,), (REFERENCE,), ALL])
 @pytest.mark.parametrize("length_s", [0.3, 0.5, 1.0])
 def test_long_ones_hold_the_machine_and_tell_where_to_go_on(
     bench: Bench, tracks: tuple[int, ...], length_s: float
