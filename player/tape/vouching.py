@@ -5,8 +5,8 @@ out: rows that are vouched for, about a second later, and the first that is not,
 
     order       frames of each track are its own and follow one another      frame_order.py
     delay       of a track against the reference                             delays.py: taken out of the phase
-    count       cycles of the axis at the start of each frame                counts.py: off by more than a
-                                                                             frame leaves open is a fault
+    count       cycles of the axis at the start of each frame                counts.py: off is a fault
+    tail        what moves behind the last delay                             tail.py: taken out at rest
     last        the last two frames say that the tape ends                   the end is missing: a fault
 
 A frame of a track may be missing, in a dropout, if one of the next vouches for what was between. A dropout
@@ -27,7 +27,6 @@ import numpy as np
 from morfax.motion.arrays import Array, between
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
-from morfax.player.tape import tail
 from morfax.player.tape.bridges import Gap
 from morfax.player.tape.check_reader import CheckReader
 from morfax.player.tape.counts import Counts
@@ -37,7 +36,7 @@ from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.held_rows import HeldRows
 from morfax.player.tape.lost_ways import Laid, LostWays, laid
-from morfax.player.tape.standstill import ALLOWED_CYCLES
+from morfax.player.tape.tail import tail_of
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.check_frame import SYMBOLS
@@ -46,8 +45,7 @@ from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored
 from morfax.recorder.tape.told_figures import Stated, demand_agreement
 
-# of a delay off the line through seven: 0.036 cycle; 26 dB of noise leave 2
-LARGEST_OFF_S = 6e-6
+LARGEST_OFF_S = 6e-6  # of a delay off the line through seven: 0.036 cycle; 26 dB leave 2
 
 
 class Vouching:
@@ -68,6 +66,7 @@ class Vouching:
         self._ways = LostWays(len(fmt.axes), frame_s / SYMBOLS * self._rate_hz)
         # rows of weak symbols that no gap explains yet
         self._weak: list[list[float]] = [[] for _ in fmt.axes]
+        self._rests: dict[int, int] = {}  # by axis: the row from which it stands to the end
         self._lost: dict[int, Gap] = {}  # by axis: a gap at which the machine stops
         self.mended: list[Laid] = []
         self._rows = HeldRows()
@@ -171,22 +170,24 @@ class Vouching:
     def _tail_swings(self, axis: int) -> Fault | None:
         """The fault of an axis whose delay at the end is in doubt, or that moves there more than it told."""
         held, delay = self._rows, self._delays[axis]
-        last = held.first_row + len(held) - 1
         way = delay.corrected(held.axis(axis, 0, len(held)), held.first_row)
-        mean_rows = round(tail.MEAN_S * self._rate_hz)
-        off = tail.beyond_cycles(way, held.first_row, delay, self._bounds[axis], mean_rows)
-        doubt_s = delay.doubt_s(last)
-        if off <= 0 and doubt_s * self._format.reference_hz <= ALLOWED_CYCLES:
+        found = tail_of(way, held.first_row, delay, self._bounds[axis], self._format)
+        if found.rest_row is not None:
+            self._rests[axis] = found.rest_row
+        if not found.off_s:
             return None
-        off_s = max(off / self._format.reference_hz, doubt_s)
-        return faults.swings(axis + 1, self._format.axes, off_s, last / self._rate_hz)
+        time_s = (held.first_row + len(held)) / self._rate_hz
+        return faults.swings(axis + 1, self._format.axes, found.off_s, time_s)
 
     def _cut(self, held: HeldRows, upto: int) -> Phases:
         """The rows up to one that are not yet given out, put right; those around them lend their speed."""
         if upto <= self._given:
             return held.cut(upto, upto)
-        beyond = held.cut(0, upto + self._delays[0].span)
-        return self._corrected(beyond).cut(self._given, upto)
+        beyond = self._corrected(held.cut(0, upto + self._delays[0].span))
+        for axis, row in self._rests.items():
+            at = row - beyond.first_row
+            beyond.cycles[at:, axis] = beyond.cycles[at, axis]
+        return beyond.cut(self._given, upto)
 
     @property
     def _vouched(self) -> float:

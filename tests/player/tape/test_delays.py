@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from morfax.player.tape.bridges import Bound
 from morfax.player.tape.delays import DOUBT_ERRORS, WINDOW, Delay
-from morfax.player.tape.tail import apart
+from morfax.player.tape.tail import apart, tail_of
+from morfax.player.tape.told_bounds import ToldBounds
+from morfax.recorder.tape.format import TapeFormat
 
 ROWS = 720.0  # from one told delay to the next: a quarter of a frame at 6 kHz
 ERROR_S = 1e-6
@@ -46,3 +49,26 @@ def test_averages_of_a_way_lie_apart_as_far_as_it_goes_less_one_of_them() -> Non
     assert apart(0.001 * np.arange(100), 10) == pytest.approx(0.090)
     assert apart(np.resize([0.0, 0.1], 100), 10) == pytest.approx(0.0, abs=1e-12)  # noise goes
     assert apart(np.array([3.0]), 10) == 0.0
+
+
+class Says(ToldBounds):
+    """An axis that told one speed of all its rows, cycles/row."""
+
+    def __init__(self, speed: float) -> None:
+        super().__init__(6000.0, 0.48)
+        self.speed = speed
+
+    def between(self, first: int, last: int) -> Bound | None:
+        """The same everywhere."""
+        return Bound(0.0, self.speed)
+
+
+def test_an_axis_that_told_rest_is_held_and_one_that_moves_is_judged() -> None:
+    """Behind the last settled delay it swings on by 0.1 cycle; by half a cycle is a fault at rest, too."""
+    fmt, delay = TapeFormat(), told(np.random.default_rng(1), 0.0)
+    settled = int(delay.settled_row)
+    way = np.concatenate([np.zeros(101), np.linspace(0, 0.1, 6000)])
+    assert tail_of(way, settled - 100, delay, Says(0.0), fmt) == (settled, 0.0)
+    assert tail_of(5 * way, settled - 100, delay, Says(0.0), fmt).off_s > 0
+    moves = tail_of(way, settled - 100, delay, Says(1e-6), fmt)
+    assert moves.rest_row is None and moves.off_s * fmt.reference_hz > 0.02
