@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
+from morfax.motion.compiled import njit
 from morfax.motion.polyline import lengths_mm
 
 SPACING_MM = 0.05  # of the places that stand for a path
@@ -68,53 +69,113 @@ def _turn_rad(points: Array, s: Array, reach_mm: float) -> Array:
 
 def longest_pieces(places: Array, tolerance_mm: float) -> list[Piece]:
     """Pieces (first, last, straight) of a row of places, each as long as a line or circle fits it."""
-    pieces, first, last = [], 0, len(places) - 1
+    ends = np.empty((2 * len(places), 2), np.int64)
+    straight = np.empty(len(ends), np.bool_)
+    count = _longest(np.ascontiguousarray(places), tolerance_mm, ends, straight)
+    return [
+        (first, last, is_straight)
+        for (first, last), is_straight in zip(
+            ends[:count].tolist(), straight[:count].tolist(), strict=True
+        )
+    ]
+
+
+@njit(cache=True)
+def _longest(places, tolerance_mm, ends, straight):  # type: ignore[no-untyped-def]
+    """Fill the first and last place of each piece, and whether it is straight; how many there are."""
+    count, first, last = 0, 0, len(places) - 1
     while first < last:
-        low, step = first + 1, 1  # low is known to fit
+        # 1. ever further, until nothing fits; then half way between what fits and what does not
+        low, step = first + 1, 1
         while low < last and _fits(places[first : min(low + step, last) + 1], tolerance_mm):
             low, step = min(low + step, last), 2 * step
         high = min(low + step, last + 1)
         while high - low > 1:
             middle = (low + high) // 2
-            low, high = (
-                (middle, high)
-                if _fits(places[first : middle + 1], tolerance_mm)
-                else (low, middle)
-            )
-        straight = bool(np.abs(off_line_mm(places[first : low + 1])).max() <= tolerance_mm)
-        if not straight and _turned_rad(places[first : low + 1]) > LARGEST_TURN_RAD:
-            pieces.append((first, (first + low) // 2, False))
-            first = (first + low) // 2
-        pieces.append((first, low, straight))
-        first = low
-    return pieces
+            if _fits(places[first : middle + 1], tolerance_mm):
+                low = middle
+            else:
+                high = middle
+        # 2. what turns too far is two arcs
+        piece = places[first : low + 1]
+        is_straight = off_line_mm(piece) <= tolerance_mm
+        if not is_straight and _turned_rad(piece) > LARGEST_TURN_RAD:
+            middle = (first + low) // 2
+            ends[count, 0], ends[count, 1], straight[count] = first, middle, False
+            first, count = middle, count + 1
+        ends[count, 0], ends[count, 1], straight[count] = first, low, is_straight
+        first, count = low, count + 1
+    return count
 
 
-def _turned_rad(places: Array) -> float:
-    """The approximate turn of a row of places on a circle, rad."""
-    return float(np.hypot(*np.diff(places, axis=0).T).sum()) / max(
-        circle_through(places)[1], SAME_MM
-    )
-
-
-def _fits(places: Array, tolerance_mm: float) -> bool:
+@njit(cache=True)
+def _fits(places, tolerance_mm):  # type: ignore[no-untyped-def]
     """Whether a line or a circle stays within the tolerance of some places."""
-    if len(places) < 3 or np.abs(off_line_mm(places)).max() <= tolerance_mm:
+    if len(places) < 3 or off_line_mm(places) <= tolerance_mm:
         return True
-    return bool(np.abs(off_circle_mm(places)).max() <= tolerance_mm)
+    return off_circle_mm(places) <= tolerance_mm
 
 
-def off_line_mm(points: Array) -> Array:
-    """Distance of each point from the line that fits them best, mm."""
-    centred = points - points.mean(axis=0)
-    along = np.linalg.svd(centred, full_matrices=False)[2][0]
-    return centred @ np.array([-along[1], along[0]])
+@njit(cache=True)
+def _turned_rad(places):  # type: ignore[no-untyped-def]
+    """The approximate turn of a row of places on a circle, rad."""
+    way = 0.0
+    for i in range(1, len(places)):
+        way += math.hypot(places[i, 0] - places[i - 1, 0], places[i, 1] - places[i - 1, 1])
+    return way / max(_circle(places)[2], SAME_MM)
 
 
-def off_circle_mm(points: Array) -> Array:
-    """Distance of each point from the circle that fits them best, mm."""
-    centre, radius, _ = circle_through(points)
-    return np.hypot(*(points - centre).T) - radius
+@njit(cache=True)
+def _spread(places):  # type: ignore[no-untyped-def]
+    """The middle of some places, and the sums of their squares about it: xx, xy, yy."""
+    x, y, xx, xy, yy = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(len(places)):
+        x, y = x + places[i, 0], y + places[i, 1]
+    x, y = x / len(places), y / len(places)
+    for i in range(len(places)):
+        dx, dy = places[i, 0] - x, places[i, 1] - y
+        xx, xy, yy = xx + dx * dx, xy + dx * dy, yy + dy * dy
+    return x, y, xx, xy, yy
+
+
+@njit(cache=True)
+def off_line_mm(places):  # type: ignore[no-untyped-def]
+    """The largest distance of some places (n, 2) from the line that fits them best, mm."""
+    x, y, xx, xy, yy = _spread(places)
+    heading = 0.5 * math.atan2(2 * xy, xx - yy)
+    c, s, most = math.cos(heading), math.sin(heading), 0.0
+    for i in range(len(places)):
+        most = max(most, abs((places[i, 1] - y) * c - (places[i, 0] - x) * s))
+    return most
+
+
+@njit(cache=True)
+def off_circle_mm(places):  # type: ignore[no-untyped-def]
+    """The largest distance of some places (n, 2) from the circle that fits them best, mm."""
+    x, y, radius = _circle(places)
+    most = 0.0
+    for i in range(len(places)):
+        most = max(most, abs(math.hypot(places[i, 0] - x, places[i, 1] - y) - radius))
+    return most
+
+
+@njit(cache=True)
+def _circle(places):  # type: ignore[no-untyped-def]
+    """Centre and radius of the circle that fits some places best (Kåsa, see `motion.circle`), mm.
+
+    Places on a straight line have none: then the radius is infinite.
+    """
+    x, y, xx, xy, yy = _spread(places)
+    xr, yr, rr = 0.0, 0.0, 0.0
+    for i in range(len(places)):
+        dx, dy = places[i, 0] - x, places[i, 1] - y
+        square = dx * dx + dy * dy
+        xr, yr, rr = xr + dx * square, yr + dy * square, rr + square
+    across = xx * yy - xy * xy
+    if not across > 1e-14 * (xx + yy) ** 2:  # what rounding leaves of a straight line
+        return x, y, math.inf
+    a, b = 0.5 * (xr * yy - yr * xy) / across, 0.5 * (yr * xx - xr * xy) / across
+    return x + a, y + b, math.sqrt(rr / len(places) + a * a + b * b)
 
 
 def curvature_per_mm(places: Array) -> float:

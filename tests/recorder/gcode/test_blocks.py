@@ -223,8 +223,8 @@ def test_what_fits_no_chain_is_given_as_chords() -> None:
 def test_the_fits_of_line_and_circle_leave_nothing_of_a_line_and_a_circle(
     radius: float, first: float, turn: float
 ) -> None:
-    assert np.abs(off_circle_mm(arc(radius, first, first + turn))).max() < 1e-6
-    assert np.abs(off_line_mm(np.linspace([0, 0], [radius, first], 9))).max() < 1e-9
+    assert off_circle_mm(arc(radius, first, first + turn)) < 1e-6
+    assert off_line_mm(np.linspace([0, 0], [radius, first], 9)) < 1e-9
 
 
 def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(
