@@ -24,6 +24,7 @@ from morfax.player.gcode.moves import LINE, Move, Program
 from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.blocks import TOLERANCE_MM, record_blocks
+from morfax.recorder.gcode.normal_equations import BREAK_RAD
 from morfax.recorder.gcode.pieces import (
     corners,
     longest_pieces,
@@ -31,7 +32,7 @@ from morfax.recorder.gcode.pieces import (
     off_line_mm,
     resample,
 )
-from morfax.recorder.gcode.spline import BREAK_RAD, LineOrArc
+from morfax.recorder.gcode.spline import LineOrArc
 from morfax.recorder.gcode.stretches import DWELL_S
 from morfax.recorder.media import record
 from morfax.tracer.operator.zunit import QuillMove, z_moves

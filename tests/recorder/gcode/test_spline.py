@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from morfax.recorder.gcode import normal_equations, spline
+from morfax.recorder.gcode import normal_equations, settling, spline
 from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.normal_equations import BREAK_RAD
 from morfax.recorder.gcode.pieces import longest_pieces, resample
@@ -29,6 +29,11 @@ def _wavy(closed: bool) -> Spline:
     return Spline(places, pieces, curved)
 
 
+def _seen(laid: Spline, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What the spline is laid nearest to."""
+    return laid.places[laid.few], laid.shares, weights / TOLERANCE_MM
+
+
 def _dense(band: np.ndarray, seam: np.ndarray) -> np.ndarray:
     """The matrix of the normal equations."""
     square = np.outer(seam, seam)
@@ -43,14 +48,17 @@ def _dense(band: np.ndarray, seam: np.ndarray) -> np.ndarray:
 def test_the_right_side_is_the_slope_of_the_squared_residuals(closed):
     laid = _wavy(closed)
     weights = np.random.default_rng(1).uniform(0.5, 1, len(laid.few))
-    cost, band, pull, seam = laid._linearised(weights, TOLERANCE_MM)
+    seen = _seen(laid, weights)
+    cost, band, pull, seam = settling.linearised(
+        laid.joints, laid.halves, seen, laid.columns, laid.closed
+    )
     assert laid.closed == closed == bool(seam.any())
-    before, step = (laid.joints, laid.halves), 1e-7
+    step = 1e-7
     costs = []
     for change in np.vstack([np.zeros(len(pull)), step * np.eye(len(pull))]):
-        laid._step(change, *before)
-        residuals = laid._residuals(weights, TOLERANCE_MM)
-        costs.append(residuals)
+        joints, halves = laid.joints.copy(), laid.halves.copy()
+        settling.step(joints, halves, change, laid.columns)
+        costs.append(settling.residuals(joints, halves, seen, laid.closed))
     assert cost == pytest.approx(float(costs[0] @ costs[0]))
     slopes = (np.array(costs[1:]) - costs[0]) / step
     largest = np.abs(slopes).max()
@@ -63,7 +71,10 @@ def test_the_right_side_is_the_slope_of_the_squared_residuals(closed):
 @pytest.mark.parametrize("closed", [False, True])
 def test_the_solution_is_numpys(closed):
     laid = _wavy(closed)
-    _, band, pull, seam = laid._linearised(np.ones(len(laid.few)), TOLERANCE_MM)
+    seen = _seen(laid, np.ones(len(laid.few)))
+    _, band, pull, seam = settling.linearised(
+        laid.joints, laid.halves, seen, laid.columns, laid.closed
+    )
     band[:, 0] += 1e-4 * band[:, 0].mean()
     wanted = np.linalg.solve(_dense(band, seam), pull)
     found = normal_equations.solved(band.copy(), seam, pull)
@@ -74,7 +85,7 @@ def test_the_solution_is_numpys(closed):
 
 def test_distances_are_those_of_the_rows():
     laid = _wavy(True)
-    owner = laid._owner(np.arange(len(laid.s)))
+    owner = laid._owner()
     wanted = spline._off_rows(rows_of(laid._table())[owner], laid.places)
     assert (
         np.abs(normal_equations.offs(laid._table(), laid.places, owner) - wanted).max() < 1e-9
