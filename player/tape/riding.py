@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.player.tape.bridges import (
@@ -30,6 +31,7 @@ from morfax.player.tape.bridges import (
     turned,
 )
 from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.standstill import SILENT_LEVEL
 from morfax.player.tape.told_bounds import ToldBounds
 
 
@@ -51,15 +53,16 @@ class Riding:
         first, last = rows.first_row + a, rows.first_row + b
         told = self.bounds()[axis].between(first, last) if self.bounds is not None else None
         gaps: list[Gap] = []
+        step = level_step(rows.levels[:, [0, axis + 1]], within, side_rows)
         short_side = side_rows * SHORT_ROWS // SIDE_ROWS
         for length in (side_rows,) if told is None else (side_rows, short_side):
             before, after = _sides(rows.cycles[:, axis], a, b, length)
             short = bridge(before, after, b - a + 1, self.motors.acceleration).counted
             for way in self._ways(before, after, b - a + 1, told):
                 behind = replace(after, place=before.place + way.travel)
-                gaps.append(
-                    Gap(axis, first, last, before, behind, way, told or self.motors, short)
-                )
+                bound = told or self.motors
+                gap = Gap(axis, first, last, before, behind, way, bound, short, step=step)
+                gaps.append(gap)
                 if gaps[-1].certain:
                     return gaps[-1]
         return gaps[0]
@@ -73,6 +76,13 @@ class Riding:
         most = min(self.motors.acceleration, told.acceleration)
         turn = turned(before, after, rows, most)
         return [bridge(before, after, rows, most), *([] if turn is None else [turn])]
+
+
+def level_step(levels: NDArray[np.float32], within: tuple[int, int], rows: int) -> float:
+    """How far the levels (n, tracks) on both sides of a gap lie apart, as a share, by so many rows."""
+    a, b = within
+    before, after = levels[a - rows : a].mean(axis=0), levels[b : b + rows].mean(axis=0)
+    return float(np.abs(after / np.maximum(before, SILENT_LEVEL) - 1).max())
 
 
 def _sides(cycles: Array, a: int, b: int, rows: int) -> tuple[Side, Side]:
