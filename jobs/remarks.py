@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from morfax.jobs.numbered import numbered
 from morfax.jobs.remarks_on_ink import of_ink
 
 if TYPE_CHECKING:
@@ -83,13 +84,6 @@ def _of_left_out(lines: Sequence[LeftOut], cutter: Cutter) -> str:
     if stops:
         said += f"; {numbered('stop', stops)} left out with {it}"
     return said
-
-
-def numbered(what: str, numbers: list[int]) -> str:
-    """Things by their numbers, with their verb."""
-    if len(numbers) == 1:
-        return f"{what} {numbers[0]} is"
-    return f"{what}s {', '.join(map(str, numbers))} are"
 
 
 def _of_stops(trace: Trace) -> Iterator[str]:

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from morfax.jobs.numbered import numbered
+
 if TYPE_CHECKING:
     from morfax.tracer.following.line import Line
     from morfax.tracer.ink.ledger import Balance
@@ -28,6 +30,7 @@ def of_ink(trace: Trace, *, several: bool) -> Iterator[str]:
     yield from _of_solids(trace)
     yield from _of_rough_edges(trace)
     yield from _of_unread(trace)
+    yield from _of_letters(trace)
     alone = not several and trace.fault is None
     rest = tuple(_of_rest(trace.lines[0])) if alone else ()
     yield from rest
@@ -128,6 +131,16 @@ def _of_unread(trace: Trace) -> Iterator[str]:
         yield (
             f"{what} on the lines did not stop the head: without a reference point or a card they are ink; "
             "if they are stops or holes, give --marks on"
+        )
+
+
+def _of_letters(trace: Trace) -> Iterator[str]:
+    """Contours that are likely letters, and would be cut out."""
+    others = sorted({line.number for line in trace.lines} - set(trace.letters))
+    if trace.letters and others:
+        yield (
+            f"{numbered('line', list(trace.letters))} likely lettering, and followed as contours;"
+            f" --lines {','.join(map(str, others))} leaves them out"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -43,3 +44,16 @@ def test_lettering_without_all_the_ink_and_what_names_no_letters_are_wrong_use(
     answer = morfax("trace", SAMPLES / "cam.png", "--lines", "all", "--lettering", "small")
     assert answer.exit_code == 2 and "give all, none, or the height" in answer.fault
     assert not list(here.iterdir())
+
+
+def test_contours_that_are_likely_letters_are_told_with_what_leaves_them_out(
+    morfax: Morfax, here: Path
+) -> None:
+    sheet = sheet_with_a_word(here / "word.png")
+    told = morfax("trace", sheet, "--lines", "contours", "-o", "a.csv")
+    advice = re.search(
+        r"lines 2, 3, 4 are likely lettering, .*; (--lines) (1) leaves them out", told.err
+    )
+    assert advice is not None, told.err
+    followed = morfax("trace", sheet, *advice.groups(), "-o", "b.csv")
+    assert followed.exit_code == 0 and "lettering" not in followed.err

@@ -48,7 +48,8 @@ class Trace:
     `others`: further lines of a sheet whose longest line was asked for. `ink`: how much of the ink of a sheet
     the strokes run along, where all of it was asked for. `unread`: ticks and dots that were taken for ink.
     `unexplained`: places at which closed lines are not what is drawn. `enlarged`: how many times at most
-    the outlines of solid areas among lines were; `notes` on these are for the operator.
+    the outlines of solid areas among lines were; `notes` on these are for the operator. `letters`: numbers of
+    contours that are likely lettering.
     """
 
     lines: tuple[Line, ...]
@@ -62,6 +63,7 @@ class Trace:
     unexplained: tuple[Unexplained, ...] = ()
     enlarged: int = 1
     notes: tuple[str, ...] = ()
+    letters: tuple[int, ...] = ()
 
     @property
     def work(self) -> Work:

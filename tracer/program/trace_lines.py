@@ -23,6 +23,7 @@ from morfax.motion import nesting
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
@@ -85,7 +86,15 @@ def trace_lines(
         left_out_mm=found.left_out_mm,
         unread=unread,
         unexplained=unexplained(setup, lines) if which == "contours" else (),
+        letters=_letters(setup.sheet, lines) if which == "contours" else (),
     )
+
+
+def _letters(sheet: Sheet, lines: Sequence[Line]) -> tuple[int, ...]:
+    """The numbers of lines that are likely lettering."""
+    letters, followed_lines = lettering(sheet), {line.number for line in lines}
+    patches = enumerate(selection.lines_of(sheet).tolist(), 1) if letters else ()
+    return tuple(n for n, patch in patches if patch in letters and n in followed_lines)
 
 
 def trace_places(
