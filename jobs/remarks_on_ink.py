@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from morfax.jobs.numbered import numbered
+from morfax.jobs.remarks_on_lines import of_letters
 
 if TYPE_CHECKING:
     from morfax.tracer.following.line import Line
@@ -135,13 +135,9 @@ def _of_unread(trace: Trace) -> Iterator[str]:
 
 
 def _of_letters(trace: Trace) -> Iterator[str]:
-    """Contours that are likely letters, and would be cut out."""
+    """Contours that are likely letters."""
     others = sorted({line.number for line in trace.lines} - set(trace.letters))
-    if trace.letters and others:
-        yield (
-            f"{numbered('line', list(trace.letters))} likely lettering, and followed as contours;"
-            f" --lines {','.join(map(str, others))} leaves them out"
-        )
+    yield from of_letters(list(trace.letters), others)
 
 
 def _of_rest(line: Line) -> Iterator[str]:

@@ -15,15 +15,43 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
+
+STRAIGHT = 1e-14  # of the places' spread, squared: what rounding leaves of a straight line
 
 
 def circle_through(places: Array) -> tuple[Array, float, float]:
     """Centre, radius and misfit (root mean square), mm, of the circle that fits places (n, 2) best."""
-    middle = places.mean(axis=0)
-    d = places - middle
-    squares = np.sum(d * d, axis=1)
-    unknowns = np.column_stack([2 * d, np.ones(len(d))])
-    a, b, c = np.linalg.lstsq(unknowns, squares, rcond=None)[0]
-    radius = math.sqrt(max(c + a * a + b * b, 0.0))
-    off = np.hypot(*(d - [a, b]).T) - radius
-    return middle + np.array([a, b]), radius, float(np.sqrt(np.mean(off**2)))
+    x, y, radius = kasa(np.ascontiguousarray(places, float))
+    centre = np.array([x, y])
+    off = np.hypot(*(places - centre).T) - radius
+    return centre, radius, float(np.sqrt(np.mean(off**2)))
+
+
+@njit(cache=True)
+def kasa(places):  # type: ignore[no-untyped-def]
+    """Centre (x, y) and radius of that circle, mm; of places on a straight line the radius is infinite."""
+    x, y, xx, xy, yy = spread(places)
+    xr, yr, rr = 0.0, 0.0, 0.0
+    for i in range(len(places)):
+        dx, dy = places[i, 0] - x, places[i, 1] - y
+        square = dx * dx + dy * dy
+        xr, yr, rr = xr + dx * square, yr + dy * square, rr + square
+    across = xx * yy - xy * xy
+    if not across > STRAIGHT * (xx + yy) ** 2:
+        return x, y, math.inf
+    a, b = 0.5 * (xr * yy - yr * xy) / across, 0.5 * (yr * xx - xr * xy) / across
+    return x + a, y + b, math.sqrt(rr / len(places) + a * a + b * b)
+
+
+@njit(cache=True)
+def spread(places):  # type: ignore[no-untyped-def]
+    """The middle of some places, and the sums of their squares about it: xx, xy, yy."""
+    x, y, xx, xy, yy = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(len(places)):
+        x, y = x + places[i, 0], y + places[i, 1]
+    x, y = x / len(places), y / len(places)
+    for i in range(len(places)):
+        dx, dy = places[i, 0] - x, places[i, 1] - y
+        xx, xy, yy = xx + dx * dx, xy + dx * dy, yy + dy * dy
+    return x, y, xx, xy, yy

@@ -61,9 +61,8 @@ AGREED_CYCLES = ALLOWED_CYCLES / 2
 SPEED_NOISE = 0.26
 # ... and of a misfit, which bends the end of a side's parabola; estimated. A tenth for what is told late
 SPEED_MISFIT, SHARPER = 12 / SIDE_ROWS, 1.1
-LEVEL_STEP = (
-    0.08  # from one side to the other: a level that wavers by 1 dB at 5 Hz changes so in 20 ms
-)
+# of the level, from one side to the other: one that wavers by 1 dB at 5 Hz changes by so much in 20 ms
+LEVEL_STEP = 0.08
 TURNED_ROWS = 3.0  # beside the gap: half of what the band filter blurs
 
 
@@ -175,8 +174,8 @@ class Gap:
     at most, as far as the tape tells it. `short`: the count is certain even if the program asks for all that
     the motors can do, as on a bare tape. `steady`: it began with a surprise, while the level was right.
     `noise`: six standard deviations of a row, cycles. `furthest`: of any motion within the bound off what is
-    laid, whatever the shape of its sides (motion_edges.py), if that was asked for. `step`: how far the levels
-    of its sides lie apart, as a share.
+    laid, whatever the shape of its sides (motion_edges.py), if that was asked for. `level_step`: how far the
+    levels of its sides lie apart, as a share.
     """
 
     axis: int
@@ -190,7 +189,7 @@ class Gap:
     steady: bool = False
     noise: float = 0.0
     furthest: float = math.inf
-    step: float = 0.0
+    level_step: float = 0.0
 
     @property
     def rows(self) -> int:
@@ -228,7 +227,7 @@ class Gap:
         gained = abs(self.after.speed - self.before.speed)
         doubt = SPEED_NOISE * self.noise + SPEED_MISFIT * self.bridge.misfit
         most = SHARPER * self.bound.acceleration * self.rows + doubt
-        return gained > most or self.step > LEVEL_STEP
+        return gained > most or self.level_step > LEVEL_STEP
 
     @property
     def astray(self) -> bool:

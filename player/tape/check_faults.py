@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from morfax.motion.faults import DropoutFault, LockFault, TapeFault
 from morfax.player.tape.bridges import Gap
+from morfax.player.tape.counts import Off
 from morfax.player.tape.lost_ways import COUNT_CYCLES
 from morfax.player.tape.standstill import track_name
 
@@ -113,21 +114,19 @@ def swings(track: int, names: Names, swing_s: float, time_s: float) -> TapeFault
     )
 
 
-def miscounted(
-    axis: str, off_cycles: float, allowed_cycles: float, time_s: float, place_mm: float
-) -> LockFault:
+def miscounted(axis: str, off: Off, time_s: float, place_mm: float) -> LockFault:
     """The fault of a count that differs from what the track says."""
     why = (
         "cycles were lost shortly before; copy the tape again, or mend it (morfax mend)"
-        if abs(off_cycles) > COUNT_CYCLES
+        if abs(off.cycles) > COUNT_CYCLES
         else "its phase was turned on shortly before, as a filter or an echo does; copy the tape again"
     )
     return LockFault(
-        f"{axis.upper()} is {off_cycles:+.2f} cycles off what its check signal says at {time_s:.3f} s, "
-        f"{allowed_cycles:.2f} is allowed; last certain position {place_mm:.3f} mm: {why}",
+        f"{axis.upper()} is {off.cycles:+.2f} cycles off what its check signal says at {time_s:.3f} s, "
+        f"{off.limit_cycles:.2f} is allowed; last certain position {place_mm:.3f} mm: {why}",
         axis=axis,
         time_s=time_s,
-        error_cycles=off_cycles,
+        error_cycles=off.cycles,
         position_mm=place_mm,
     )
 

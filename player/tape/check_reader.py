@@ -224,7 +224,6 @@ class CheckReader:
             late_by_phase = CYCLES_PER_SUBCARRIER * (by_phase + halves / 2)
             begins += (first.theta + late - late_by_phase).tolist()
         self._theta = float(np.median(begins))
-        self._turns[:] = [found[0].turns if found else 0.0 for found in self.found]
 
     def _report(self) -> FrameReport:
         """Read the next frame of all tracks."""

@@ -30,9 +30,8 @@ from morfax.motion.arrays import Array
 
 WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2
-BENT_ERRORS = (
-    3.0  # standard errors of seven against three: beyond, the delay bends within seven
-)
+# standard errors of the difference of seven and three: beyond, the delay bends within seven
+BENT_ERRORS = 3.0
 NEAR = (1 / 3 - 1 / WINDOW) ** 0.5  # standard error of the difference, for one told delay of 1
 DEAD_ZONE_S = 0.5e-6  # noise of 26 dB tells 0.4; half a us is 0.003 cycle
 KEPT = 40  # delays: more than rows are held for

@@ -247,8 +247,7 @@ class Gaps:
         if self._riding.bounds is None:
             return False
         first, last = rows.first_row + a, rows.first_row + len(rows)
-        bound = self._riding.bounds()[axis].between(first, last)
-        return bound is not None and not bound.speed
+        return self._riding.bounds()[axis].rests(first, last)
 
     def _ended(self, rows: Phases, axis: int, a: int, time_s: float) -> TapeFault:
         """The fault of a track that does not come back."""

@@ -53,16 +53,15 @@ class Riding:
         first, last = rows.first_row + a, rows.first_row + b
         told = self.bounds()[axis].between(first, last) if self.bounds is not None else None
         gaps: list[Gap] = []
-        step = level_step(rows.levels[:, [0, axis + 1]], within, side_rows)
+        level_step = _level_step(rows.levels[:, [0, axis + 1]], within, side_rows)
         short_side = side_rows * SHORT_ROWS // SIDE_ROWS
         for length in (side_rows,) if told is None else (side_rows, short_side):
             before, after = _sides(rows.cycles[:, axis], a, b, length)
             short = bridge(before, after, b - a + 1, self.motors.acceleration).counted
             for way in self._ways(before, after, b - a + 1, told):
                 behind = replace(after, place=before.place + way.travel)
-                bound = told or self.motors
-                gap = Gap(axis, first, last, before, behind, way, bound, short, step=step)
-                gaps.append(gap)
+                gap = Gap(axis, first, last, before, behind, way, told or self.motors, short)
+                gaps.append(replace(gap, level_step=level_step))
                 if gaps[-1].certain:
                     return gaps[-1]
         return gaps[0]
@@ -78,7 +77,7 @@ class Riding:
         return [bridge(before, after, rows, most), *([] if turn is None else [turn])]
 
 
-def level_step(levels: NDArray[np.float32], within: tuple[int, int], rows: int) -> float:
+def _level_step(levels: NDArray[np.float32], within: tuple[int, int], rows: int) -> float:
     """How far the levels (n, tracks) on both sides of a gap lie apart, as a share, by so many rows."""
     a, b = within
     before, after = levels[a - rows : a].mean(axis=0), levels[b : b + rows].mean(axis=0)

@@ -86,10 +86,9 @@ class SectorWheel:
                 f"give 0 to {LARGEST_SHARE * width_mm:.3g} mm"
             )
         late = np.zeros((axes, screw.sectors))
-        for axis in range(
-            axes if self.division_mm else 0
-        ):  # a true wheel needs no random numbers
-            late[axis] = np.random.default_rng(SEED + axis).uniform(-1, 1, screw.sectors)
+        if self.division_mm:  # a true wheel needs no random numbers
+            for axis in range(axes):
+                late[axis] = np.random.default_rng(SEED + axis).uniform(-1, 1, screw.sectors)
         late -= late.mean(axis=1, keepdims=True)  # zero is set on the wheel as it is
         late *= self.division_mm / width_mm
         edges = np.arange(-1.0, screw.sectors + 2) + np.pad(late, ((0, 0), (1, 2)), mode="wrap")

@@ -44,8 +44,7 @@ def tail_of(
     """What becomes of a way (n,), cycles, that goes from a row to the tape's end."""
     last, mean_rows = first_row + len(way) - 1, round(MEAN_S * fmt.motion_rate_hz)
     settled = max(int(delay.settled_row), first_row)
-    bound = bounds.between(settled, last)
-    if bound is not None and not bound.speed:
+    if bounds.rests(settled, last):
         off = apart(way[settled - first_row :], mean_rows) - COUNT_CYCLES
         return Tail(settled, max(off, 0.0) / fmt.reference_hz)
     told = max(int(delay.told_row), first_row)

@@ -72,6 +72,11 @@ class ToldBounds:
             told[0, begins:ends] = max((bound.acceleration for bound in near), default=math.nan)
             told[1, begins:ends] = max((bound.speed for bound in near), default=math.nan)
 
+    def rests(self, first: int, last: int) -> bool:
+        """Whether the axis tells that it stands still between two rows."""
+        bound = self.between(first, last)
+        return bound is not None and not bound.speed
+
     def between(self, first: int, last: int) -> Bound | None:
         """The bound between two rows, or None where no frame tells it."""
         known, acceleration, speed = float(first), 0.0, 0.0

@@ -29,7 +29,7 @@ from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
 from morfax.player.tape.bridges import Gap
 from morfax.player.tape.check_reader import CheckReader
-from morfax.player.tape.counts import Counts
+from morfax.player.tape.counts import Counts, Off
 from morfax.player.tape.delays import Delay
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
@@ -229,12 +229,11 @@ class Vouching:
             row, told = due
             open_ = [axis for axis in told if not self._ways.covers(axis, row)]
             off = {
-                axis: self._counts.off_cycles(axis, self._place(axis, row), told[axis])
+                axis: self._counts.off(axis, self._place(axis, row), told[axis])
                 for axis in open_
             }
             for axis in open_:
-                limit_cycles = self._counts.limit_cycles(told[axis])
-                self._settle(axis, row, (off[axis], limit_cycles), stands_mm)
+                self._settle(axis, row, off[axis], stands_mm)
             if self._lost and len(open_) == len(self._delays) and not self._fault:
                 first = min(self._lost.values(), key=lambda gap: gap.first)
                 self._fault = self._lost_way(first, (row, off))
@@ -249,12 +248,9 @@ class Vouching:
         near = delay.corrected(held.axis(axis, first, at + span + 1), held.first_row + first)
         return between(near, row - held.first_row - first)
 
-    def _settle(
-        self, axis: int, row: float, off_and_limit: tuple[float, float], stands_mm: StandsMm
-    ) -> None:
+    def _settle(self, axis: int, row: float, off: Off, stands_mm: StandsMm) -> None:
         """Let a count vouch for the way until there; or note which gap lost it, or lay that gap anew."""
-        off, limit = off_and_limit
-        if abs(off) <= limit and not self._weak[axis] and not self._ways.any_open(axis):
+        if off.is_right and not self._weak[axis] and not self._ways.any_open(axis):
             self._counted[axis] = row
             return
         before = [weak for weak in self._weak[axis] if weak < row]
@@ -264,7 +260,7 @@ class Vouching:
             time_s = replaced / self._rate_hz
             self._fault = self._fault or faults.replaced(axis + 1, self._format.axes, time_s)
             return
-        gap, whole = self._ways.lost(axis, row, off), round(off)
+        gap, whole = self._ways.lost(axis, row, off.cycles), round(off.cycles)
         if gap is not None and not self._mends:
             self._lost.setdefault(axis, gap)
             if not whole:  # then it vouches for the way until the gap
@@ -272,9 +268,9 @@ class Vouching:
             return
         if gap is not None:
             self._lay(axis, gap, -whole)
-        elif abs(off) > limit:
+        elif not off.is_right:
             name, time_s = self._format.axes[axis], row / self._rate_hz
-            found = faults.miscounted(name, off, limit, time_s, stands_mm()[axis])
+            found = faults.miscounted(name, off, time_s, stands_mm()[axis])
             self._fault = self._fault or found
             return
         self._ways.settle(axis, row, 0.0 if gap is None else float(-whole))
@@ -286,15 +282,15 @@ class Vouching:
         near = self._bounds[axis].around(gap.first, gap.last)
         self.mended.append(Laid(gap.ending(more), more, near or gap.bound))
 
-    def _lost_way(self, gap: Gap, behind: tuple[float, dict[int, float]] | None) -> Fault:
+    def _lost_way(self, gap: Gap, behind: tuple[float, dict[int, Off]] | None) -> Fault:
         """The fault of a gap; `behind`: a row at which all axes are known again, and how far off each is."""
         known = None
         if behind is not None:
             row = math.ceil(behind[0])
             places_mm = tuple(
-                self._place_mm(axis, self._place(axis, row) - round(off))
+                self._place_mm(axis, self._place(axis, row) - round(off.cycles))
                 for axis, off in sorted(behind[1].items())
             )
-            known = faults.Behind(row / self._rate_hz, places_mm, behind[1][gap.axis])
+            known = faults.Behind(row / self._rate_hz, places_mm, behind[1][gap.axis].cycles)
         name, place_mm = self._format.axes[gap.axis], self._place_mm(gap.axis, gap.before.place)
         return faults.lost_way(gap, name, self._rate_hz, place_mm, known)

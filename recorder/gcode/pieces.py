@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.circle import circle_through
+from morfax.motion.circle import kasa, spread
 from morfax.motion.compiled import njit
 from morfax.motion.polyline import lengths_mm
 
@@ -122,26 +122,13 @@ def _turned_rad(places):  # type: ignore[no-untyped-def]
     way = 0.0
     for i in range(1, len(places)):
         way += math.hypot(places[i, 0] - places[i - 1, 0], places[i, 1] - places[i - 1, 1])
-    return way / max(_circle(places)[2], SAME_MM)
-
-
-@njit(cache=True)
-def _spread(places):  # type: ignore[no-untyped-def]
-    """The middle of some places, and the sums of their squares about it: xx, xy, yy."""
-    x, y, xx, xy, yy = 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(len(places)):
-        x, y = x + places[i, 0], y + places[i, 1]
-    x, y = x / len(places), y / len(places)
-    for i in range(len(places)):
-        dx, dy = places[i, 0] - x, places[i, 1] - y
-        xx, xy, yy = xx + dx * dx, xy + dx * dy, yy + dy * dy
-    return x, y, xx, xy, yy
+    return way / max(kasa(places)[2], SAME_MM)
 
 
 @njit(cache=True)
 def off_line_mm(places):  # type: ignore[no-untyped-def]
     """The largest distance of some places (n, 2) from the line that fits them best, mm."""
-    x, y, xx, xy, yy = _spread(places)
+    x, y, xx, xy, yy = spread(places)
     heading = 0.5 * math.atan2(2 * xy, xx - yy)
     c, s, most = math.cos(heading), math.sin(heading), 0.0
     for i in range(len(places)):
@@ -152,30 +139,11 @@ def off_line_mm(places):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def off_circle_mm(places):  # type: ignore[no-untyped-def]
     """The largest distance of some places (n, 2) from the circle that fits them best, mm."""
-    x, y, radius = _circle(places)
+    x, y, radius = kasa(places)
     most = 0.0
     for i in range(len(places)):
         most = max(most, abs(math.hypot(places[i, 0] - x, places[i, 1] - y) - radius))
     return most
-
-
-@njit(cache=True)
-def _circle(places):  # type: ignore[no-untyped-def]
-    """Centre and radius of the circle that fits some places best (Kåsa, see `motion.circle`), mm.
-
-    Places on a straight line have none: then the radius is infinite.
-    """
-    x, y, xx, xy, yy = _spread(places)
-    xr, yr, rr = 0.0, 0.0, 0.0
-    for i in range(len(places)):
-        dx, dy = places[i, 0] - x, places[i, 1] - y
-        square = dx * dx + dy * dy
-        xr, yr, rr = xr + dx * square, yr + dy * square, rr + square
-    across = xx * yy - xy * xy
-    if not across > 1e-14 * (xx + yy) ** 2:  # what rounding leaves of a straight line
-        return x, y, math.inf
-    a, b = 0.5 * (xr * yy - yr * xy) / across, 0.5 * (yr * xx - xr * xy) / across
-    return x + a, y + b, math.sqrt(rr / len(places) + a * a + b * b)
 
 
 def curvature_per_mm(places: Array) -> float:
@@ -189,9 +157,7 @@ def curvature_per_mm(places: Array) -> float:
     if np.abs(v).max() > 0.2 * chord:  # more than a third of a turn: a chord says little
         side = places[len(places) // 2] - places.mean(axis=0)
         across = dx[len(dx) // 4] * dy[len(dy) // 2] - dy[len(dy) // 4] * dx[len(dx) // 2]
-        return math.copysign(
-            1 / max(circle_through(places)[1], float(np.hypot(*side)) / 10), across
-        )
+        return math.copysign(1 / max(kasa(places)[2], float(np.hypot(*side)) / 10), across)
     weight = u * u - chord * u + v * v
     return 2 * float(v @ weight) / max(float(weight @ weight), 1e-30)
 

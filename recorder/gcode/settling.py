@@ -16,7 +16,7 @@ from morfax.motion.compiled import njit
 from morfax.recorder.gcode.normal_equations import BREAK_RAD, normal, offs, solved
 
 ROUNDS = 20  # what has not settled by then is taken as it is
-TRIES = 5  # of a step, each ten times as short
+TRIES = 5  # of a step, each with ten times the damping
 
 
 @njit(cache=True)
@@ -65,8 +65,8 @@ def linearised(joints, halves, seen, columns, closed):  # type: ignore[no-untype
     (unknowns, BAND), the right side, and the slopes of the seam's break, which are not in the band.
     """
     places, shares, weights = seen
-    table = _table(joints, halves)
-    of_places = (places, _owners(table, shares), weights)
+    table = table_of(joints, halves)
+    of_places = (places, owners(table, shares), weights)
     return normal(table, of_places, _breaks(table, closed) / BREAK_RAD, columns, closed)
 
 
@@ -74,13 +74,13 @@ def linearised(joints, halves, seen, columns, closed):  # type: ignore[no-untype
 def residuals(joints, halves, seen, closed):  # type: ignore[no-untyped-def]
     """Distances by their weights, and breaks of the tangent by theirs."""
     places, shares, weights = seen
-    table = _table(joints, halves)
-    off = offs(table, places, _owners(table, shares))
+    table = table_of(joints, halves)
+    off = offs(table, places, owners(table, shares))
     return np.concatenate((weights * off, _breaks(table, closed) / BREAK_RAD))
 
 
 @njit(cache=True)
-def _table(joints, halves):  # type: ignore[no-untyped-def]
+def table_of(joints, halves):  # type: ignore[no-untyped-def]
     """The ends of each segment and half the angle that it turns."""
     table = np.empty((len(halves), 5))
     table[:, :2], table[:, 2:4], table[:, 4] = joints[:-1], joints[1:], halves
@@ -107,7 +107,7 @@ def _direction(table, one):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _owners(table, shares):  # type: ignore[no-untyped-def]
+def owners(table, shares):  # type: ignore[no-untyped-def]
     """The segment of each place, by how far along the path it lies; the places follow one another."""
     until = np.empty(len(table))
     way = 0.0

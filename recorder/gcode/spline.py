@@ -22,8 +22,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
+from morfax.recorder.gcode.normal_equations import offs
 from morfax.recorder.gcode.pieces import SPACING_MM, Piece, curvature_per_mm
-from morfax.recorder.gcode.settling import settle
+from morfax.recorder.gcode.settling import owners, settle, table_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,17 +68,14 @@ class Spline:
 
     def __init__(self, places: Array, pieces: list[Piece], curved: NDArray[np.bool_]) -> None:
         n = len(pieces)
-        self.places, self.s = places, lengths_mm(places)
+        self.places, s = places, lengths_mm(places)
         self.joints = np.asarray(places[[0, *(b for _, b, _ in pieces)]], float)
-        halves = [
-            curvature_per_mm(places[a : b + 1]) * (self.s[b] - self.s[a]) / 2
-            for a, b, _ in pieces
-        ]
+        halves = [curvature_per_mm(places[a : b + 1]) * (s[b] - s[a]) / 2 for a, b, _ in pieces]
         self.halves = np.where(curved, halves, 0.0)
         self.few = np.unique(
             np.linspace(0, len(places) - 1, min(len(places), 60 * n + 20)).astype(int)
         )
-        self.shares = self.s[self.few] / self.s[-1]
+        self.shares = s / s[-1]
         self.closed = n > 1 and math.dist(places[0], places[-1]) < SPACING_MM
         # the unknowns in the order of the path, so that those that meet are near each other; -1 is fixed
         free = np.column_stack([np.arange(n) > 0, np.arange(n) > 0, curved])
@@ -90,28 +88,16 @@ class Spline:
         """The chain by least squares, the worst places weighted more where needed; None if none fits."""
         weights = np.ones(len(self.few))
         for _ in range(4):
-            seen = (self.places[self.few], self.shares, weights / tolerance_mm)
+            seen = (self.places[self.few], self.shares[self.few], weights / tolerance_mm)
             settle(self.joints, self.halves, seen, self.columns, self.closed)
-            off = np.abs(_off_rows(self._rows()[self._owner()], self.places))
+            table = table_of(self.joints, self.halves)
+            off = np.abs(offs(table, self.places, owners(table, self.shares)))
             if off.max() <= tolerance_mm:
-                return Chain(segments(self._rows()), float(off.max()))
+                return Chain(segments(rows_of(table)), float(off.max()))
             if off.max() > 2 * tolerance_mm:
                 break
             weights = weights * (0.3 + off[self.few] / off.max())
         return None
-
-    def _table(self) -> Array:
-        """The ends of each segment and half the angle that it turns."""
-        return np.column_stack([self.joints[:-1], self.joints[1:], self.halves])
-
-    def _owner(self) -> NDArray[np.int64]:
-        """The segment of each place, by its distance along the path."""
-        until = np.cumsum(self._rows()[:, 3])
-        return np.searchsorted(until[:-1], self.s * (until[-1] / self.s[-1]))
-
-    def _rows(self) -> Array:
-        """Begin, heading, length and curvature of each segment."""
-        return rows_of(self._table())
 
 
 def segments(rows: Array) -> list[LineOrArc]:
@@ -130,11 +116,3 @@ def rows_of(table: Array) -> Array:
     return np.column_stack(
         [x0, y0, np.arctan2(y1 - y0, x1 - x0) - half, length, 2 * half / length]
     )
-
-
-def _off_rows(rows: Array, points: Array) -> Array:
-    """Distance of each point from the circle or line of its own row, positive to the left."""
-    x, y, heading, _, bend = rows.T
-    dx, dy = points[:, 0] - x, points[:, 1] - y
-    square = 2 * (dy * np.cos(heading) - dx * np.sin(heading)) - bend * (dx * dx + dy * dy)
-    return square / (1 + np.sqrt(np.maximum(1 - bend * square, 0.0)))

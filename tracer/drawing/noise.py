@@ -34,9 +34,8 @@ from morfax.motion.median import median
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.paper import ROBUST
-from morfax.tracer.drawing.tiles import Tiles
+from morfax.tracer.drawing.tiles import Kept
 
-Kept = NDArray[np.float32] | Tiles
 INK = 0.5  # darker is ink
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
 PAPER_SAMPLES = 1 << 16  # pixels of paper: they give its standard deviation to 1/360
@@ -54,9 +53,8 @@ GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
 DARKER = 84.13  # percentile one standard deviation above the median
 RIGHT_ON_IT = 25.0  # percentile of how wide lines look: there a pixel lies right on the line
 OUTLIERS = 3.0  # robust standard deviations
-ROUNDS = (
-    20  # darkness, softness and width settle to 1 % where a line is three times as wide as soft
-)
+# darkness, softness and width settle to 1 % where a line is three times as wide as soft
+ROUNDS = 20
 # linear interpolation, over all places between pixels: variance of its kernel, share of white noise left
 INTERPOLATED_PX2, INTERPOLATED_NOISE = 1 / 6, 4 / 9
 
@@ -138,7 +136,8 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
 
 def _paper(darkness: Any) -> float:
     """The noise of the paper of a sheet that is nowhere made bare (see `contrast`)."""
-    return paper_noise(darkness[:: every_px(darkness.size), :: every_px(darkness.size)])
+    every = every_px(darkness.size)
+    return paper_noise(darkness[::every, ::every])
 
 
 def paper_noise(sample: NDArray[np.float32]) -> float:

@@ -31,10 +31,9 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
-from morfax.tracer.drawing.tiles import Tiles
+from morfax.tracer.drawing.tiles import Kept, Tiles
 
 Darkness = NDArray[np.float32]
-Kept = Darkness | Tiles
 PaperKind = Literal["auto", "plain", "squared", "ruled"]
 
 # Chosen by trial on drawings on printed paper.

@@ -121,6 +121,9 @@ class Tiles:
                 yield top, bottom, inner, slice(max(0, left - halo), min(columns, right + halo))
 
 
+Kept = NDArray[np.float32] | Tiles  # the darkness of a sheet, large or not
+
+
 def paper_like(darkness: Tiles, pixels: tuple[slice, NDArray[np.bool_]]) -> None:
     """Make pixels of some rows paper: a mask (rows, columns), in place."""
     rows, mask = pixels

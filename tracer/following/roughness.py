@@ -30,9 +30,8 @@ from morfax.tracer.sensing.view import View
 PIECE_MM = 3.0  # longer waves are the shape; clean parts stray by 8 um at most
 MOST_PIECES, FEWEST_PIECES = 100, 3
 FELT = 0.9  # of a piece: where less is felt the edge ends, or turns back
-BENT_RAD = (
-    0.5  # from the first third of a piece to its last: a parabola follows that within 2 um
-)
+# from the first third of a piece to its last: a parabola follows that within 2 um
+BENT_RAD = 0.5
 BESIDE_PX = 6.0  # from the edge: neither lens nor circle reaches so far
 EVERY = 3  # one station in so many has circles beside it, as far apart as a circle is wide
 AROUND = np.arange(12) * (2 * np.pi / 12)  # where a circle looks, as the scout's does

@@ -112,12 +112,12 @@ def narrow_mm(t: Tuning, way: Array) -> float:
 def wide_mm(t: Tuning, way: Array) -> float | None:
     """Half of the widest window over which a way (n, 2) mm hardly bends, mm; None if it bends over all."""
     for half_mm in np.geomspace(t.half_window_mm, t.narrow_mm, WINDOWS + 1)[:-1].tolist():
-        if most_turned(way, half_mm) < TIGHTEST_RAD:
+        if largest_bend_rad(way, half_mm) < TIGHTEST_RAD:
             return float(half_mm)
     return None
 
 
-def most_turned(way: Array, half_mm: float) -> float:
+def largest_bend_rad(way: Array, half_mm: float) -> float:
     """By how much a way (n, 2) mm turns at most from one half of a window to the other, rad; infinite if it
     is shorter than a window.
     """

@@ -38,10 +38,8 @@ FALLS = 0.05  # of the thinnest width: behind a maximum
 UP = 0.2, 0.4, 0.8
 STRAIGHT, LEVELS_OFF = 0.62, (0.3, 0.56)
 BESIDE, FURTHER = 1.5, 3.5  # widths to either side of a step: it is averaged over two
-ONE, STEP = (
-    0.06,
-    0.2,
-)  # of the thinnest width: so near to it is one line; so much broader are two
+# of the thinnest width: so near to it is one line; so much broader are two
+ONE, STEP = 0.06, 0.2
 LEVEL = 0.3  # of the step, by which the ink beyond it may differ
 BLUNT, END = 1.15, (1, 3)  # thinnest widths: how broad an end is, and where that is felt
 LEAST = 6  # thinnest widths: a shorter stretch tells nothing of its ends

@@ -25,8 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.neighbours import Neighbours
-from morfax.motion.polyline import length_mm
+from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.following.felt_line import bare_stretch
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import CHUNK, Carriage
@@ -214,8 +213,7 @@ class InkHead:
             / run.view.step_mm
         )
         felt = run.places_mm[max(0, at - 20) : at + beyond]
-        away, _ = Neighbours(felt).nearest(newest)
-        return bool(away.max() > STRAYED * run.view.width_mm)
+        return bool(nearest_mm(newest, felt).max() > STRAYED * run.view.width_mm)
 
     def through(self, run: Run, onward: Piece) -> None:
         """From a run's end through what parts it from the next, and aimed at that."""

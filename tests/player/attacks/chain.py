@@ -11,9 +11,9 @@ from scipy.signal import butter, lfilter, sosfilt, sosfiltfilt
 from tests.player.attacks import changes as do
 from tests.player.attacks.bench import RATE_HZ, Bench, Frames, Kind
 from tests.player.attacks.changes import ALL, Floats, Random
+from tests.player.attacks.drawn import US
 
 LEVEL = 0.3  # of full scale: the mean of a carrier without its sign
-US = 1e-6
 
 
 def all_or_some(random: Random) -> list[int]:

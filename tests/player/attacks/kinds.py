@@ -19,7 +19,7 @@ from tests.player.attacks.changes import ALL, REFERENCE, X, Y
 from tests.player.attacks.drawn import AXES, US
 
 # ruff: noqa: E501 -- a line to a kind
-ONE: tuple[Kind, ...] = (
+SINGLE: tuple[Kind, ...] = (
     Kind("nothing", lambda t, r: t.frames, RIGHT),
     # delays
     Kind("an axis late by up to 195 us", lambda t, r: do.late(t, {drawn.axis(r): r.uniform(0, 195) * US}), RIGHT),
@@ -138,6 +138,6 @@ ONE: tuple[Kind, ...] = (
     Kind("a track's phase swings", chain.phase_swings, EITHER, False),
 )  # fmt: skip
 KINDS = (
-    *ONE,
-    Kind("two or three at once", lambda t, r: chain.several(t, r, ONE), EITHER, False),
+    *SINGLE,
+    Kind("two or three at once", lambda t, r: chain.several(t, r, SINGLE), EITHER, False),
 )

@@ -118,7 +118,7 @@ def test_one_that_reaches_the_end_at_standstill_moves_nothing(
     ends_s = len(bench.frames) / RATE_HZ
     went, fault = bench.played(bench.with_hole(0.004, tracks, at_s=ends_s - 0.004))
     assert fault is None
-    assert went[-1] == pytest.approx(bench.clean[-1], abs=0.1 * UM)
+    assert np.abs(went - bench.clean).max() < 0.1 * UM
 
 
 @pytest.mark.parametrize("tracks", [(X,), (REFERENCE,), ALL])

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from morfax.recorder.gcode import normal_equations, settling, spline
+from morfax.recorder.gcode import normal_equations, settling
 from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.normal_equations import BREAK_RAD
 from morfax.recorder.gcode.pieces import longest_pieces, resample
@@ -31,7 +31,7 @@ def _wavy(closed: bool) -> Spline:
 
 def _seen(laid: Spline, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What the spline is laid nearest to."""
-    return laid.places[laid.few], laid.shares, weights / TOLERANCE_MM
+    return laid.places[laid.few], laid.shares[laid.few], weights / TOLERANCE_MM
 
 
 def _dense(band: np.ndarray, seam: np.ndarray) -> np.ndarray:
@@ -83,13 +83,19 @@ def test_the_solution_is_numpys(closed):
     )  # both lose digits to BREAK_RAD
 
 
-def test_distances_are_those_of_the_rows():
+def test_distances_are_those_from_the_circle_or_line_of_each_row():
+    """By the centre, at the bend to the left of the beginning; a line has none."""
     laid = _wavy(True)
-    owner = laid._owner()
-    wanted = spline._off_rows(rows_of(laid._table())[owner], laid.places)
-    assert (
-        np.abs(normal_equations.offs(laid._table(), laid.places, owner) - wanted).max() < 1e-9
-    )
+    table = settling.table_of(laid.joints, laid.halves)
+    owner = settling.owners(table, laid.shares)
+    x, y, heading, _, bend = rows_of(table)[owner].T
+    (dx, dy), left = laid.places.T - (x, y), (-np.sin(heading), np.cos(heading))
+    aside, curved = dx * left[0] + dy * left[1], bend != 0
+    radius = 1 / np.where(curved, bend, 1.0)
+    away = np.hypot(dx - radius * left[0], dy - radius * left[1])
+    wanted = np.where(curved, np.sign(radius) * (np.abs(radius) - away), aside)
+    found = normal_equations.offs(table, laid.places, owner)
+    assert not curved.all() and np.abs(found - wanted).max() < 1e-9
 
 
 def test_a_ring_of_waves_is_laid_within_the_tolerance_and_without_breaks():

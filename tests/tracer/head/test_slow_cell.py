@@ -29,7 +29,7 @@ from morfax.tracer.head.slow_cell import (
     along,
     is_steady,
     keeps_mm,
-    most_turned,
+    largest_bend_rad,
     narrow_mm,
     slowly,
     wide_mm,
@@ -180,7 +180,7 @@ def test_the_window_is_as_wide_as_the_way_s_bend_allows(head: Follower) -> None:
     tuning = head.carriage.tuning
     x = np.linspace(0, 4, 200)
     stairs = np.column_stack([x, 20 * UM * np.sign(np.sin(2 * np.pi * x / 0.5))])
-    assert most_turned(stairs, narrow_mm(tuning, stairs)) > 0.1
+    assert largest_bend_rad(stairs, narrow_mm(tuning, stairs)) > 0.1
     assert wide_mm(tuning, stairs) == pytest.approx(tuning.half_window_mm)
     assert wide_mm(tuning, arc((0, 0), 0.8)) is None
     assert wide_mm(tuning, stairs[:20]) is None
