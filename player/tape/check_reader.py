@@ -28,7 +28,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.player.tape.erasures import Erasures
 from morfax.player.tape.frame_report import FrameReport, frame_report
-from morfax.player.tape.quiet_frame import MIDDLES, QuietFrames
+from morfax.player.tape.quiet_frame import MOMENTS, QuietFrames
 from morfax.player.tape.slips import slip
 from morfax.player.tape.standstill import REFERENCE_BAND, strongest_hz
 from morfax.player.tape.subcarrier import Subcarrier
@@ -243,7 +243,7 @@ class CheckReader:
             # the clock was put right within this frame only: all seemed late by as much
             figures[:, 1:-2] = np.nan
         self._clock_lost = said[0] is None
-        rows = self._rows(self._theta + MIDDLES)
+        rows = self._rows(self._theta + MOMENTS)
         read = tuple(one if sure else None for one, sure in zip(said, is_read, strict=True))
         weak = [self._rows(self._theta + CYCLES_PER_SYMBOL * at) for at in self._erasures.weak]
         damaged = tuple(self._erasures.damaged)

@@ -1,14 +1,15 @@
 """The counts that the tracks of the axes tell, until they are compared with what their phases say.
 
-Signals in: frame by frame the row at which it begins and what each axis tells there; where an axis was found
-at that row, cycles. Signals out: how far it lies off, and how far it may.
+Signals in: frame by frame the rows of its start and its middle, and what each axis tells there; where an axis
+was found at such a row, cycles. Signals out: how far it lies off, and how far it may.
 
     grain      half of a count: 1/128 cycle, 1/32 in tapes of version 1
     noise      0.02 cycle: noise of 26 dB and delays leave 0.016
     instant    how well a frame's first instant is known: measured 1 us, 13 us under a tilted head, 18 us
                behind a start that is cut; an axis that moves is off by as much as it goes meanwhile
 
-Source: our own. Questions: counts begin again after 52 m at 20 cycles per mm, and differences are taken so.
+Source: our own. Questions: counts begin again after 0.8 m at 20 cycles per mm (52 m in tapes of versions 1
+and 2), those of the middle after each cycle, and differences are taken so.
 """
 
 from __future__ import annotations
@@ -26,6 +27,14 @@ NOISE_CYCLES = 0.02
 INSTANT_S = 15e-6
 
 Told = dict[int, CheckFrame]  # by axis
+
+
+class Due(NamedTuple):
+    """The row at which axes are told, what each tells, and whether it is the middle of its frame."""
+
+    row: float
+    told: Told
+    is_middle: bool
 
 
 class Off(NamedTuple):
@@ -50,31 +59,39 @@ class Counts:
     def __init__(self, axes: int, *, is_timed: bool) -> None:
         self.zero_cycles: Array = np.full(axes, np.nan)
         self._is_timed = is_timed
-        self._waiting: list[tuple[float, Told]] = []
+        self._waiting: list[Due] = []
 
-    def begin(self, row: float) -> None:
+    def begin(self, row: float, middle_row: float) -> None:
         """Begin the next frame."""
-        self._waiting.append((row, {}))
+        self._waiting += [Due(row, {}, False), Due(middle_row, {}, True)]
 
     def tell(self, axis: int, said: CheckFrame) -> None:
         """Take what an axis tells in it."""
-        self._waiting[-1][1][axis] = said
+        start, middle = self._waiting[-2:]
+        start.told[axis] = said
+        if said.middle_cycles is not None and self._is_timed:
+            middle.told[axis] = said
 
-    def due(self, first_row: int, rows: int) -> tuple[float, Told] | None:
-        """The next frame that begins within so many rows from one on; None if there is none yet."""
-        while self._waiting and rows and self._waiting[0][0] <= first_row + rows - 1:
-            row, told = self._waiting.pop(0)
+    def due(self, first_row: int, rows: int) -> Due | None:
+        """What is told next within so many rows from one on; None if there is nothing yet."""
+        while self._waiting and rows and self._waiting[0].row <= first_row + rows - 1:
+            due = self._waiting.pop(0)
+            is_zeroed = not np.isnan(self.zero_cycles).any()
             # before the first row an axis still stands, unless the tape is taken up under way
-            if row >= first_row or not np.isnan(self.zero_cycles).any():
-                return row, told
+            if is_zeroed or (due.row >= first_row and not due.is_middle):
+                return due
         return None
 
-    def off(self, axis: int, found: float, said: CheckFrame) -> Off:
+    def off(self, axis: int, found: float, due: Due) -> Off:
         """What an axis tells held against the place where it was found, cycles."""
+        said = due.told[axis]
         if math.isnan(self.zero_cycles[axis]):
             self.zero_cycles[axis] = found - said.cycles
-        off = found - float(self.zero_cycles[axis]) - said.cycles
+        off = found - float(self.zero_cycles[axis])
         limit = said.grain_cycles / 2 + NOISE_CYCLES + INSTANT_S * said.speed
+        if due.is_middle and said.middle_cycles is not None:
+            return Off(math.remainder(off - said.middle_cycles, 1.0), limit)
         return Off(
-            math.remainder(off, said.turn_cycles), limit if self._is_timed else COUNT_CYCLES
+            math.remainder(off - said.cycles, said.turn_cycles),
+            limit if self._is_timed else COUNT_CYCLES,
         )

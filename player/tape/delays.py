@@ -23,10 +23,13 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.player.tape.discriminator import Phases
 
 WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2
@@ -155,3 +158,14 @@ class Delay:
 def _towards(used_s: float, settled_s: float) -> float:
     """A delay that follows another to within the dead zone, s."""
     return min(max(used_s, settled_s - DEAD_ZONE_S), settled_s + DEAD_ZONE_S)
+
+
+def corrected(rows: Phases, delays: Sequence[Delay]) -> Phases:
+    """Rows without the delays of their tracks."""
+    if not any(delay.moves for delay in delays):
+        return rows
+    columns = [
+        delay.corrected(column, rows.first_row)
+        for delay, column in zip(delays, rows.cycles.T, strict=True)
+    ]
+    return replace(rows, cycles=np.column_stack(columns))

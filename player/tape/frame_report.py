@@ -14,7 +14,7 @@ from morfax.recorder.tape.check_frame import CheckFrame
 
 @dataclass(frozen=True, slots=True)
 class FrameReport:
-    """A frame of all tracks: its number, its first row, rows in the middle of its parts.
+    """A frame of all tracks: its number, rows of its start, its middle, and the middle of its parts.
 
     `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the
     reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
@@ -25,6 +25,7 @@ class FrameReport:
 
     number: int
     row: float
+    middle_row: float
     part_rows: list[float]
     said: tuple[CheckFrame | None, ...]
     late_s: list[float]
@@ -47,7 +48,8 @@ def frame_report(
     return FrameReport(
         number,
         rows[0],
-        rows[1:],
+        rows[1],
+        rows[2:],
         said,
         [told[0] for told in figures],
         [told[1:-2] for told in figures],

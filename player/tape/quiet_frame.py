@@ -37,9 +37,11 @@ from morfax.recorder.tape.check_frame import (
 )
 from morfax.recorder.tape.check_signal import CYCLES_PER_SYMBOL
 
-# the start of a frame and the middle of each part, in cycles of the reference
-MIDDLES = np.r_[0, (np.arange(PARTS) + 0.5) * SYMBOLS / PARTS - 0.5] * CYCLES_PER_SYMBOL
-_FIXED = lasting((WORD, *TABLES, MIDDLES))
+# the start of a frame, its middle, and the middle of each part, in cycles of the reference
+MOMENTS = (
+    np.r_[0, SYMBOLS / 2, (np.arange(PARTS) + 0.5) * SYMBOLS / PARTS - 0.5] * CYCLES_PER_SYMBOL
+)
+_FIXED = lasting((WORD, *TABLES, MOMENTS))
 
 
 class Read(NamedTuple):
@@ -59,7 +61,7 @@ class QuietFrames:
         self._told, self._is_read = np.empty(tracks, np.int64), np.empty(tracks, bool)
         self._counts = np.empty((tracks, 3), np.int64)
         self._weights = np.empty((2, tracks, 2))
-        self._frames, self._figures = np.empty(len(MIDDLES)), np.empty((tracks, FIGURES))
+        self._frames, self._figures = np.empty(len(MOMENTS)), np.empty((tracks, FIGURES))
 
     def read(self, points: Subcarrier, begins: float, held: tuple[Array, Array]) -> Read | None:
         """Read the frame that begins at a count of the reference; None where it is not quiet.
@@ -82,7 +84,7 @@ def _read_quiet(seen, clock, fixed, gates, held, room, out):  # type: ignore[no-
     """Fill the gates of a frame and, if it is quiet, all else; whether it is."""
     points, theta, begins = seen
     first, hop, step, cycle_s = clock
-    word, white, byte_crcs, middles = fixed
+    word, white, byte_crcs, moments = fixed
     told, is_read, counts, weights = room
     # 1. the symbols, what they tell, and how strong they are
     read_gates(points, theta, begins, word, gates)
@@ -96,5 +98,5 @@ def _read_quiet(seen, clock, fixed, gates, held, room, out):  # type: ignore[no-
     count_on(gates, is_read, held[1], cycle_s, out[1])
     held[0][0][:], held[0][1][:] = weights[1, :, 0], weights[1, :, 1]
     # 3. where it lies
-    interpolate(begins + middles, theta, (first, hop, step), out[0])
+    interpolate(begins + moments, theta, (first, hop, step), out[0])
     return True

@@ -5,7 +5,7 @@ out: rows that are vouched for, about a second later, and the first that is not,
 
     order       frames of each track are its own and follow one another      frame_order.py
     delay       of a track against the reference                             delays.py: taken out of the phase
-    count       cycles of the axis at the start of each frame                counts.py: off is a fault
+    count       cycles of the axis at the start of each frame, in its middle counts.py: off is a fault
     tail        what moves behind the last delay                             tail.py: taken out at rest
     last        the last two frames say that the tape ends                   the end is missing: a fault
 
@@ -22,15 +22,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from morfax.motion.arrays import Array, between
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
 from morfax.player.tape.bridges import Gap
 from morfax.player.tape.check_reader import CheckReader
 from morfax.player.tape.counts import Counts, Off
-from morfax.player.tape.delays import Delay
+from morfax.player.tape.delays import Delay, corrected
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
@@ -83,7 +81,7 @@ class Vouching:
         """The first rows, put right as far as the first frames tell; raises TapeFault for a wrong track."""
         self._demand_tracks_and_figures()
         self._take_reports()
-        return self._corrected(rows)
+        return corrected(rows, self._delays)
 
     def bear(self, zero_cycles: Array | None, place_mm: PlaceMm) -> None:
         """Take the zeros of the axes; None: where their counts begin is told by the first frames."""
@@ -112,16 +110,6 @@ class Vouching:
         for report in self._check.reports():
             if self._fault is None:
                 self._take(report)
-
-    def _corrected(self, rows: Phases) -> Phases:
-        """The rows without the delays of their tracks."""
-        if not any(delay.moves for delay in self._delays):
-            return rows
-        columns = [
-            delay.corrected(column, rows.first_row)
-            for delay, column in zip(self._delays, rows.cycles.T, strict=True)
-        ]
-        return replace(rows, cycles=np.column_stack(columns))
 
     def feed(self, certain: Certain, stands_mm: StandsMm, *, last: bool = False) -> Given:
         """Take the next rows and the fault behind them; the rows that are vouched for, and the fault."""
@@ -183,7 +171,7 @@ class Vouching:
         """The rows up to one that are not yet given out, put right; those around them lend their speed."""
         if upto <= self._given:
             return held.cut(upto, upto)
-        beyond = self._corrected(held.cut(0, upto + self._delays[0].span))
+        beyond = corrected(held.cut(0, upto + self._delays[0].span), self._delays)
         for axis, row in self._rests.items():
             at = row - beyond.first_row
             beyond.cycles[at:, axis] = beyond.cycles[at, axis]
@@ -200,7 +188,7 @@ class Vouching:
         self._fault = self._order.fault(report)
         if self._fault is not None:
             return
-        self._counts.begin(report.row)
+        self._counts.begin(report.row, report.middle_row)
         for axis in range(len(self._delays)):
             if weak := report.weak_rows[0] + report.weak_rows[axis + 1]:
                 self._weak[axis] += sorted(weak)
@@ -226,17 +214,32 @@ class Vouching:
             due = self._counts.due(self._rows.first_row, len(self._rows))
             if due is None:
                 return
-            row, told = due
-            open_ = [axis for axis in told if not self._ways.covers(axis, row)]
-            off = {
-                axis: self._counts.off(axis, self._place(axis, row), told[axis])
-                for axis in open_
-            }
+            row = due.row
+            open_ = [axis for axis in due.told if not self._ways.covers(axis, row)]
+            off = {axis: self._counts.off(axis, self._place(axis, row), due) for axis in open_}
+            if due.is_middle:
+                self._check_middle(row, off, stands_mm)
+                continue
             for axis in open_:
                 self._settle(axis, row, off[axis], stands_mm)
             if self._lost and len(open_) == len(self._delays) and not self._fault:
                 first = min(self._lost.values(), key=lambda gap: gap.first)
                 self._fault = self._lost_way(first, (row, off))
+
+    def _check_middle(self, row: float, off: dict[int, Off], stands_mm: StandsMm) -> None:
+        """Note the fault of an axis that is off in the middle of a frame.
+
+        A right one vouches for nothing, as whole cycles do not show; behind a dropout the next count tells.
+        """
+        for axis, found in off.items():
+            is_open = self._ways.any_open(axis) or bool(self._weak[axis])
+            if not found.is_right and not is_open:
+                self._fault = self._fault or self._miscounted(axis, row, found, stands_mm)
+
+    def _miscounted(self, axis: int, row: float, off: Off, stands_mm: StandsMm) -> Fault:
+        """The fault of an axis that lies off its count."""
+        name = self._format.axes[axis]
+        return faults.miscounted(name, off, row / self._rate_hz, stands_mm()[axis])
 
     def _place(self, axis: int, row: float) -> float:
         """Where an axis is at a row that is held, cycles, without the delay of its track."""
@@ -269,9 +272,7 @@ class Vouching:
         if gap is not None:
             self._lay(axis, gap, -whole)
         elif not off.is_right:
-            name, time_s = self._format.axes[axis], row / self._rate_hz
-            found = faults.miscounted(name, off, time_s, stands_mm()[axis])
-            self._fault = self._fault or found
+            self._fault = self._fault or self._miscounted(axis, row, off, stands_mm)
             return
         self._ways.settle(axis, row, 0.0 if gap is None else float(-whole))
         self._counted[axis] = row

@@ -4,14 +4,16 @@ Signals in: what is to be said, or 120 bits; out: 120 bits, or what they say; no
 wrong.
 
     24 sync | 64 told | 32 CRC-32 of the 64                    most significant bit first
-    told:  3 version | 1 last | 4 track | 16 number | 26 count | 7 speed | 7 acceleration
+    told:  3 version | 1 last | 4 track | 16 number | 20 count | 6 middle | 7 speed | 7 acceleration
 
-What the reference's track says in place of the last three: told_figures.py.
+What the reference's track says in place of the last four: told_figures.py.
 
 `count` is the axis' displacement at the frame's first instant, in sixty-fourths of a cycle (version 1:
-sixteenths), with a sign; beyond 26 m at 20 cycles per mm it begins again at the other end. `speed`
-and `acceleration` are the largest from that instant to the end of the next frame, in eighths of an octave,
-rounded up: a frame that is lost was told of by the one before it. `last`: at most one whole frame follows.
+sixteenths), with a sign; beyond 0.4 m at 20 cycles per mm it begins again at the other end. `middle` is the
+same in the middle of the frame, modulo one cycle. Versions 1 and 2 tell no middle, and have its bits for the
+count, as the reference's track has. `speed` and `acceleration` are the largest from the first instant to the
+end of the next frame, in eighths of an octave, rounded up: a frame that is lost was told of by the one before
+it. `last`: at most one whole frame follows.
 Told and CRC are whitened by a pseudo-random sequence, so that a track that stands does not send one tone.
 
 Source: sync word of 24 bits: IRIG 106, appendix for PCM (hex FAF320); CRC-32: IEEE 802.3, as zlib has it;
@@ -30,15 +32,16 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 
-VERSION = 2
+VERSION = 3
 SYMBOLS = 120  # of a frame
 SYNC_SYMBOLS = 24
 _SYNC = 0xFAF320
 _TOLD_BYTES, _CRC_BYTES = 8, 4
-COUNTS_PER_CYCLE = {1: 16, 2: 64}  # by version
+COUNTS_PER_CYCLE = {1: 16, 2: 64, 3: 64}  # by version
 NUMBERS = 1 << 16  # of frames, then they begin again: after nine hours
 MOST_TRACKS = 16
-_COUNT_BITS, _CODE_BITS = 26, 7
+# the middle's bits are the last of the count's
+_COUNT_BITS, _MIDDLE_BITS, _CODE_BITS = 26, 6, 7
 _PER_OCTAVE = 8
 LEAST_SPEED, LEAST_ACCELERATION = 0.5, 32.0  # cycles/s and cycles/s²: of code 1; 0 is at rest
 
@@ -47,7 +50,10 @@ Bits = NDArray[np.int8]
 
 @dataclass(frozen=True, slots=True)
 class CheckFrame:
-    """What one track says: cycles, cycles/s and cycles/s²; speed and acceleration as rounded up."""
+    """What one track says: cycles, cycles/s and cycles/s²; speed and acceleration as rounded up.
+
+    `middle_cycles`: in the middle of the frame, modulo one; None: not told, or to be told as at its start.
+    """
 
     track: int
     number: int
@@ -56,6 +62,7 @@ class CheckFrame:
     acceleration: float = 0.0
     last: bool = False
     version: int = VERSION
+    middle_cycles: float | None = None
 
     @property
     def counts(self) -> int:
@@ -70,7 +77,23 @@ class CheckFrame:
     @property
     def turn_cycles(self) -> float:
         """Cycles after which the counts begin again."""
-        return (1 << _COUNT_BITS) * self.grain_cycles
+        return (1 << _COUNT_BITS - _middle_bits(self.version, self.track)) * self.grain_cycles
+
+    @property
+    def _count_word(self) -> int:
+        """The bits of the count, and of the middle where it is told."""
+        bits = _middle_bits(self.version, self.track)
+        word = self.counts % (1 << _COUNT_BITS - bits)
+        if not bits:
+            return word
+        middle = self.cycles if self.middle_cycles is None else self.middle_cycles
+        counts = round(middle * COUNTS_PER_CYCLE[self.version])
+        return word << bits | counts % (1 << bits)
+
+
+def _middle_bits(version: int, track: int) -> int:
+    """The bits of the count that tell where an axis is in the middle of the frame."""
+    return _MIDDLE_BITS if version >= 3 and track else 0
 
 
 def _whitening() -> NDArray[np.uint8]:
@@ -108,7 +131,7 @@ def to_bits(frame: CheckFrame) -> Bits:
         (int(frame.last), 1),
         (frame.track, 4),
         (frame.number % NUMBERS, 16),
-        (frame.counts % (1 << _COUNT_BITS), _COUNT_BITS),
+        (frame._count_word, _COUNT_BITS),
         (to_code(frame.speed, LEAST_SPEED), _CODE_BITS),
         (to_code(frame.acceleration, LEAST_ACCELERATION), _CODE_BITS),
     ):
@@ -155,18 +178,22 @@ def said_by(told: int) -> CheckFrame | None:
     version = told >> 61
     if version not in COUNTS_PER_CYCLE:
         return None
+    track = told >> 56 & (MOST_TRACKS - 1)
+    bits = _middle_bits(version, track)
     codes, code_mask = told & ((1 << 2 * _CODE_BITS) - 1), (1 << _CODE_BITS) - 1
-    count = told >> 2 * _CODE_BITS & ((1 << _COUNT_BITS) - 1)
-    if count >> (_COUNT_BITS - 1):
-        count -= 1 << _COUNT_BITS
+    word = told >> 2 * _CODE_BITS & ((1 << _COUNT_BITS) - 1)
+    middle, count = word & ((1 << bits) - 1), word >> bits
+    if count >> (_COUNT_BITS - bits - 1):
+        count -= 1 << _COUNT_BITS - bits
     return CheckFrame(
-        told >> 56 & (MOST_TRACKS - 1),
+        track,
         told >> 40 & (NUMBERS - 1),
         count / COUNTS_PER_CYCLE[version],
         to_value(codes >> _CODE_BITS, LEAST_SPEED),
         to_value(codes & code_mask, LEAST_ACCELERATION),
         bool(told >> 60 & 1),
         version,
+        middle / COUNTS_PER_CYCLE[version] if bits else None,
     )
 
 

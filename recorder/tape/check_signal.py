@@ -114,18 +114,20 @@ class CheckWriter:
         first = self._row(self._number) - self._first_row
         ends = self._row(self._number + 2) - self._first_row + 2 * self._gauge
         rows = self._cycles[max(first - self._gauge, 0) : ends]
-        at = self._number * self._rows_per_frame - self._first_row
+        # its first instant, and its middle
+        ats = (self._number + np.array([0, 0.5])) * self._rows_per_frame - self._first_row
         fastest, hardest = np.zeros((2, self._tracks - 1))
         _gauged(rows, (self._rate_hz, self._gauge), fastest, hardest)
         for axis in range(self._tracks - 1):
-            place = float(np.interp(at, np.arange(len(self._cycles)), self._cycles[:, axis]))
+            places = np.interp(ats, np.arange(len(self._cycles)), self._cycles[:, axis])
             yield CheckFrame(
                 axis + 1,
                 self._number,
-                place,
+                float(places[0]),
                 float(fastest[axis]),
                 float(hardest[axis]),
                 last,
+                middle_cycles=float(places[1]),
             )
 
 

@@ -18,7 +18,6 @@ from morfax.motion.motion import Motion, join
 from morfax.player.tape.mend import mend
 from morfax.player.tape.playback import TapePlayback, play, play_pipe
 from morfax.recorder.tape import check_signal
-from morfax.recorder.tape.check_frame import COUNTS_PER_CYCLE
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
 from morfax.recorder.wear.settings import Wear
 from morfax.recorder.wear.transport import age
@@ -411,14 +410,30 @@ def test_a_carrier_that_a_filter_turns_on_is_a_fault(bench: Bench, corner: float
     assert bench.error_um(went) < 2.5  # 0.05 cycle
 
 
+def test_an_echo_that_shows_between_the_starts_of_frames_is_a_fault(bench: Bench) -> None:
+    """Once round takes two frames: at each start Y is nearly right, and 0.17 cycle off between two."""
+
+    def echoed(frames: Frames) -> Frames:
+        late, tracks = 14, [2, 3]  # Y and Z
+        frames[late:, tracks] += 0.37 * frames[:-late, tracks].copy()
+        return frames * 0.6
+
+    went, fault = bench.played(echoed)
+    assert isinstance(fault, LockFault)
+    assert fault.axis == "y"
+    assert bench.error_um(went) < 2.5  # 0.05 cycle
+
+
 def test_counts_that_begin_again_lead_no_axis_astray(tmp_path: Path) -> None:
-    """Counts of 1e-6 cycle begin again after 64 cycles, as those of a tape do after 52 m."""
-    with mock.patch.dict(COUNTS_PER_CYCLE, {2: 1 << 20}):
-        bench = Bench(tmp_path)
-        went, fault = bench.played(lambda frames: frames)
+    """X goes 0.45 m at up to 84 mm/s; its count begins again at 0.41 m."""
+    time_s = np.arange(round(9.2 * 6000)) / 6000
+    way = np.clip((time_s - 0.4) / 8, 0, 1)
+    positions = np.zeros((len(time_s), 3))
+    positions[:, 0] = 450 * way**2 * (3 - 2 * way)
+    record(Motion(positions), tmp_path / "long.wav")
+    went, fault = run(play(tmp_path / "long.wav"))
     assert fault is None
-    assert np.ptp(went[:, 0]) * 20 > 5 * 64
-    assert went[-1] == pytest.approx(bench.clean[-1], abs=0.001 * UM)
+    assert went[-1] == pytest.approx([450, 0, 0], abs=0.1 * UM)
 
 
 def test_a_tape_of_version_1_plays(tmp_path: Path, bench: Bench) -> None:

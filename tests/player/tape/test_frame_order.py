@@ -24,6 +24,7 @@ def report(swings_us: tuple[float, ...], *, reference_lost: bool) -> FrameReport
     return FrameReport(
         47,
         135_360.0,
+        136_800.0,
         [0.0] * 4,
         said,
         [0.0] * 4,

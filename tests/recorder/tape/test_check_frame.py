@@ -32,6 +32,7 @@ OCTAVE_STEP = 2 ** (1 / 8)  # speeds and accelerations are rounded up to this
     acceleration=st.floats(32, 1e6),
     last=st.booleans(),
     version=st.sampled_from(list(COUNTS_PER_CYCLE)),
+    middle=st.floats(-5e5, 5e5),
 )
 def test_what_is_told_comes_back(
     track: int,
@@ -41,15 +42,24 @@ def test_what_is_told_comes_back(
     acceleration: float,
     last: bool,
     version: int,
+    middle: float,
 ) -> None:
-    bits = to_bits(CheckFrame(track, number, cycles, speed, acceleration, last, version))
+    said = CheckFrame(track, number, cycles, speed, acceleration, last, version, middle)
+    bits = to_bits(said)
     assert bits.shape == (SYMBOLS,)
     assert set(np.unique(bits)) == {-1, 1}
     found = from_bits(bits[None])[0]
     assert found is not None
     assert (found.track, found.number, found.last) == (track, number % NUMBERS, last)
     assert (found.version, found.grain_cycles) == (version, 1 / COUNTS_PER_CYCLE[version])
-    assert found.cycles == pytest.approx(cycles, abs=0.5 / COUNTS_PER_CYCLE[version])
+    off = math.remainder(found.cycles - cycles, found.turn_cycles)
+    assert abs(off) <= 0.5 / COUNTS_PER_CYCLE[version]
+    if version == 3 and track:
+        assert found.middle_cycles is not None and 0 <= found.middle_cycles < 1
+        assert abs(math.remainder(found.middle_cycles - middle, 1)) <= 0.5 / 64
+    else:
+        assert found.middle_cycles is None
+        assert found.cycles == pytest.approx(cycles, abs=0.5 / COUNTS_PER_CYCLE[version])
     assert speed * (1 - 1e-6) <= found.speed <= speed * OCTAVE_STEP * (1 + 1e-6)
     assert acceleration * (1 - 1e-6) <= found.acceleration
     assert found.acceleration <= acceleration * OCTAVE_STEP * (1 + 1e-6)
@@ -69,20 +79,23 @@ def test_a_track_that_has_no_room_is_refused() -> None:
         to_bits(CheckFrame(16, 0, 0.0))
 
 
-@pytest.mark.parametrize("cycles", [524288.0, 3e6, -3e6 + 0.25])
-def test_counts_begin_again_beyond_26_m(cycles: float) -> None:
-    """A sheet is no longer than that; a path on a wall may be."""
-    found = from_bits(to_bits(CheckFrame(1, 0, cycles))[None])[0]
+@pytest.mark.parametrize(("version", "bits"), [(2, 26), (3, 20)])
+@pytest.mark.parametrize("cycles", [8192.0, 524288.0, 3e6, -3e6 + 0.25])
+def test_counts_begin_again_beyond_what_they_can_tell(
+    cycles: float, version: int, bits: int
+) -> None:
+    """Beyond 0.4 m at 20 cycles per mm, as paths on most sheets are; 26 m in version 2."""
+    found = from_bits(to_bits(CheckFrame(1, 0, cycles, version=version))[None])[0]
     assert found is not None
-    assert found.turn_cycles == 2**26 / 64
+    assert found.turn_cycles == 2**bits / 64
     assert math.remainder(found.cycles - cycles, found.turn_cycles) == 0.0
     assert abs(found.cycles) <= found.turn_cycles / 2
 
 
 def test_a_later_version_is_not_read() -> None:
-    told = 3 << 61
+    told = 4 << 61
     assert said_by(told) is None
-    assert said_by(2 << 61) == CheckFrame(0, 0, 0.0)
+    assert said_by(3 << 61) == CheckFrame(0, 0, 0.0)
 
 
 def test_one_and_two_wrong_symbols_are_always_found() -> None:
