@@ -4,7 +4,9 @@ Signals in: frame by frame the rows of its start and its middle, and what each a
 was found at such a row, cycles. Signals out: how far it lies off, and how far it may.
 
     grain      half of a count: 1/128 cycle, 1/32 in tapes of version 1
-    noise      0.02 cycle: noise of 26 dB and delays leave 0.016
+    noise      three standard deviations of the phase in a row, which the check signal tells (a standard error
+               of a told delay, as a share of the reference's cycle), and 0.008 cycle for delays that drift
+               and starts that are cut (measured: 0.004); 0.02 in all, as noise of 26 dB needs
     instant    how well a frame's first instant is known: measured 1 us, 13 us under a tilted head, 18 us
                behind a start that is cut; an axis that moves is off by as much as it goes meanwhile
 
@@ -23,17 +25,19 @@ from morfax.motion.arrays import Array
 from morfax.player.tape.lost_ways import COUNT_CYCLES
 from morfax.recorder.tape.check_frame import CheckFrame
 
-NOISE_CYCLES = 0.02
+LEAST_NOISE_CYCLES, MOST_NOISE_CYCLES = 0.008, 0.02
+DEVIATIONS = 3.0
 INSTANT_S = 15e-6
 
 Told = dict[int, CheckFrame]  # by axis
 
 
 class Due(NamedTuple):
-    """The row at which axes are told, what each tells, and whether it is the middle of its frame."""
+    """The row at which axes are told, what each tells, how far it may lie off; whether it is the middle."""
 
     row: float
     told: Told
+    limit_cycles: dict[int, float]
     is_middle: bool
 
 
@@ -63,14 +67,17 @@ class Counts:
 
     def begin(self, row: float, middle_row: float) -> None:
         """Begin the next frame."""
-        self._waiting += [Due(row, {}, False), Due(middle_row, {}, True)]
+        self._waiting += [Due(row, {}, {}, False), Due(middle_row, {}, {}, True)]
 
-    def tell(self, axis: int, said: CheckFrame) -> None:
-        """Take what an axis tells in it."""
+    def tell(self, axis: int, said: CheckFrame, error_cycles: float) -> None:
+        """Take what an axis tells in it; `error_cycles`: the standard error of a delay that it tells."""
         start, middle = self._waiting[-2:]
+        noise = min(LEAST_NOISE_CYCLES + DEVIATIONS * error_cycles, MOST_NOISE_CYCLES)
+        limit = said.grain_cycles / 2 + noise + INSTANT_S * said.speed
         start.told[axis] = said
+        start.limit_cycles[axis] = limit if self._is_timed else COUNT_CYCLES
         if said.middle_cycles is not None and self._is_timed:
-            middle.told[axis] = said
+            middle.told[axis], middle.limit_cycles[axis] = said, limit
 
     def due(self, first_row: int, rows: int) -> Due | None:
         """What is told next within so many rows from one on; None if there is nothing yet."""
@@ -88,10 +95,7 @@ class Counts:
         if math.isnan(self.zero_cycles[axis]):
             self.zero_cycles[axis] = found - said.cycles
         off = found - float(self.zero_cycles[axis])
-        limit = said.grain_cycles / 2 + NOISE_CYCLES + INSTANT_S * said.speed
+        limit = due.limit_cycles[axis]
         if due.is_middle and said.middle_cycles is not None:
             return Off(math.remainder(off - said.middle_cycles, 1.0), limit)
-        return Off(
-            math.remainder(off - said.cycles, said.turn_cycles),
-            limit if self._is_timed else COUNT_CYCLES,
-        )
+        return Off(math.remainder(off - said.cycles, said.turn_cycles), limit)

@@ -199,9 +199,10 @@ class Vouching:
         delays_s, said = report.delay_s[axis + 1], report.said[axis + 1]
         if said is None or not math.isfinite(sum(delays_s)):
             return  # the reference says nothing
-        self._counts.tell(axis, said)
+        error_s = report.error_s[axis + 1]
+        self._counts.tell(axis, said, error_s * self._format.reference_hz)
         self._bounds[axis].add(report, axis + 1)
-        self._delays[axis].add(report.part_rows, delays_s, report.error_s[axis + 1])
+        self._delays[axis].add(report.part_rows, delays_s, error_s)
         off_s = self._delays[axis].off_s()
         if off_s > LARGEST_OFF_S and self._fault is None:
             time_s = report.row / self._rate_hz

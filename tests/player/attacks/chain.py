@@ -51,16 +51,16 @@ def older(tape: Bench, random: Random) -> Frames:
 
 
 def echoed(tape: Bench, random: Random) -> Frames:
-    """An echo of 0.1 to 100 ms, up to 22 dB down.
+    """An echo of 0.1 to 100 ms, 3 to 40 dB down.
 
     It turns the carriers of an axis and of the reference by asin(share) each, at standstill one way and under
-    way the other: 0.05 cycle in all.
+    way the other: 0.05 cycle in all at 22 dB, and half a cycle at 3 dB.
     """
-    share = random.uniform(0.01, 0.078) * random.choice([-1, 1])
+    share = do.log_uniform(random, 0.01, 0.7) * random.choice([-1, 1])
     late, tracks = int(do.log_uniform(random, 5, 4800)), all_or_some(random)
     frames = tape.frames.copy()
     frames[late:, tracks] += np.float32(share) * tape.frames[:-late, tracks]
-    return frames * np.float32(0.7)
+    return frames * np.float32(0.58)
 
 
 def all_pass(tape: Bench, random: Random) -> Frames:
@@ -88,12 +88,12 @@ def treble_by_level(tape: Bench, random: Random) -> Frames:
     )
 
 
-def treble_swings(tape: Bench, random: Random) -> Frames:
-    """Treble that comes and goes, without a delay, as where the tape lifts off the head."""
+def treble_swings(tape: Bench, random: Random, *, delays: bool) -> Frames:
+    """Treble that comes and goes: without a delay, as where the tape lifts off the head, or by a filter."""
     sections = butter(1, random.uniform(1500, 8000), fs=RATE_HZ, output="sos")
     share = np.zeros((len(tape.frames), len(ALL)))
     share[:, do.some(random)] = swings(tape, random, 0.1, 20)[:, None]
-    dull = sosfiltfilt(sections, tape.frames, axis=0)
+    dull = (sosfilt if delays else sosfiltfilt)(sections, tape.frames, axis=0)
     return (tape.frames * (1 - share) + dull * share).astype(np.float32)
 
 
