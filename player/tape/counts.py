@@ -72,7 +72,7 @@ class Counts:
     def tell(self, axis: int, said: CheckFrame, error_cycles: float) -> None:
         """Take what an axis tells in it; `error_cycles`: the standard error of a delay that it tells."""
         start, middle = self._waiting[-2:]
-        noise = min(LEAST_NOISE_CYCLES + DEVIATIONS * error_cycles, MOST_NOISE_CYCLES)
+        noise = min(MOST_NOISE_CYCLES, LEAST_NOISE_CYCLES + DEVIATIONS * error_cycles)
         limit = said.grain_cycles / 2 + noise + INSTANT_S * said.speed
         start.told[axis] = said
         start.limit_cycles[axis] = limit if self._is_timed else COUNT_CYCLES
