@@ -77,6 +77,18 @@ def test_sloping_lines_of_a_hard_pixel_do_not_fall_to_pieces(beside: bool) -> No
     assert off.reference_to_path.max_mm < PIXEL_MM
 
 
+@pytest.mark.parametrize("corner", [(95, 82), (93, 83), (90, 80)])
+def test_hard_lines_of_any_slope_are_found(corner: tuple[float, float]) -> None:
+    """Rows that meet a sloping line look hard and columns do not: of the first just under half of all did."""
+    tilted = polyline((8, 25), (75, 10), corner, (22, 90)) + 0.5 * PIXEL_MM
+    drawing = pixel_lines(tilted)
+    assert drawing.seen_px < 1.5
+    run = trace(drawing).lines[0]
+    assert run.ending == "closed"
+    off = distance(run.xy_mm[::4], np.vstack([tilted, tilted[:1]]))
+    assert off.path_to_reference.rms_mm < 0.25 * PIXEL_MM
+
+
 def test_only_hard_lines_are_made_as_dark_as_before() -> None:
     hard = np.zeros((40, 40), np.float32)
     hard[np.arange(5, 35), np.arange(5, 35)] = 1.0
