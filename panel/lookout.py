@@ -109,11 +109,6 @@ class Lookout:
         if self._stops:
             raise KeyboardInterrupt("stopped at the panel")
 
-    @property
-    def is_held(self) -> bool:
-        """Whether the head stands until the operator lets it go on."""
-        return not self._go.is_set()
-
     def news(self, timeout_s: float) -> dict[str, Any] | None:
         """What is new since the last call; None if nothing is within the time."""
         if not self._news.wait(timeout_s):

@@ -104,11 +104,6 @@ def write_text(file: FilePath, text: str, name: str | None = None) -> Correction
     return held
 
 
-def write_corrections(file: FilePath, corrections: Corrections) -> None:
-    """Write a file of corrections anew, with nothing else in it."""
-    write_text(file, as_toml(corrections))
-
-
 # reading
 
 

@@ -39,11 +39,6 @@ class ToolHeight:
     top_mm: float | None = None
 
     @property
-    def raised_mm(self) -> float:
-        """Where Z stands."""
-        return self.z_mm if self.top_mm is None else max(self.z_mm, self.top_mm)
-
-    @property
     def left_mm(self) -> float:
         """How much of the slope is left, mm."""
         return 0.0 if self.entry is None else self.entry.length_mm - self.come_mm
