@@ -22,6 +22,9 @@ from morfax.tracer.drawing.blocks import Blocks
 ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
 SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shadow
+# light falls off over a sheet, by ink's whole contrast beneath a lamp; behind a shape's edge, blurred by a
+# stroke's width, the paper is bright again within three of these
+BESIDE_SHAPE_MM = 18.0
 REDUCED_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least
 
 Levels = NDArray[np.float32]
@@ -74,14 +77,16 @@ class Paper:
         return np.asarray(large[rows, : self.columns], np.float32)
 
     def shapes(self, contrast: float) -> NDArray[np.bool_]:
-        """Where filled shapes broader than a stroke are, and about them, on the reduced picture.
+        """Where the edges of filled shapes broader than a stroke are, and about them, on the reduced picture.
 
-        There the paper is nearly as dark as ink of a contrast.
+        There the paper is nearly as dark as ink of a contrast, and close by it is bright.
         """
-        away = self.reduced - self.reduced.min()
-        if self.is_light:
-            away = self.reduced.max() - self.reduced
-        dark = (away > SHAPE * contrast).view(np.uint8)
+        level = -self.reduced if self.is_light else self.reduced
+        if float(level.max() - level.min()) <= SHAPE * contrast:
+            return np.zeros(level.shape, bool)
+        beside = 2 * round(BESIDE_SHAPE_MM / self.pitch_mm) + 1
+        brightest = cv2.erode(level, np.ones((beside, beside), np.uint8))
+        dark = (level - brightest > SHAPE * contrast).view(np.uint8)
         grown = cv2.dilate(dark, _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
         return np.asarray(grown, bool)
 

@@ -360,3 +360,26 @@ def test_without_edge_the_rim_of_a_filled_shape_is_known(tmp_path: Path, light: 
         light=light,
     )
     assert not Sheet.of(Drawing.open(ring)).are_solid.any()
+
+
+@pytest.mark.parametrize("light", [False, True])
+def test_where_light_falls_off_a_line_is_no_rim_and_a_filled_shape_is(
+    tmp_path: Path, light: bool
+) -> None:
+    """Beneath a lamp the paper is darker at one side by more than the ink of a pencil.
+
+    (Fails with the brightest of all the paper, in `Paper.shapes`, for the brightest close by.)
+    """
+    columns = round(180 / 25.4 * DPI)
+    across, up = np.meshgrid((np.arange(columns) + 0.5) * 25.4 / DPI, np.arange(400) * 25.4 / DPI)
+    ring_mm = np.abs(np.hypot(across - 140, up - 17) - 12)
+    inside_mm = np.hypot(across - 100, up - 17) - 12
+    pixel_mm = 25.4 / DPI
+    ink = np.clip(0.5 + (0.3 - ring_mm) / pixel_mm, 0, 1)
+    filled_in = np.clip(0.5 - inside_mm / pixel_mm, 0, 1)
+    grey = (240 - 110 * across / 180) * (1 - 0.45 * np.maximum(ink, filled_in))
+    file = tmp_path / "lamp.png"
+    Image.fromarray((255 - grey if light else grey).astype(np.uint8)).save(file, dpi=(DPI, DPI))
+    sheet = Sheet.of(Drawing.open(file))
+    assert not sheet.is_solid_at(np.array([152.0, 34.0 - 17]))
+    assert sheet.is_solid_at(np.array([112.0, 34.0 - 17]))
