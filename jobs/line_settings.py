@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from morfax.tracer.following.direction import Direction
 
 Place = tuple[float, float]  # mm on the sheet
+# of a letter's height: its strokes stand a third of that apart, and between them a cutter must have room
+LETTER_CUTTERS = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +32,7 @@ class LineSettings:
     # where lines begin, and a place that way along them; without `lines` they pick the lines
     arrows_mm: tuple[tuple[Place, Place], ...] = ()
     order: tuple[int, ...] = ()  # numbers of the lines that are cut first, in this order
-    # of all the ink: lettering as high is followed, 0 all of it, infinite none; None: all, and nobody asked
+    # of contours or all the ink: lettering as high is followed, 0 all of it, infinite none; None: not set
     lettering_mm: float | None = None
 
     @property
@@ -50,11 +52,20 @@ class LineSettings:
             return (self.start_mm, *self.more_starts_mm)
         return () if self.lines is not None else tuple(place for place, _ in self.arrows_mm)
 
+    def letters_from_mm(self, cutter_mm: float) -> float:
+        """How high lettering must be to be followed: as somebody says, or, where a cutter runs round
+        contours, high enough for it to run between the strokes of a letter.
+        """
+        if self.lettering_mm is not None:
+            return self.lettering_mm
+        return LETTER_CUTTERS * cutter_mm if self.lines in ("contours", "outer") else 0.0
+
     def _check_lettering(self) -> None:
-        """Raise WrongUse for lettering where not all the ink is asked for."""
-        if self.lettering_mm is not None and self.lines != "all":
+        """Raise WrongUse for lettering where one line, or some by their numbers, are asked for."""
+        if self.lettering_mm is not None and not isinstance(self.lines, str):
             raise WrongUse(
-                "--lettering says what --lines all does with letters; give --lines all too, or leave it out"
+                "--lettering says what --lines all, contours and outer do with letters; give one of these "
+                "too, or leave it out"
             )
 
     def check(self) -> None:

@@ -5,9 +5,11 @@ Signals in: the traced lines. Signals out: texts, each with what to do.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from morfax.jobs.numbered import numbered
 from morfax.jobs.remarks_on_lines import of_letters
 
 if TYPE_CHECKING:
@@ -135,9 +137,15 @@ def _of_unread(trace: Trace) -> Iterator[str]:
 
 
 def _of_letters(trace: Trace) -> Iterator[str]:
-    """Contours that are likely letters."""
-    others = sorted({line.number for line in trace.lines} - set(trace.letters))
-    yield from of_letters(list(trace.letters), others)
+    """Contours that are likely letters, followed or left out."""
+    if trace.letters_out:
+        high_mm = trace.operator.letters_from_mm
+        low = f" lower than {high_mm:g} mm" if math.isfinite(high_mm) else ""
+        yield (
+            f"{numbered('line', list(trace.letters_out))} likely lettering{low}, and left out; --lettering "
+            "all follows it"
+        )
+    yield from of_letters(list(trace.letters))
 
 
 def _of_rest(line: Line) -> Iterator[str]:

@@ -61,20 +61,18 @@ def _of_left_out(seen: Survey) -> Iterator[str]:
 
 def _of_lettering(seen: Survey) -> Iterator[str]:
     """Likely letters that --lines contours traces."""
-    traced = [e.number for e in seen.entries if e.is_lettering and e.is_in_contours]
-    others = [e.number for e in seen.entries if e.is_in_contours and not e.is_lettering]
-    yield from of_letters(traced, others)
+    yield from of_letters(
+        [e.number for e in seen.entries if e.is_lettering and e.is_in_contours]
+    )
 
 
-def of_letters(letters: list[int], others: list[int]) -> Iterator[str]:
-    """Contours that are likely letters, and what leaves them out: the numbers of all others."""
+def of_letters(letters: list[int]) -> Iterator[str]:
+    """Contours that are likely letters, and what leaves them out."""
     if letters:
-        give = (
-            f"; --lines {','.join(map(str, others))} leaves them out"
-            if 0 < len(others) < 30
-            else ""
+        yield (
+            f"{numbered('line', letters)} likely lettering, and --lines contours traces them; "
+            "--lettering none leaves them out"
         )
-        yield f"{numbered('line', letters)} likely lettering, and --lines contours traces them{give}"
 
 
 def _of_solids(seen: Survey) -> Iterator[str]:

@@ -252,9 +252,9 @@ class TraceSettings:
         marks = "on" if program.marks == "auto" and for_marks else program.marks
         work = self._work(card)
         arrows = tuple(Arrow(*each) for each in line.arrows_mm)
-        return Operator(
-            work, card, panel, line.reference_mm, line.direction, marks, arrows, line.order
-        )
+        where = line.reference_mm, line.direction
+        letters_from_mm = line.letters_from_mm(self.tool.cutter_mm or 0.0)
+        return Operator(work, card, panel, *where, marks, arrows, line.order, letters_from_mm)
 
     def _filed(self) -> dict[str, float]:
         """Settings of the head in the file, by name."""

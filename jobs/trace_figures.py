@@ -32,6 +32,7 @@ def lines(trace: Trace, *, on_edges: bool = False) -> dict[str, Any]:
         "idle_mm": trace.idle_mm,
         "patches_left_out": trace.left_out,
         "ink_left_out_mm": trace.left_out_mm,
+        **({"lettering_left_out": list(trace.letters_out)} if trace.letters_out else {}),
         **ink(trace),
         "lines": rows,
     }

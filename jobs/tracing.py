@@ -200,7 +200,6 @@ class Tracing:
                 self.of_head,
                 self.operator,
                 tell,
-                line.lettering_mm or 0.0,
             )
 
 

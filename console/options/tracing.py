@@ -62,8 +62,9 @@ LETTERING = option(
     "--lettering",
     "lettering_mm",
     type=LETTERS,
-    help="With --lines all: which letters the head follows: all, none, or those as high as 2mm, say, and "
-    "higher. The figures list what is left out.  [default: all]",
+    help="With --lines all, contours or outer: which letters the head follows: all, none, or those as high "
+    "as 2mm, say, and higher. What is left out is told.  [default: all; of contours with --cutter those as "
+    "high as three cutters]",
 )
 LINE_WIDTH = option(
     "Line",

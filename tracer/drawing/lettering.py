@@ -46,6 +46,12 @@ def lettering(sheet: Sheet) -> set[int]:
     return letters
 
 
+def lower_than(sheet: Sheet, letters: set[int], high_mm: float) -> set[int]:
+    """The letters that are lower than a height."""
+    pitch_mm, boxes = sheet.drawing.pitch_mm, sheet.patches.boxes
+    return {n for n in letters if float(boxes[n, 1] - boxes[n, 0]) * pitch_mm < high_mm}
+
+
 def _rows(boxes_mm: Array) -> NDArray[np.int32]:
     """The row in which each of some boxes (top, bottom, left, right; downwards) stands."""
     top, bottom, left, right = boxes_mm.T

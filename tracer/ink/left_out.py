@@ -13,7 +13,6 @@ other, are lines.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal, NamedTuple
@@ -25,14 +24,13 @@ from numpy.typing import NDArray
 from morfax.tracer.drawing.components import FEW_PX, Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import INK
-from morfax.tracer.drawing.lettering import lettering
+from morfax.tracer.drawing.lettering import lettering, lower_than
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.drawing.strokes import Sheet
 
 SOFTENED_PX = 0.7  # as patches are found (see `drawing.strokes`)
 HALO_PX = 8  # beside a strip: softening looks no further
 RIM_PX = 1  # of a solid area beyond the place where it is half as dark
-FOLLOWED_MM, NONE_MM = 0.0, math.inf  # all lettering is followed, or none
 
 
 Box = tuple[float, float, float, float]  # left, bottom, right, top, mm
@@ -68,18 +66,16 @@ class InkLeft(NamedTuple):
     solid: Mask
 
 
-def ink_left(sheet: Sheet, letters_from_mm: float = FOLLOWED_MM) -> InkLeft:
+def ink_left(sheet: Sheet, letters_from_mm: float = 0.0) -> InkLeft:
     """The ink of lines; lettering as high as is given, or higher, is lines."""
     ink = _ink(sheet.drawing)
     rows, columns = ink.shape
     # 1. lettering, and the rims of filled shapes
     patches, pitch_mm = sheet.patches, sheet.drawing.pitch_mm
-    is_lettering = np.zeros(patches.count, bool)
-    is_lettering[sorted(lettering(sheet))] = True
-    letters = np.zeros(patches.count, bool)
-    if is_lettering.any():
-        high_mm = (patches.boxes[:, 1] - patches.boxes[:, 0]) * pitch_mm
-        letters = is_lettering & (high_mm < letters_from_mm)
+    is_lettering, letters = np.zeros(patches.count, bool), np.zeros(patches.count, bool)
+    found = lettering(sheet)
+    is_lettering[sorted(found)] = True
+    letters[sorted(lower_than(sheet, found, letters_from_mm))] = True
     gone = letters | sheet.are_solid
     if gone.any():
         ink &= 1 - patches.painted(gone, 0, rows, 0, columns)

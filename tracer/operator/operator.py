@@ -64,6 +64,8 @@ class Operator:
     marks: Marks = "auto"  # whether ticks and dots are marks; auto: where a program is drawn
     arrows: tuple[Arrow, ...] = ()  # where lines begin, and which way
     order: tuple[int, ...] = ()  # numbers of the lines that are cut first, in this order
+    # lettering that is lower is left out where contours, or all the ink, are asked for; 0: none is
+    letters_from_mm: float = 0.0
 
     @property
     def sides(self) -> tuple[Side | None, ...]:

@@ -49,7 +49,7 @@ class Trace:
     the strokes run along, where all of it was asked for. `unread`: ticks and dots that were taken for ink.
     `unexplained`: places at which closed lines are not what is drawn. `enlarged`: how many times at most
     the outlines of solid areas among lines were; `notes` on these are for the operator. `letters`: numbers of
-    contours that are likely lettering.
+    contours that are likely lettering; `letters_out`: of those that were left out as too low.
     """
 
     lines: tuple[Line, ...]
@@ -64,6 +64,7 @@ class Trace:
     enlarged: int = 1
     notes: tuple[str, ...] = ()
     letters: tuple[int, ...] = ()
+    letters_out: tuple[int, ...] = ()
 
     @property
     def work(self) -> Work:

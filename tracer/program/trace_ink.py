@@ -22,7 +22,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.chains import Junctions, solved
 from morfax.tracer.ink.ledger import balance
-from morfax.tracer.ink.left_out import FOLLOWED_MM, InkLeft, ink_left
+from morfax.tracer.ink.left_out import InkLeft, ink_left
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
@@ -39,9 +39,8 @@ def trace_ink(
     settings: Settings | None = None,
     operator: Operator | None = None,
     progress: HeadProgress | None = None,
-    letters_from_mm: float = FOLLOWED_MM,
 ) -> Trace:
-    """Follow every stretch of line of a drawing, each once; lettering if it is as high as is given.
+    """Follow every stretch of line of a drawing, each once; lettering if it is as high as the operator says.
 
     `progress` hears how far the head has come and the length of all the ink, mm. Raises LineFault if the head
     can be put down nowhere, DrawingFault for silhouettes that have no edges.
@@ -49,7 +48,7 @@ def trace_ink(
     settings, operator = settings or Settings(), operator or Operator()
     if drawing.both and not has_lines(drawing):
         return of_silhouettes(drawing, settings, operator, progress)
-    left = ink_left(drawing.sheet, letters_from_mm)
+    left = ink_left(drawing.sheet, operator.letters_from_mm)
     trace = _of_strokes(drawing.sheet, left, settings, progress)
     if drawing.both:
         trace = with_outlines(trace, drawing, left, settings)

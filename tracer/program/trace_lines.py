@@ -23,7 +23,7 @@ from morfax.motion import nesting
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.lettering import lettering
+from morfax.tracer.drawing.lettering import lettering, lower_than
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
@@ -52,13 +52,15 @@ SAME = 0.8  # of a line's way along another: they are one line; by trial
 @dataclass(frozen=True, slots=True)
 class FoundLines:
     """Lines that were followed, not yet in order; how many patches are no lines, and mm of ink that is joined
-    to lines, but none. `patch_of` has the patch's number of each line that is joined to another.
+    to lines, but none. `patch_of` has the patch's number of each line that is joined to another; in
+    `letters_out` are the numbers of lettering that is lower than the operator wants.
     """
 
     lines: list[Line]
     left_out: int
     left_out_mm: float
     patch_of: dict[int, int] = field(default_factory=dict)
+    letters_out: tuple[int, ...] = ()
 
 
 def trace_lines(
@@ -87,6 +89,7 @@ def trace_lines(
         unread=unread,
         unexplained=unexplained(setup, lines) if which == "contours" else (),
         letters=_letters(setup.sheet, lines) if which == "contours" else (),
+        letters_out=found.letters_out,
     )
 
 
@@ -139,6 +142,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     # 1. one line of each patch; only a line joined to another has a number beyond patches and dots
     numbered = tuple(n for n in numbers if n <= patches) if numbers else which
     asked, left_out = selection.plan(setup.sheet, "contours" if beyond else numbered)
+    asked, letters_out = _high_enough(setup, asked) if not numbers else (asked, ())
     lines, letters = one_of_each(setup, asked, which)
     # 2. the other lines of those patches
     joined, left_mm = _joined(setup, asked, lines)
@@ -153,7 +157,21 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     lines += holes
     if beyond or (holes and numbers):
         lines = _of_numbers(lines, numbers)
-    return FoundLines(lines, left_out + letters - len(holes), left_mm, patch_of)
+    return FoundLines(lines, left_out + letters - len(holes), left_mm, patch_of, letters_out)
+
+
+def _high_enough(setup: Setup, asked: list[Contour]) -> tuple[list[Contour], tuple[int, ...]]:
+    """The contours without lettering lower than the operator wants, and the numbers of that lettering; all,
+    if nothing else is on the sheet.
+    """
+    from_mm = setup.operator.letters_from_mm
+    if from_mm <= 0:
+        return asked, ()
+    low = lower_than(setup.sheet, lettering(setup.sheet), from_mm)
+    kept = [contour for contour in asked if contour.stroke.patch not in low]
+    if not kept:
+        return asked, ()
+    return kept, tuple(sorted({c.number for c in asked} - {c.number for c in kept}))
 
 
 def _dots_asked(setup: Setup, which: Which, are_numbered: bool) -> list[Line]:

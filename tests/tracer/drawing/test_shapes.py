@@ -371,7 +371,9 @@ def test_where_light_falls_off_a_line_is_no_rim_and_a_filled_shape_is(
     (Fails with the brightest of all the paper, in `Paper.shapes`, for the brightest close by.)
     """
     columns = round(180 / 25.4 * DPI)
-    across, up = np.meshgrid((np.arange(columns) + 0.5) * 25.4 / DPI, np.arange(400) * 25.4 / DPI)
+    across, up = np.meshgrid(
+        (np.arange(columns) + 0.5) * 25.4 / DPI, np.arange(400) * 25.4 / DPI
+    )
     ring_mm = np.abs(np.hypot(across - 140, up - 17) - 12)
     inside_mm = np.hypot(across - 100, up - 17) - 12
     pixel_mm = 25.4 / DPI

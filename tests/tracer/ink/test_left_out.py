@@ -10,6 +10,7 @@ import pytest
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.ink.hatching import hatching
+from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import MM_PER_INCH, WIDTH_MM, Points, arc, inked, polyline
 
@@ -101,7 +102,7 @@ def test_letters_are_followed_or_left_out_by_their_height() -> None:
     drawing = inked(FRAME, *word(10, 14, 3.0), *word(10, 24, 6.0), width_mm=0.3, seed=1)
     lengths_mm = []
     for letters_from_mm in (0.0, 4.5, math.inf):
-        run = trace_ink(drawing, letters_from_mm=letters_from_mm)
+        run = trace_ink(drawing, operator=Operator(letters_from_mm=letters_from_mm))
         assert run.ink is not None
         lengths_mm.append((len(run.lines), run.ink.lettering_mm, run.ink.letters_mm))
         assert run.ink.followed_share > 0.99
