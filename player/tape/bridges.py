@@ -61,6 +61,8 @@ AGREED_CYCLES = ALLOWED_CYCLES / 2
 SPEED_NOISE = 0.26
 # ... and of a misfit, which bends the end of a side's parabola; estimated. A tenth for what is told late
 SPEED_MISFIT, SHARPER = 12 / SIDE_ROWS, 1.1
+# three samples of 48 kHz that are lost on all tracks, or there twice, move the time by 0.375 row, and no path
+SLIPPED_ROWS = 0.4
 # of the level, from one side to the other: one that wavers by 1 dB at 5 Hz changes by so much in 20 ms
 LEVEL_STEP = 0.08
 TURNED_ROWS = 3.0  # beside the gap: half of what the band filter blurs
@@ -152,11 +154,6 @@ def turned(before: Side, after: Side, rows: int, acceleration: float) -> Bridge 
     return Bridge(travel + off, off, reach, abs(off) / 2, misfit, turn)
 
 
-def longest_s(acceleration_mm_s2: float, cycles_per_mm: float) -> float:
-    """The longest gap with a certain count if both sides agree, with filter, s: A T² / 4 = 0.9 cycle."""
-    return float(np.sqrt(4 * (1 - COUNT_MARGIN) / (acceleration_mm_s2 * cycles_per_mm)))
-
-
 def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
     """The rows within a gap: a cubic with the place and speed of both sides."""
     u = np.arange(1, rows) / rows
@@ -223,11 +220,17 @@ class Gap:
 
     @property
     def is_foreign(self) -> bool:
-        """Whether a side is not the program's own: of another level, or of a speed not gained here."""
-        gained = abs(self.after.speed - self.before.speed)
+        """Whether a side is not the program's own: of another level, of a speed not gained here, or at a
+        place not reached from the other.
+        """
+        before, after, rows = self.before, self.after, self.rows
+        hardest = SHARPER * self.bound.acceleration
         doubt = SPEED_NOISE * self.noise + SPEED_MISFIT * self.bridge.misfit
-        most = SHARPER * self.bound.acceleration * self.rows + doubt
-        return gained > most or self.level_step > LEVEL_STEP
+        gained = abs(after.speed - before.speed)
+        swerve = abs(after.place - before.place - rows * (before.speed + after.speed) / 2)
+        slip = SLIPPED_ROWS * max(abs(before.speed), abs(after.speed))
+        far = swerve > hardest * rows**2 / 4 + doubt * rows / 2 + self.noise + slip
+        return far or gained > hardest * rows + doubt or self.level_step > LEVEL_STEP
 
     @property
     def astray(self) -> bool:

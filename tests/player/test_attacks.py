@@ -62,6 +62,15 @@ def test_a_tone_of_which_only_one_end_is_seen(earlier: tuple[Bench, Bench], seed
     assert "Z was lost for 1.8 ms" in str(verdict.fault)
 
 
+def test_a_stretch_backwards_is_no_side_of_a_gap(benches: tuple[Bench, Bench]) -> None:
+    """In 10 ms that run backwards Z is as fast as before, and 0.19 cycle beside its place: that was ridden
+    over 1.8 ms before, and 0.22 cycle off.
+    """
+    kind = next(kind for kind in KINDS if kind.name == "a stretch of it backwards")
+    verdict = benches[0].tried(kind, 500924)
+    assert verdict.keeps(EITHER), verdict.error_cycles
+
+
 @pytest.mark.parametrize("cut", [26, 46])
 def test_a_start_cut_within_the_first_symbol(benches: tuple[Bench, Bench], cut: int) -> None:
     """The first frame of the check signal is found and cannot be read whole; the next one can."""
