@@ -28,7 +28,9 @@ from morfax.player.tape.bridges import Bound, Gap
 from morfax.player.tape.discriminator import Phases
 
 COUNT_CYCLES = 0.25  # as the end is checked
-BESIDE = 1 / 3  # of a symbol: half of the window through which a symbol is seen is a quarter
+# of a symbol: half of the window through which a symbol is seen is a quarter, and what the filter before it
+# reaches further; one of 1 000 dropouts of 50 ms was weak a third of a symbol beside its gap
+BESIDE = 0.4
 HALF_CYCLE = 0.5  # less travel than this cannot be another count
 
 
