@@ -5,6 +5,9 @@ Signals: a Sheet in; out the patches that are likely letters.
     ╭╮ ┌╮ ╶┐ ┌╴       as high as one another, close together side by side, three or more,
     ╰╯ ├┴ ╶┤ └┐       and unlike one another: holes in a row are alike
 
+    ╭╮ ╶┐             two are letters too where others are as high: the 24 beside R10
+    ╶╯ ╶┤
+
 Source: our own. Questions: what is written with joined letters is one patch, and is not found.
 """
 
@@ -25,6 +28,8 @@ APART = 1.0  # mean heights from letter to letter, at most
 BESIDE = 0.5  # of the lower letter's height stands beside the other
 FEWEST = 3  # letters in a row
 UNLIKE = 0.15  # the lengths of letters differ by more than this share of their mean
+# of two: each is so much narrower than high (a hole is round), and as high, by this share, as a letter
+NARROW, AS_HIGH = 0.85, 0.06
 
 
 def lettering(sheet: Sheet) -> set[int]:
@@ -36,13 +41,19 @@ def lettering(sheet: Sheet) -> set[int]:
     patches = np.flatnonzero(sized & ~sheet.are_solid)
     if len(patches) < FEWEST:
         return set()
-    rows = _rows(boxes_mm[patches])
+    numbers = _rows(boxes_mm[patches])
+    rows = [patches[numbers == row] for row in range(int(numbers.max()) + 1)]
     letters = set[int]()
-    for row in range(int(rows.max()) + 1):
-        own = patches[rows == row]
+    for own in rows:
         lengths_mm = sheet.lengths_mm[own]
         if len(own) >= FEWEST and lengths_mm.std() > UNLIKE * lengths_mm.mean():
-            letters |= {int(patch) for patch in own}
+            letters |= set(own.tolist())
+    high_mm = heights_mm[sorted(letters)]
+    for own in rows:
+        is_narrow = wide_mm[own] < NARROW * heights_mm[own]
+        as_high = np.abs(heights_mm[own][:, None] / high_mm - 1) < AS_HIGH
+        if len(own) == FEWEST - 1 and is_narrow.all() and as_high.any(axis=1).all():
+            letters |= set(own.tolist())
     return letters
 
 
