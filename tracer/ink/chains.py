@@ -18,9 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.doubled import BROADER, TWO
+from morfax.tracer.ink.lifted import FARTHEST_WIDTHS, end_in_ink_mm
 from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
@@ -28,12 +30,6 @@ from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
 
 # Chosen by trial on drawings of nets.
-FOOT_WIDTHS = 4.0  # as far ahead a line that ends on others is sought
-ON_IT = 0.5  # widths: its straight way on has come to them
-FOOT_STEP_MM = 0.01
-POKES_WIDTHS = 5.0  # the end of a line that pokes out further has a stretch of its own
-BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
-AWAY_WIDTHS = 8.0  # along the other lines at a junction, from where they are clean
 # widths: legs of a wider junction are taken from further off, by a share of its size, and longer
 WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
 # of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it
@@ -254,9 +250,11 @@ class Junctions:
         there, leg = self.at(side), self.at(side).leg(side)
         view = self.net.lines[side.line].runs[-1 if side.last else 0].view
         if there.pairs:
-            foot = self._foot_mm(there, leg)
-            if foot is not None:
-                return _lifted_mm(there, leg, end_of(view, leg), foot) or foot
+            others = [self._near(other) for other in there.sides if other != side]
+            middles_mm = np.vstack([there.crossing.passing_mm, *others])
+            lifted = end_in_ink_mm(view, leg, middles_mm)
+            if lifted is not None:
+                return lifted
         if there.is_free or len(there.sides) == 1:
             lifted = end_of(view, leg)
             return max(0.0, lifted or 0.0)
@@ -265,30 +263,8 @@ class Junctions:
         inked_mm = reach_of_ink(view, leg, max(on_mm, 0.0) + leg.width_mm)
         return max(0.0, on_mm if inked_mm is None else min(on_mm, inked_mm))
 
-    def _foot_mm(self, there: Junction, leg: Leg) -> float | None:
-        """How far from its clean end a leg comes onto the lines that pass, mm; None if it does not."""
-        ahead_mm = np.arange(0.0, FOOT_WIDTHS * leg.width_mm + 1.0, FOOT_STEP_MM)
-        places = leg.at(ahead_mm)
-        away, _ = there.crossing.passing.nearest(places)
-        come = np.flatnonzero(away < ON_IT * leg.width_mm)
-        if not len(come):
-            return None
-        near = away[come[0] : come[0] + round(2 * leg.width_mm / FOOT_STEP_MM)]
-        return float(ahead_mm[come[0] + int(np.argmin(near))])
-
-
-def _lifted_mm(there: Junction, leg: Leg, end_mm: float | None, foot_mm: float) -> float | None:
-    """How far from its clean end a leg ends whose ink pokes out on the far side of the lines that pass, mm.
-
-    None if what lies ahead is the ink of the others. `end_mm` is where all of the ink ahead ends, `foot_mm`
-    where the leg comes onto the others.
-    """
-    if end_mm is None or not 0 < end_mm - foot_mm < POKES_WIDTHS * leg.width_mm:
-        return None
-    if 0.5 * abs(leg.bend_per_mm) * end_mm**2 > BENT_WIDTHS * leg.width_mm:
-        return None
-    place, back_mm = leg.at(end_mm), np.arange(0.0, AWAY_WIDTHS * leg.width_mm, FOOT_STEP_MM)
-    others = np.vstack([other.at(-back_mm) for other in there.legs if other is not leg])
-    away_mm = np.hypot(*(others - place).T).min()
-    passing_mm, _ = there.crossing.passing.nearest(place)
-    return end_mm if min(away_mm, passing_mm[0]) > ON_IT * leg.width_mm else None
+    def _near(self, side: Side) -> Array:
+        """Places that were felt along a line near one of its ends, (n, 2) mm."""
+        run = self.net.lines[side.line].runs[-1 if side.last else 0]
+        count = math.ceil(FARTHEST_WIDTHS * run.view.width_mm / run.view.step_mm)
+        return run.places_mm[-count:] if side.last else run.places_mm[:count]

@@ -83,7 +83,12 @@ class Crossing:
     @cached_property
     def passing(self) -> Neighbours:
         """Places of the lines that pass, from clean end to clean end."""
-        return Neighbours(np.vstack([self._way(pair) for pair in self.pairs]))
+        return Neighbours(self.passing_mm)
+
+    @cached_property
+    def passing_mm(self) -> Array:
+        """These places, (n, 2) mm."""
+        return np.vstack([self._way(pair) for pair in self.pairs])
 
     def covers(self, inner: Inner) -> bool:
         """Whether ways through it go along a stretch within it."""

@@ -83,7 +83,7 @@ class Sketch:
             _draw(tangle, leg.at(LEG_MM if k else -LEG_MM), known)
         # 2. the pen
         width = float(np.median([leg.width_mm for leg in tangle.legs]))
-        softness = _softness(view, tangle.legs[0])
+        softness = softness_of(view, tangle.legs[0])
         ink = pen.Ink(tangle.places_mm, tangle.darkness, known, 0.5 * width, softness)
         return cls(view, tangle, np.array(poses), ink, tangle.area_mm2 / len(known) / width**2)
 
@@ -238,7 +238,7 @@ def _draw(tangle: Tangle, way: Array, distance_mm: Array) -> None:
     pen.away(tangle.places_mm, lines, len(way) - 1, distance_mm)
 
 
-def _softness(view: View, leg: Leg) -> float:
+def softness_of(view: View, leg: Leg) -> float:
     """Softness of the line's edges, mm: that with which the pen's ink is most like the leg's."""
     # 1. the leg's darkness across it
     stations = leg.seen[::STATIONS_EVERY, :2]

@@ -91,6 +91,25 @@ def test_a_stroke_that_ends_just_beyond_another_goes_on_to_its_end(
     )  # it was as far as it pokes out
 
 
+@pytest.mark.parametrize(
+    ("short_mm", "across_deg"), [(0.45, 75), (0.4, 40), (0.4, 15), (0.3, 10)]
+)
+def test_a_stroke_that_ends_in_the_ink_of_another_ends_where_its_pen_was_lifted(
+    short_mm: float, across_deg: float
+) -> None:
+    """Its end is so far from the middle of the other line, on the near side, that its pen's round shows."""
+    across = np.radians(across_deg)
+    way = np.array([np.cos(across), np.sin(across)])
+    end = np.array([21, 20]) - short_mm / np.sin(across) * way
+    strokes = all_of(
+        BAR, polyline((end[0] - 14 * way[0], end[1] - 14 * way[1]), (end[0], end[1]))
+    )
+    short = min(strokes, key=lambda stroke: stroke.length_mm)
+    beyond_mm = (short.xy_mm[[0, -1]] - end) @ way
+    # a quarter of the round that shows, along the line
+    assert abs(beyond_mm).min() < 0.25 * WIDTH_MM
+
+
 def test_white_paper_is_not_crossed_for_struck_ink() -> None:
     """Two dashes 1.4 mm apart: nearer than a struck line may be wide, and wider than the allowed gap.
 

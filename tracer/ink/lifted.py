@@ -1,0 +1,142 @@
+"""Where the pen was lifted in the ink of other lines: told by the ink that all the pens would have left.
+
+Signals: the leg of a line that ends at a junction, places of the others there (n, 2) mm, and the view of the
+line in; how far beyond the leg's clean end the line ends out, mm.
+
+    ══════════════════════      the other line; its rim bulges as far as the ending line stands out of its ink
+      ╲╲▁▁
+         ╲╲                     the line that ends; the round of its pen shows beside it, beyond, or nowhere
+
+For each end that the line may have, the darkness of its pen and of the others' together is held against the
+sheet's: a place is as dark as the nearest of the pens leaves it. All ends that explain the ink about as well
+as the best are possible; within the other's ink an end leaves no mark. Of those the one nearest to the middle
+of the other line is taken.
+
+Source: our own; the pen is that of `tangles.pen`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
+from morfax.motion.neighbours import Neighbours
+from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.pen import ink_at
+from morfax.tracer.tangles.sketch import softness_of
+
+# All limits below were chosen by trial on drawings of two lines and of nets.
+FOOT_WIDTHS, FOOT_MM = 4.0, 1.0  # as far ahead a line that bends ends on others; both together
+FARTHEST_WIDTHS = (
+    30.0  # as far where it comes onto another at a small angle: 15 widths at 4 degrees
+)
+POKES_WIDTHS = 5.0  # the end of a line that pokes out further has a stretch of its own
+ON_IT = 0.5  # widths: its straight way on has come to the others
+BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
+STEP_MM = 0.01  # of ends that are tried
+ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
+FEWEST = 8  # stations of a leg tell how soft its edges are
+EVERY_PX = 0.7  # a place is looked at
+DARKEST = 1.05  # of the line's darkness: a place counts for no more
+# of the line's darkness: no pen leaves its ink more exactly; and deviations, for places share what they see
+INEXACT, DEVIATIONS = 0.05, 5.0
+PAPER = 1.0  # place that is paper, and inked by the line: it does not go on
+
+
+def end_in_ink_mm(view: View, leg: Leg, middles_mm: Array) -> float | None:
+    """How far beyond its leg's clean end a line ends in the ink of the others, mm.
+
+    `middles_mm` are places of these, (n, 2), as far as `FARTHEST_WIDTHS` from the junction. None if the line
+    does not come to them.
+    """
+    width_mm = leg.width_mm
+    # 1. where the line comes onto the others
+    ahead_mm = np.arange(0.0, FARTHEST_WIDTHS * width_mm, STEP_MM)
+    away_mm, _ = Neighbours(middles_mm).nearest(leg.at(ahead_mm))
+    come = np.flatnonzero(away_mm < ON_IT * width_mm)
+    if not len(come):
+        return None
+    near_mm = away_mm[come[0] : come[0] + round(2 * width_mm / STEP_MM)]
+    foot_mm = float(ahead_mm[come[0] + int(np.argmin(near_mm))])
+    # 2. up to where it may end
+    out = np.flatnonzero(away_mm[come[0] :] > ON_IT * width_mm)
+    beyond = come[0] + (int(out[0]) if len(out) else len(away_mm))
+    ends_mm = ahead_mm[: beyond + round(POKES_WIDTHS * width_mm / STEP_MM)]
+    is_bent = 0.5 * abs(leg.bend_per_mm) * ends_mm**2 > BENT_WIDTHS * width_mm
+    if is_bent.any():
+        ends_mm = ends_mm[: int(np.argmax(is_bent))]
+    if not len(ends_mm) or len(leg.seen) < FEWEST:
+        return foot_mm if foot_mm < FOOT_WIDTHS * width_mm + FOOT_MM else None
+    # 3. the ends that explain the ink
+    low_mm, high_mm = _possible(view, leg, middles_mm, ends_mm)
+    return min(max(foot_mm, low_mm), high_mm)
+
+
+def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[float, float]:
+    """The nearest and the farthest of some ends that explain the ink as well as the best, mm."""
+    # 1. places along the line, in its own directions
+    every_mm, beside_mm = EVERY_PX * view.pitch_mm, ASIDE_WIDTHS * leg.width_mm
+    s, u = (
+        grid.ravel()
+        for grid in np.meshgrid(
+            np.arange(0.0, ends_mm[-1] + leg.width_mm, every_mm),
+            np.arange(-beside_mm, beside_mm + every_mm, every_mm),
+        )
+    )
+    heading = leg.heading_rad + np.arctan(leg.bend_per_mm * s)
+    places = leg.at(s) + u[:, None] * np.column_stack([-np.sin(heading), np.cos(heading)])
+    # 2. what the sheet shows there, and how far the others are, in which direction
+    seen = np.minimum(view.darkness_along(places) / (2 * view.level), DARKEST)
+    softness_mm = softness_of(view, leg)
+    away_mm, nearest = Neighbours(middles_mm).nearest(places)
+    off = (places - middles_mm[nearest]) / np.maximum(away_mm, 1e-9)[:, None]
+    off_s = off[:, 0] * np.cos(heading) + off[:, 1] * np.sin(heading)
+    off_u = off[:, 1] * np.cos(heading) - off[:, 0] * np.sin(heading)
+    misfits = np.full(len(ends_mm), math.inf)
+    pen = 0.5 * leg.width_mm, softness_mm
+    _misfits(np.column_stack([s, u, away_mm, off_s, off_u, seen]), pen, ends_mm, misfits)
+    # 3. those that differ from the best by no more than places do
+    good = ends_mm[misfits < misfits.min() + (INEXACT * DEVIATIONS) ** 2]
+    return float(good[0]), float(good[-1])
+
+
+@njit(cache=True)
+def _misfits(places, pen, ends_mm, out):  # type: ignore[no-untyped-def]
+    """The sums of the squares of what is drawn less what is seen, for each end up to where the line would
+    cross paper.
+
+    Places: along the line, beside it, distance from the others, mm, the direction from them, in the line's
+    own, and what is seen; (n, 6). The pen: half its width, softness, mm.
+    """
+    half_mm, softness_mm = pen
+    least = math.inf
+    for n in range(len(ends_mm)):
+        total = 0.0
+        for k in range(len(places)):
+            beyond, aside = max(places[k, 0] - ends_mm[n], 0.0), places[k, 1]
+            away = math.hypot(beyond, aside)
+            paper = 1.0 - ink_at(away, half_mm, softness_mm)
+            other = 1.0 - ink_at(places[k, 2], half_mm, softness_mm)
+            alike = (beyond * places[k, 3] + aside * places[k, 4]) / max(away, 1e-9)
+            total += (1.0 - _bare(paper, other, alike) - places[k, 5]) ** 2
+        if total > least + PAPER:
+            return
+        least = min(least, total)
+        out[n] = total
+
+
+@njit(cache=True)
+def _bare(one, other, alike):  # type: ignore[no-untyped-def]
+    """How much paper shows where two pens leave some each; `alike` is the cosine between their rims.
+
+    Softened rims at right angles leave the product, rims on one side the lesser, rims that face each other
+    what their inks together leave.
+    """
+    product = one * other
+    if alike > 0:
+        return product + alike * (min(one, other) - product)
+    return product - alike * (max(one + other - 1.0, 0.0) - product)
