@@ -23,7 +23,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.doubled import BROADER, TWO
 from morfax.tracer.ink.lifted import FARTHEST_WIDTHS, end_in_ink_mm
-from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed
+from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed, without_waist
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.sensing.leg import Leg, turn
@@ -171,12 +171,16 @@ class Junctions:
         """Take the legs of wide junctions from further off, and longer: near to where two lines run together
         each has felt the other's rim.
         """
-        ends = dict[int, list[tuple[Side, Leg]]]()
+        at, ends = dict[int, list[Side]](), dict[int, list[tuple[Side, Leg]]]()
         for n, line in enumerate(self.net.lines):
             for last in (False, True):
-                ends.setdefault(line.junctions[last], []).append(
-                    (Side(n, last), end_leg(line, last))
-                )
+                at.setdefault(line.junctions[last], []).append(Side(n, last))
+        for number, sides in at.items():
+            for side in sides if len(sides) > 2 else ():
+                without_waist(self.net.lines[side.line], side.last)
+            ends[number] = [
+                (side, end_leg(self.net.lines[side.line], side.last)) for side in sides
+            ]
         for there in ends.values():
             places = np.array([leg.end_mm for _, leg in there])
             wide_mm = float(np.hypot(*np.ptp(places, axis=0))) if len(there) > 2 else 0.0

@@ -18,9 +18,10 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.motion.neighbours import pairs_within
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import LEAST_WIDTHS, strands
+from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS, strands
 from morfax.tracer.ink.felt import Parted
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
@@ -37,6 +38,7 @@ COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
 # the middle of a line that hangs together with nothing: a shorter one is a speck or a dot; the larger
 LEAST_MM, SPECK_WIDTHS = 0.7, 1.0
 TRIMMED_SHARE = 0.3  # of a run is left out at an end at most
+WAIST_WIDTHS, WAIST_RAD = 8.0, math.radians(20)  # a longer one, or one that turns more, is line
 FACING = math.radians(35)  # ends whose headings are so near to one line face each other
 ASIDE = 0.6  # widths: and miss each other by no more
 
@@ -207,6 +209,27 @@ def trimmed(line: FeltLine, last: bool, trim_mm: float, legs_mm: float) -> None:
     line.runs[k] = replace(
         kept, legs_mm=max(run.legs_mm, min(legs_mm, kept.length_mm)), _legs={}
     )
+
+
+def without_waist(line: FeltLine, last: bool) -> None:
+    """Leave out the run at an end of a line that is short, broader than the next, and straight before it.
+
+    There another line crosses the line's own and ends: the ink of both is nearly as narrow as one's, and its
+    middle is neither's.
+    """
+    while len(line.runs) > 1:
+        ends = line.runs[::-1] if last else line.runs
+        run, onward = ends[0], ends[1]
+        legs = (
+            (run.leg_in(), onward.leg_out()) if not last else (onward.leg_in(), run.leg_out())
+        )
+        is_straight = abs(turn(legs[0].heading_rad, legs[1].heading_rad)) < WAIST_RAD
+        is_short = run.length_mm < WAIST_WIDTHS * line.width_mm
+        is_broad = median(run.widths_mm) > BROADER * median(onward.widths_mm)
+        if not (is_straight and is_short and is_broad and len(onward) > len(run)):
+            return
+        line.runs = line.runs[:-1] if last else line.runs[1:]
+        line.parted = line.parted[:-1] if last else line.parted[1:]
 
 
 def _faces(one: Leg, other: Leg) -> bool:

@@ -92,12 +92,15 @@ def test_a_stroke_that_ends_just_beyond_another_goes_on_to_its_end(
 
 
 @pytest.mark.parametrize(
-    ("short_mm", "across_deg"), [(0.45, 75), (0.4, 40), (0.4, 15), (0.3, 10)]
+    ("short_mm", "across_deg"),
+    [(0.45, 75), (0.4, 40), (0.4, 15), (0.3, 10), (-0.35, 14), (-0.35, 12)],
 )
 def test_a_stroke_that_ends_in_the_ink_of_another_ends_where_its_pen_was_lifted(
     short_mm: float, across_deg: float
 ) -> None:
-    """Its end is so far from the middle of the other line, on the near side, that its pen's round shows."""
+    """Its end is so far from the middle of the other line, on the near side or on the far one, that its pen's
+    round shows.
+    """
     across = np.radians(across_deg)
     way = np.array([np.cos(across), np.sin(across)])
     end = np.array([21, 20]) - short_mm / np.sin(across) * way
@@ -108,6 +111,9 @@ def test_a_stroke_that_ends_in_the_ink_of_another_ends_where_its_pen_was_lifted(
     beyond_mm = (short.xy_mm[[0, -1]] - end) @ way
     # a quarter of the round that shows, along the line
     assert abs(beyond_mm).min() < 0.25 * WIDTH_MM
+    assert sorted(stroke.length_mm for stroke in strokes) == pytest.approx(
+        [14.0, 30.0], abs=0.3
+    )
 
 
 def test_white_paper_is_not_crossed_for_struck_ink() -> None:
