@@ -125,8 +125,10 @@ def _broad(run: Run, averaged: Array, pen_mm: float) -> Flags | None:
     if np.nanmax(averaged) > TWO * pen_mm:
         return None
     flags = averaged > SHARED * pen_mm  # NaN is not
-    is_long = float(flags.sum()) * run.view.step_mm > LEAST_WIDTHS * pen_mm
-    return flags if is_long else None
+    # near its ends a stretch shows no width: what is broad wherever it does is broad from end to end
+    is_whole = bool((flags | np.isnan(averaged)).all())
+    stations = len(flags) if is_whole else int(flags.sum())
+    return flags if stations * run.view.step_mm > LEAST_WIDTHS * pen_mm else None
 
 
 def _is_even(averaged: Array) -> bool:

@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
@@ -109,22 +110,30 @@ def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array])
     away, near = Neighbours(stations[:, :2]).nearest(some)
     middles, headings, widths = stations[near, :2], stations[near, 2], stations[near, 3]
     normals = np.column_stack([-np.sin(headings), np.cos(headings)])
-    ways = np.gradient(some, axis=0)
-    across = np.abs(np.sum(ways * normals, axis=1)) / np.maximum(np.hypot(*ways.T), 1e-9)
-    is_its_own = (across < math.sqrt(1 - ALONG_COS**2)) & (away < BESIDE * widths)
+    is_its_own = _goes_along(some, np.arange(len(some)), normals) & (away < BESIDE * widths)
     aside = np.sum((some - middles) * normals, axis=1)
     limit = 0.5 * np.maximum(widths - width_mm, 0.0)
     within = wanted = np.clip(aside, -limit, limit)
-    beside = np.zeros(len(some), int)
+    beside, is_crossed = np.zeros(len(some), int), np.zeros(len(some), bool)
     for other in others:
         apart, nearest = Neighbours(other).nearest(middles)
         is_beside = apart < BESIDE * widths
         beside += is_beside
+        # a line that only crosses makes the ink broad for a moment: the rims are neither's
+        is_crossed |= is_beside & ~_goes_along(other, nearest, normals)
         further = np.sum((other[nearest] - middles) * normals, axis=1)
         wanted = np.where(is_beside, np.where(aside > further, limit, -limit), wanted)
-    off = np.where(beside > 1, within, wanted) - aside
-    is_sure = is_its_own & (beside == 1) & (limit > NOTCH * width_mm)
+    has_a_rim = (beside <= 1) & ~is_crossed
+    off = np.where(has_a_rim, wanted, within) - aside
+    is_sure = is_its_own & has_a_rim & (beside == 1) & (limit > NOTCH * width_mm)
     return _Off(np.where(is_its_own, off, 0.0), normals, is_sure.astype(float))
+
+
+def _goes_along(way: Array, at: NDArray[np.int64], normals: Array) -> NDArray[np.bool_]:
+    """Whether a way goes along the ink at some of its places, whose normals are given."""
+    ways = np.gradient(way, axis=0)[at]
+    across = np.abs(np.sum(ways * normals, axis=1)) / np.maximum(np.hypot(*ways.T), 1e-9)
+    return np.asarray(across < math.sqrt(1 - ALONG_COS**2))
 
 
 def _bent(some: Array, share: Array, off: _Off) -> Array:

@@ -23,7 +23,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.motion.median import median
-from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto
+from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto, through_nodes
 from morfax.tracer.sensing.leg import Leg, meet, turn
 from morfax.tracer.sensing.view import View
 
@@ -31,7 +31,6 @@ HIDDEN = 8  # stations at a corner between those that its legs are felt by
 SLIGHT = math.radians(40)  # a turn up to this goes straight on at a junction
 HIDES = 0.7  # of the width: a pen that turned on the vertex inks half of it on the outside
 SHARP = 0.08  # of the line's width: a corner that misses less ink on the outside is sharp
-BENT = 0.3  # of the line's width: a corner that misses more ink is no corner, but a bend
 ACROSS = 0.15  # of the width: the edge is found on rays so far to either side of the bisector
 RAYS = 5  # of which the median counts
 REACH_WIDTHS, REACH_PX = 2.0, 3  # how far from the vertex the edge is sought
@@ -102,15 +101,34 @@ def through_corner(
     room_mm = corner.beyond_mm + ahead_mm(stands[0], incoming)
     if 0 < touch < min(corner.before_mm + end_mm, room_mm):
         return [rounded_corner(stands, corner, touch, end_mm)]
-    # 2. one bend from leg to leg
-    slight = missing > BENT * view.width_mm or corner.deflection_rad < SLIGHT
-    if touch > 0 and slight:
+    # 2. one bend from leg to leg, where it misses the vertex as the ink does, and more nearly than by nothing
+    if touch > 0:
         way, along = onto(*stands, incoming, min(corner.beyond_mm, 0.0))
-        start, heading = incoming.at(along), incoming.heading_at(along)
-        bend = hermite(start, heading, outgoing.at(end_mm), outgoing.heading_at(end_mm))
-        return [np.vstack([way, bend])]
+        start = incoming.at(along), incoming.heading_at(along)
+        end = outgoing.at(end_mm), outgoing.heading_at(end_mm)
+        bend = _bend(start, end, corner, missing)
+        passes_mm = float(np.hypot(*(bend - corner.vertex_mm).T).min())
+        if abs(passes_mm - missing) < missing:
+            return [np.vstack([way, bend])]
     # 3. the vertex
     return sharp_corner(stands, corner, end_mm)
+
+
+def _bend(
+    start: tuple[Array, float], end: tuple[Array, float], corner: Corner, missing_mm: float
+) -> Array:
+    """A bend (n, 2) from one place and heading to another, as far inside of the vertex as ink is missing.
+
+    It is one cubic where that place no longer lies within the turn.
+    """
+    heading = corner.headings_rad()[0] + 0.5 * corner.turned_rad
+    inward = math.copysign(1.0, corner.turned_rad) * np.array(
+        [-math.sin(heading), math.cos(heading)]
+    )
+    middle = corner.vertex_mm + missing_mm * inward
+    if max((middle - start[0]) @ inward, (middle - end[0]) @ inward) < 0:
+        return through_nodes([start, (middle, heading), end])
+    return hermite(*start, *end)
 
 
 def rounded_corner(

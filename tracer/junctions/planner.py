@@ -170,7 +170,9 @@ class Planner:
         if corner is not None and self._turns(corner):
             felt = to_vertex(self.view, corner)
             leaving = felt.outgoing
-            end_mm = max(BEYOND_MM - felt.before_mm, course.ahead_mm(leaving.end_mm, outgoing))
+            end_mm = max(
+                BEYOND_MM - felt.before_mm, course.ahead_mm(leaving.end_mm, outgoing), 0.0
+            )
             stretches = through_corner(self.view, self.stands, felt, end_mm)
             return Plan(stretches, leaving.shifted(end_mm, leaving.seen))
         # 2. by a cubic

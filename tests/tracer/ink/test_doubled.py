@@ -54,6 +54,22 @@ def test_two_lines_nearer_than_a_width_are_two_strokes(crossed: bool) -> None:
         assert away_mm < 0.25 * WIDTH_MM  # the other line is up to three widths away
 
 
+@pytest.mark.parametrize("long_mm", [4.6, 4.9, 5.2, 7.0])
+def test_a_pen_that_turns_back_beside_its_own_line_draws_one_stroke(long_mm: float) -> None:
+    """A loop as in handwriting, narrower than two widths all along, which crosses itself at its foot.
+
+    The short one shows its width along less than eight widths, and all of that is broad.
+    """
+    t = np.linspace(-1.6, 1.6, 600)
+    t_loop = np.clip(t, -1, 1)
+    aside = 1.4 * WIDTH_MM * t_loop * (1 - t_loop**2) - 2.8 * WIDTH_MM * (t - t_loop)
+    way = np.column_stack([30 + aside, 14 + long_mm * (1 - t_loop**2 - 2 * np.abs(t - t_loop))])
+    found = trace_ink(inked(way, CLEAR, seed=1))
+    assert len(found.lines) == 2, [line.length_mm for line in found.lines]
+    run_mm = sum(line.length_mm for line in found.lines)
+    assert run_mm == pytest.approx(length_mm(way) + length_mm(CLEAR), rel=0.01)
+
+
 def test_two_lines_that_others_cut_into_short_pieces_are_two_strokes() -> None:
     """They lie about 0.3 mm apart; pieces of 2.5 mm of their ink are too short to be told by themselves."""
     along = np.linspace(-1, 1, 400)

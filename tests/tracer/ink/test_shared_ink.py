@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,30 @@ def test_a_way_beside_the_ink_is_moved_into_it() -> None:
     crossing = feel_along(view, polyline((6, 10), (34, 10)))
     steep = np.column_stack([20 + 0.5 * (at - 20), 10 + 0.5 * (at - 20)])
     assert np.array_equal(kept_in_ink(steep, SharedInk([crossing]), WIDTH_MM), steep)
+
+
+@pytest.mark.parametrize("deg", [80.0, 50.0])
+def test_a_line_that_only_crosses_moves_no_way(deg: float) -> None:
+    """At a crossing one station of the ink is three widths broad: its rims belong to neither line.
+
+    (Fails without `is_crossed` in `_off`: the way was 0.13 mm off at a crossing of 80 degrees.)
+    """
+    way = np.column_stack([np.linspace(-0.5, 0.5, 101), np.zeros(101)])
+    broad = replace(
+        feel_along(
+            View(
+                photocell.behind_aperture(inked(polyline((5, 5), (15, 5)), seed=1), 0.1),
+                WIDTH_MM,
+            ),
+            polyline((6, 5), (14, 5)),
+        ),
+        places_mm=np.array([[0.1, 0.2]]),
+        headings_rad=np.zeros(1),
+        widths_mm=np.array([3 * WIDTH_MM]),
+    )
+    angle = np.radians(deg)
+    other = np.linspace(-0.6, 0.6, 101)[:, None] * (np.cos(angle), np.sin(angle))
+    assert np.array_equal(kept_in_ink(way, SharedInk([broad]), WIDTH_MM, [other]), way)
 
 
 @pytest.mark.parametrize("seed", [2, 3, 4])
