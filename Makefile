@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test check bench bench-long figures docs soak fuzz mutants clean
+.PHONY: demo test check wheel bench bench-long figures docs soak fuzz mutants clean
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -22,6 +22,13 @@ check: $(VENV)/installed
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# the wheel, in dist/, with compiled kernels: nothing is compiled where it is installed (x86-64, this Python's version).
+# For several Pythons in one wheel call it once for each: make wheel PYTHON=python3.12 VENV=.venv312
+wheel: $(VENV)/installed
+	$(BIN)/python -m morfax.motion.wheel_kernels
+	rm -rf build
+	$(BIN)/python -m build --wheel
 
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks

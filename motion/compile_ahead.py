@@ -24,11 +24,14 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from morfax.motion.kernel_folder import kernel_folder
+
+if TYPE_CHECKING:
+    from morfax.motion.compiled import Kernel
 
 LIST = Path(__file__).with_name("kernels.tsv")
 MOST = 3  # processes beside the one that runs; each took up to 0.56 GB
@@ -88,15 +91,26 @@ def compile_listed(parent: int, processes: int, number: int) -> None:
 
     Of so many processes, the one with this number begins with its part of the list and goes on from there.
     """
+    for kernel, types, arguments in listed(processes, number):
+        if os.getppid() != parent:
+            return
+        kernel.compile_for(types, arguments)
+
+
+def listed(
+    processes: int = 1, number: int = 0
+) -> Iterator[tuple[Kernel, str, tuple[Any, ...]]]:
+    """Kernels of the list, types of their arguments, and such arguments.
+
+    They come from the part of the list on that is for one of so many processes, by its number.
+    """
     lines = LIST.read_text(encoding="utf-8").splitlines()
     first = number * len(lines) // processes
     for line in [*lines[first:], *lines[:first]]:
-        if os.getppid() != parent:
-            return
         module, name, types = line.split("\t")
         with suppress(ImportError, AttributeError):  # a list of another version
             kernel = getattr(importlib.import_module(module), name)
-            kernel.compile_for(types, examples(types))
+            yield kernel, types, examples(types)
 
 
 def _cores() -> set[int] | range:

@@ -112,6 +112,7 @@ class Kernel:
             options = dict(self.options)
             if machine_code.can_be_kept():
                 options["cache"] = False
+                machine_code.aim()
             self._dispatcher = numba_njit(**options)(self.py_func)
         return self._dispatcher
 

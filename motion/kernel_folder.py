@@ -3,6 +3,9 @@
 So an upgrade, a second environment or a checkout beside it compiles only what has changed, and an
 installation that the user may not write to keeps its kernels all the same.
 
+A wheel brings kernels along (`wheel_kernels`); what it lacks, or what its machine cannot run, goes into the
+user's folder.
+
 Signals in: `NUMBA_CACHE_DIR`, if it is set; else `$XDG_CACHE_HOME/morfax` (`~/.cache/morfax`); where that
 cannot be written, a folder of the user's own among the temporary files. Signals out: the folder, made.
 
@@ -15,6 +18,11 @@ from __future__ import annotations
 import os
 import tempfile
 from pathlib import Path
+
+
+def wheel_folder() -> Path:
+    """The folder of the kernels that the wheel brought along; a checkout has none until `make wheel`."""
+    return Path(__file__).with_name("kernels")
 
 
 def kernel_folder() -> Path | None:

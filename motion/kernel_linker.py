@@ -23,6 +23,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from morfax.motion import processor
+
 if TYPE_CHECKING:
     from morfax.motion.compiled import Kernel
 
@@ -45,16 +47,16 @@ class Linker:
         self._llvm = llvm
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
-        self.cpu = f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
+        self.target, self.triple = processor.target(llvm), llvm.get_process_triple()
         self.names: set[str] = set()
         dynfunc, helpers, runtime = (_extension(name) for name in EXTENSIONS)
         self._make_function, self._environment = dynfunc.make_function, dynfunc.Environment
         self._name_all(dynfunc.c_helpers, helpers.c_helpers, runtime.c_helpers)
         _serve_pickles(helpers.c_helpers["unpickle"])
-        machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
+        machine = llvm.Target.from_triple(self.triple).create_target_machine(
             jit=True, cpu=llvm.get_host_cpu_name()
         )
-        empty = llvm.parse_assembly(f'target triple = "{llvm.get_process_triple()}"')
+        empty = llvm.parse_assembly(f'target triple = "{self.triple}"')
         self._engine = llvm.create_mcjit_compiler(empty, machine)
         self._environments: dict[str, Any] = {}
 

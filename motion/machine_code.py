@@ -9,12 +9,11 @@ damaged. Where the linker cannot be made, or a kernel asks for a name that it do
 here, and numba runs the kernels with its own cache. `MORFAX_KERNELS=numba` asks for that.
 
 Signals in: a kernel, the types of its arguments as a text. Signals out: a Python function.
-Files: `MODULE.NAME.TAG.MAKINGS.kernel` in the user's folder of kernels (`kernel_folder`): a SHA-256 digest,
-then what the kernel was made with and its entries, marshalled. Sources count by what is in them, not by
-where or when they were installed.
+Files: `MODULE.NAME.TAG.MAKINGS.kernel` in the user's folder of kernels (`kernel_folder`), or among those that
+the wheel brought along (`wheel_kernels`): a SHA-256 digest, then what the kernel was made with and its
+entries, marshalled. Sources count by what is in them, not by where or when they were installed.
 
-Questions: shared objects made with the wheel would need a compiler there, a wheel for each kind of machine,
-and code for the oldest processor of that kind (docs/design.md, rejected designs).
+Questions: none.
 """
 
 from __future__ import annotations
@@ -27,18 +26,20 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.motion.kernel_folder import kernel_folder
+from morfax.motion import processor
+from morfax.motion.kernel_folder import kernel_folder, wheel_folder
 from morfax.motion.kernel_linker import Entry, in_process, linker, numba_folder
 
 if TYPE_CHECKING:
     from morfax.motion.compiled import Kernel
 
-FORMAT = 3  # of the files; another number with every change of Entry
+FORMAT = 4  # of the files; another number with every change of Entry
 VERSIONS = 8  # of one kernel are kept beside each other: an upgrade, a checkout, settings that were tried
 DIGEST = 32  # bytes of a SHA-256 digest, which stands before the rest of a file
 
@@ -47,9 +48,11 @@ def kept(kernel: Kernel, types: str) -> Callable[..., Any] | None:
     """The function that runs kept machine code for arguments of these types; None if none fits."""
     if not can_be_kept():
         return None
-    entries = _read(kernel)
-    entry = entries.get(types)
-    return None if entry is None else linker().function(kernel, entry)
+    for folder in (wheel_folder(), kernel_folder()):
+        entry = _read(kernel, folder).get(types)
+        if entry is not None:
+            return linker().function(kernel, entry)
+    return None
 
 
 def keep(kernel: Kernel, types: str, compiled: Any) -> None:
@@ -57,10 +60,12 @@ def keep(kernel: Kernel, types: str, compiled: Any) -> None:
     entry = _entry(compiled)
     if entry is None:
         return
-    file = _file(kernel)
+    file = file_of(kernel, kernel_folder())
     if file is None:
         return
-    content = marshal.dumps((_makings(kernel), {**_read(kernel), types: entry}))
+    content = marshal.dumps(
+        (_makings(kernel), {**_read(kernel, kernel_folder()), types: entry})
+    )
     unfinished = None
     try:
         number, name = tempfile.mkstemp(dir=file.parent, prefix=file.name)
@@ -80,6 +85,16 @@ def _clear_old(file: Path) -> None:
     every = sorted(file.parent.glob(f"{kernel}.*.kernel"), key=lambda of: of.stat().st_mtime_ns)
     for old in every[:-VERSIONS]:
         old.unlink(missing_ok=True)
+
+
+def aim() -> None:
+    """Have numba compile for the processor that machine code is kept for.
+
+    Where the process has compiled kernels of others before, ours are made and kept as those were.
+    """
+    if (found := processor.aim(linker().target)) != linker().target:
+        linker().target = found
+        _surroundings.cache_clear()
 
 
 @cache
@@ -125,9 +140,9 @@ def _entry(compiled: Any) -> Entry | None:
     return code, compiled.fndesc.llvm_cpython_wrapper_name, environments
 
 
-def _read(kernel: Kernel) -> dict[str, Entry]:
-    """The entries of a kernel that were made with what is there now; none if there is no such file."""
-    file = _file(kernel)
+def _read(kernel: Kernel, folder: Path | None) -> dict[str, Entry]:
+    """The entries of a kernel that a folder has, made with what is there now; none without such a file."""
+    file = file_of(kernel, folder)
     try:
         data = file.read_bytes() if file is not None else b""
     except OSError:
@@ -149,14 +164,14 @@ def _makings(kernel: Kernel) -> str:
 
 @cache
 def _surroundings() -> str:
-    """Versions, processor and numba's settings."""
+    """Kind of Python and machine, versions, processor and numba's settings."""
     settings = {name: value for name, value in os.environ.items() if name.startswith("NUMBA_")}
     settings.pop("NUMBA_CACHE_DIR", None)
     folder = numba_folder()
     versions = [folder / "_version.py", folder.parent / "llvmlite" / "_version.py"]
-    return repr(
-        (FORMAT, sys.version, linker().cpu, settings, [_stamp(str(file)) for file in versions])
-    )
+    python = EXTENSION_SUFFIXES[0]  # of one ABI, as for extension modules
+    machine = (linker().triple, *linker().target)
+    return repr((FORMAT, python, machine, settings, [_stamp(str(file)) for file in versions]))
 
 
 @cache
@@ -165,9 +180,8 @@ def _stamp(file: str) -> tuple[str, str]:
     return Path(file).name, sha256(Path(file).read_bytes()).hexdigest()
 
 
-def _file(kernel: Kernel) -> Path | None:
-    """Where the machine code of a kernel is kept; None where it cannot be."""
-    folder = kernel_folder()
+def file_of(kernel: Kernel, folder: Path | None) -> Path | None:
+    """Where in a folder the machine code of a kernel is kept; None without a folder."""
     if folder is None:
         return None
     function, tag = kernel.py_func, sys.implementation.cache_tag

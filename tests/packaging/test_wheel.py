@@ -1,7 +1,7 @@
 """The wheel: what is in it, and that it works in an empty folder of an environment that has no checkout.
 
 Nothing is downloaded: the build uses the setuptools that is installed (extra `dev`), and the new environment
-sees the dependencies of the present one. Kernels that the checkout has compiled serve there too.
+sees the dependencies of the present one. Kernels that the checkout has compiled go into the wheel.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
+
+from morfax.motion import machine_code
 
 ROOT = Path(__file__).parents[2]
 ROOMS = (
@@ -34,10 +36,11 @@ ROOMS = (
 SOURCES = ("morfax", *ROOMS, "pyproject.toml", "README.md", "LICENSE")
 
 
-def run(*command: str | Path, folder: Path) -> str:
+def run(*command: str | Path, folder: Path, **settings: str) -> str:
     """Run a command in a folder, without the paths and caches of this process; give its standard output."""
     ours = ("PYTHONPATH", "NUMBA_CACHE_DIR", "VIRTUAL_ENV")
     environment = {name: value for name, value in os.environ.items() if name not in ours}
+    environment |= settings
     done = subprocess.run(
         [str(word) for word in command],
         cwd=folder,
@@ -60,15 +63,20 @@ def in_checkout() -> set[str]:
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder `dist` of a clean copy: a source distribution, and the wheel that is built from it."""
+    """The folder `dist` of a clean copy: a source distribution, and the wheel that is built from it.
+
+    Both bring compiled kernels along, as with `make wheel`, where machine code can be kept.
+    """
     copy = tmp_path_factory.mktemp("checkout")
-    left_out = shutil.ignore_patterns("__pycache__", "*.egg-info", "*.told")
+    left_out = shutil.ignore_patterns("__pycache__", "*.egg-info", "*.told", "kernels")
     for name in SOURCES:
         source = ROOT / name
         if source.is_dir():
             shutil.copytree(source, copy / name, symlinks=True, ignore=left_out)
         else:
             shutil.copy(source, copy / name)
+    if machine_code.can_be_kept():
+        run(sys.executable, "-m", "morfax.motion.wheel_kernels", folder=copy)
     run(sys.executable, "-m", "build", "--no-isolation", folder=copy)
     return copy / "dist"
 
@@ -154,3 +162,27 @@ def test_the_installed_command_traces_and_plays_in_an_empty_folder(
     demo = tmp_path / "morfax-demo"
     assert {file.name for file in (demo / "results").iterdir()} == results
     assert {file.name for file in demo.iterdir()} == {"program.png", "program.toml", "results"}
+
+
+@pytest.mark.skipif(not machine_code.can_be_kept(), reason="numba runs the kernels here")
+def test_the_first_commands_of_a_user_of_the_wheel_compile_nothing(
+    installed: Path, wheel: Path, tmp_path: Path
+) -> None:
+    """The wheel brings the kernels along. A damaged one is made anew, in the user's own folder."""
+    home, morfax = tmp_path / "caches", installed / "bin" / "morfax"
+    names = [name for name in zipfile.ZipFile(wheel).namelist() if name.endswith(".kernel")]
+    assert (
+        len(names) > 100
+    )  # of 117 in the list; some kernels are there with two types of arguments
+    drawing = ROOT / "samples" / "gear.png"
+    words = ("trace", drawing, "--lines", "all", "--quiet", "-o", "gear.ngc")
+    for command in (("demo", "-o", "demo"), words):
+        run(morfax, *command, folder=tmp_path, XDG_CACHE_HOME=str(home))
+    assert list(home.rglob("*.kernel")) == []
+    program = (tmp_path / "gear.ngc").read_bytes()
+    # what is damaged is compiled, and runs as before
+    (kernel,) = installed.rglob("morfax.motion.speed_limits._passes.*.kernel")
+    kernel.write_bytes(kernel.read_bytes()[:-1])
+    run(morfax, *words, folder=tmp_path, XDG_CACHE_HOME=str(home))
+    assert [file.name for file in home.rglob("*.kernel")] == [kernel.name]
+    assert (tmp_path / "gear.ngc").read_bytes() == program

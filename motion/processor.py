@@ -1,0 +1,58 @@
+"""Which processor kernels are compiled for: one that most machines have, so that machine code serves them.
+
+    x86-64 with AVX2, FMA and what else came with them (2013)  -> x86-64-v3
+    any other                                                  -> this machine's own processor
+
+So a wheel can bring kernels along, and a path is the same to the bit on all machines of the first line.
+
+Signals in: llvmlite's name and features of the processor; `NUMBA_CPU_NAME`, which goes before all of this.
+Signals out: a name and features as numba's settings `CPU_NAME` and `CPU_FEATURES` take them.
+
+Source: x86-64 psABI, 3.1.1, micro-architecture levels. Questions: on other processors there is no such level
+that all of a kind have, and kernels are compiled on the machine itself.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple
+
+LEVEL = "x86-64-v3"
+# what the psABI lists for the levels 1, 2 and 3, in LLVM's words
+LEVEL_HAS = frozenset(
+    {"cmov", "cx8", "fxsr", "mmx", "sse", "sse2"}
+    | {"cx16", "sahf", "popcnt", "sse3", "sse4.1", "sse4.2", "ssse3"}
+    | {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe", "xsave"}
+)
+
+
+class Target(NamedTuple):
+    """A processor to compile for, in LLVM's words."""
+
+    name: str
+    features: str  # what it has beyond its name; empty: nothing
+
+
+def target(llvm: Any) -> Target:
+    """The processor to compile for on this machine; `llvm` is `llvmlite.binding`."""
+    if given := os.environ.get("NUMBA_CPU_NAME"):
+        return Target(given, os.environ.get("NUMBA_CPU_FEATURES", ""))
+    features = llvm.get_host_cpu_features()
+    has = {name for name, there in features.items() if there}
+    if llvm.get_process_triple().startswith("x86_64-") and has >= LEVEL_HAS:
+        return Target(LEVEL, "")
+    return Target(llvm.get_host_cpu_name(), features.flatten())
+
+
+def aim(at: Target) -> Target:
+    """Have numba compile for a processor; give the one that it does compile for.
+
+    That is another one where the process has compiled kernels of others before.
+    """
+    import numba
+    from numba.core.registry import cpu_target
+
+    config: Any = numba.config
+    config.CPU_NAME, config.CPU_FEATURES = at
+    _, name, features = cpu_target.target_context.codegen().magic_tuple()
+    return Target(name, features)
