@@ -25,7 +25,8 @@ from typing import Any
 
 import numpy as np
 
-from morfax.motion import compile_ahead, machine_code, shape_faults
+from morfax.motion import compile_ahead, machine_code, object_code
+from morfax.motion.object_code import Role
 
 _C, _F, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400  # numpy's flags of an array
 _FLAGS = _C | _F | _ALIGNED | _WRITEABLE
@@ -67,7 +68,7 @@ class Kernel:
         self.py_func = py_func
         self.options = options
         self._ready: dict[tuple[Any, ...], Callable[..., Any]] = {}
-        self._dispatcher: Any = None
+        self._dispatchers: dict[Role, Any] = {}
         update_wrapper(self, py_func)
 
     def __call__(self, *args: Any) -> Any:
@@ -101,20 +102,13 @@ class Kernel:
     @property
     def _numba_type_(self) -> Any:
         """What numba takes a kernel for that another one calls: its dispatcher."""
-        return self.dispatcher()._numba_type_
+        return self.dispatcher("part" if object_code.is_made() else "run")._numba_type_
 
-    def dispatcher(self) -> Any:
-        """numba's dispatcher of the function; numba keeps what it compiles only where we cannot."""
-        if self._dispatcher is None:
-            from numba import njit as numba_njit
-
-            shape_faults.short()
-            options = dict(self.options)
-            if machine_code.can_be_kept():
-                options["cache"] = False
-                machine_code.aim()
-            self._dispatcher = numba_njit(**options)(self.py_func)
-        return self._dispatcher
+    def dispatcher(self, role: Role) -> Any:
+        """numba's dispatcher of the function, for what it is to do."""
+        if role not in self._dispatchers:
+            self._dispatchers[role] = object_code.dispatcher(self.py_func, self.options, role)
+        return self._dispatchers[role]
 
     @cached_property
     def _within(self) -> list[Kernel]:
@@ -149,27 +143,31 @@ class Kernel:
             try:
                 types = described(args)
             except TypeError:
-                return self.dispatcher()
+                return self.dispatcher("run")
             return machine_code.kept(self, types) or self._compiled(types, args)
 
     def _compiled(self, types: str, args: tuple[Any, ...]) -> Callable[..., Any]:
         """Compile for arguments like these, and keep the machine code."""
         if not machine_code.can_be_kept():
-            return self.dispatcher()
+            return self.dispatcher("run")
         _COMPILER.begins()
         with compile_ahead.claimed(f"{self.py_func.__module__}.{self.py_func.__name__}"):
             found = machine_code.kept(self, types)  # by a process that had claimed it
             return found or self._compiled_here(types, args)
 
     def _compiled_here(self, types: str, args: tuple[Any, ...]) -> Callable[..., Any]:
-        """Compile in this process."""
+        """Compile in this process; numba runs what cannot run without it."""
         from numba import typeof
 
-        dispatcher = self.dispatcher()
         signature = tuple(typeof(arg) for arg in args)
-        dispatcher.compile(signature)
-        machine_code.keep(self, types, dispatcher.overloads[signature])
-        return dispatcher
+        try:
+            entry = machine_code.entry(*object_code.make(self.dispatcher("whole"), signature))
+        except NotImplementedError:
+            entry = None
+        if entry is None:
+            return self.dispatcher("run")
+        machine_code.keep(self, types, entry)
+        return machine_code.linker().function(self, entry)
 
     def compile_for(self, types: str, args: tuple[Any, ...]) -> None:
         """Have machine code kept for arguments like these, if there is none; the kernel is not run."""

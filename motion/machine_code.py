@@ -55,11 +55,8 @@ def kept(kernel: Kernel, types: str) -> Callable[..., Any] | None:
     return None
 
 
-def keep(kernel: Kernel, types: str, compiled: Any) -> None:
-    """Keep what numba has compiled for arguments of these types, if it can run without numba."""
-    entry = _entry(compiled)
-    if entry is None:
-        return
+def keep(kernel: Kernel, types: str, entry: Entry) -> None:
+    """Keep the machine code of a kernel for arguments of these types."""
     file = file_of(kernel, kernel_folder())
     if file is None:
         return
@@ -109,8 +106,8 @@ def can_be_kept() -> bool:
     return True
 
 
-def _entry(compiled: Any) -> Entry | None:
-    """What is kept of one compiled function; None if it holds more than machine code."""
+def entry(compiled: Any, code: bytes) -> Entry | None:
+    """What is kept of numba's result and its object code; None if it needs more than these to run."""
     module = compiled.library._final_module
     known = linker().names
     for function in module.functions:
@@ -136,7 +133,6 @@ def _entry(compiled: Any) -> Entry | None:
         )
         for of in held
     ]
-    _, _, (code, _) = compiled.library.serialize_using_object_code()
     return code, compiled.fndesc.llvm_cpython_wrapper_name, environments
 
 

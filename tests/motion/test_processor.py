@@ -74,7 +74,7 @@ numba.njit(lambda x: x + 1)(1)  # numba compiles for this machine's own processo
 from morfax.motion import machine_code
 from morfax.motion.drive import drive_step
 aimed, before = machine_code.linker().target, machine_code._makings(drive_step)
-drive_step.dispatcher()
+drive_step.dispatcher("whole")
 found, after = machine_code.linker().target, machine_code._makings(drive_step)
 assert aimed.features or found.features, found  # not the bare level
 assert (found == aimed) == (before == after)
