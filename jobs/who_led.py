@@ -72,9 +72,9 @@ class WhoLed:
         """A remark if the cell led less than it should."""
         if self.cell_share < LEAST_CELL_SHARE:
             yield (
-                f"the swinging cell led the head only {100 * self.cell_share:.0f} % of the way, stations and"
-                " memory the rest: --picture shows where; check the path there, or scan at a higher"
-                " resolution"
+                f"the swinging cell led the head only {100 * self.cell_share:.0f} % of the way, places felt"
+                " ahead and memory led the rest: --picture shows where; check the path there, or scan at"
+                " a higher resolution"
             )
 
 

@@ -136,7 +136,7 @@ def test_run_takes_a_cutter(morfax: Morfax, here: Path) -> None:
         (
             ("--cutter", "300mm", "--side", "inside"),
             7,
-            "a cutter of 300 mm goes nowhere inside of the lines; give a smaller --cutter, up to 70.8 mm,",
+            "a cutter of 300 mm has no room inside of any line; give a smaller --cutter, up to 70.8 mm,",
         ),
     ],
 )
@@ -162,10 +162,10 @@ def test_a_hole_that_is_asked_for_alone_is_not_cut_as_an_outline_without_a_word(
     )
     answer = morfax(*options)
     assert answer.exit_code == 0
-    assert "line 2 lies inside line 1, which is not asked for" in answer.err
-    assert "give --side inside for a hole, or ask for line 1 too" in answer.err
+    assert "line 2 lies inside line 1, which is not cut" in answer.err
+    assert "give --side inside for a hole, or cut line 1, too" in answer.err
     for further in (("--side", "inside"), ("--side", "left"), ("--lines", "1,2")):
-        assert "which is not asked for" not in morfax(*options, *further).err
+        assert "which is not cut" not in morfax(*options, *further).err
 
 
 def test_a_cutter_takes_all_contours_unless_one_line_or_a_card_is_asked_for(

@@ -142,17 +142,15 @@ def note(closed: list[Closed], softness_mm: float) -> str:
     more = f"; and {len(closed) - TOLD} more places" if len(closed) > TOLD else ""
     least_mm = CLEAR * softness_mm
     text = (
-        f"edges nearer than {least_mm:.2f} mm cannot be told apart on this scan, and are closed"
-        f" across: {told}{more}"
+        f"this scan cannot show edges nearer than {least_mm:.2f} mm apart; they are closed across:"
+        f" {told}{more}"
     )
     even = [each.apart_mm for each in closed if each.apart_mm and not each.narrows]
     if not even:
-        return (
-            f"{text}; what they look like there only a finer scan, or a larger print, can show"
-        )
+        return f"{text}; only a finer scan, or a larger print, can show their shape"
     times = math.ceil(10 * ROOM * least_mm / min(even)) / 10
     return (
-        f"{text}; to have them followed, print the shape {times:g} times as large and give --scale"
+        f"{text}; to follow them, print the shape {times:g} times as large and give --scale"
         f" {1 / times:.4g}"
     )
 

@@ -47,12 +47,12 @@ def parsed(text: str) -> Wanted:
         return Wanted("paper", formats.parsed(size))
     places = [_PLACE.fullmatch(part) for part in before.split()]
     if not equals or not places or not all(places):
-        raise ValueError(f"{text.strip()[:60]!r} says no way to flatten; give {ALLOWED}")
+        raise ValueError(f"{text.strip()[:60]!r} is not a way to flatten; give {ALLOWED}")
     try:
         corners = [(float(place[1]), float(place[2])) for place in places if place]
     except ValueError:
         raise ValueError(
-            f"{text.strip()[:60]!r} says no way to flatten; give {ALLOWED}"
+            f"{text.strip()[:60]!r} is not a way to flatten; give {ALLOWED}"
         ) from None
     if len(corners) != 4:
         raise ValueError(
