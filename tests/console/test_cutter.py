@@ -74,6 +74,16 @@ def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(
     assert "lines_left_out" not in smaller.figures and "left out" not in smaller.err
 
 
+def test_a_line_s_cell_share_is_of_the_way_that_the_head_went_with_a_cutter_too(
+    morfax: Morfax, here: Path
+) -> None:
+    bracket = ("trace", SAMPLES / "bracket.png", "--lines", "contours", "--json")
+    plain = morfax(*bracket, "-o", "plain.csv").figures["lines"]
+    cut = morfax(*bracket, "--cutter", "4mm", "--climb", "-o", "cut.csv").figures["lines"]
+    shares = [{line["line"]: line["cell_share"] for line in lines} for lines in (plain, cut)]
+    assert shares[0] == shares[1] and len(shares[0]) == 2
+
+
 def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_reference_point(
     morfax: Morfax, here: Path
 ) -> None:
