@@ -97,7 +97,8 @@ class ArcWords:
             )
         height = math.sqrt(max(radius**2 - chord**2 / 4, 0.0))
         off = height * math.copysign(self.sense, self.sense * radius) / chord
-        return (begin[0] + end[0]) / 2 - off * up, (begin[1] + end[1]) / 2 + off * across
+        middle = (begin[0] + end[0]) / 2, (begin[1] + end[1]) / 2
+        return middle[0] - off * up, middle[1] + off * across
 
     def _by_offset(self, begin: Place, end: Place) -> Centre:
         """The centre from I and J, moved to be as far from both ends."""

@@ -207,7 +207,8 @@ class Gaps:
             return []
         apart = self._side + 2 * self._spread
         cuts = np.flatnonzero(np.diff(lost) > apart)
-        firsts, lasts = lost[np.r_[0, cuts + 1]], lost[np.r_[cuts, len(lost) - 1]]
+        firsts = lost[np.r_[0, cuts + 1]]
+        lasts = lost[np.r_[cuts, len(lost) - 1]]
         return [
             (max(int(a) - self._spread, 0), int(b) + 1 + self._spread)
             for a, b in zip(firsts, lasts, strict=True)

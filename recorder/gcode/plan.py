@@ -163,7 +163,8 @@ class _Planner:
             [*np.round(segment.end_mm, self.writing.decimals), self.place[2]]
         )
         half = segment.turned_rad / 2
-        (dx, dy), bulge = (place - self.place)[:2], segment.length_mm / 2 * math.tan(half / 2)
+        dx, dy = (place - self.place)[:2]
+        bulge = segment.length_mm / 2 * math.tan(half / 2)
         is_straight = abs(bulge) < self.last_digit_mm
         if is_straight or abs(segment.curvature_per_mm) * _LARGEST_RADIUS_MM < 1:
             chords = math.ceil(math.sqrt(abs(bulge) / (self.tolerance_mm - off_mm))) or 1

@@ -221,7 +221,8 @@ def _lengths(parts: list[Segment], fmt: StepFormat) -> tuple[Steps, NDArray[np.b
             leg.speed_mm_s / fmt.step_mm * fmt.interval_s,
         )
         lengths, away = cut(places, speeds, leg.spacing_mm / fmt.step_mm, at)
-        z_mm = origin[2] + (at[2] + np.cumsum(np.r_[rest, lengths][:, 2])) * fmt.step_mm
+        z_steps = at[2] + np.cumsum(np.r_[rest, lengths][:, 2])
+        z_mm = origin[2] + z_steps * fmt.step_mm
         at = at + lengths.sum(axis=0)
         taken += [rest, lengths]
         down.append(z_mm <= IN_WORK_BELOW_MM)

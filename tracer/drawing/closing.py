@@ -166,7 +166,9 @@ def _strokes(places: Array, shape: tuple[int, ...], beyond_px: float) -> Grey:
     """Strokes from place to place of each pair (n, 2, 2), and so far beyond."""
     across = places[:, 1] - places[:, 0]
     ways = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
-    ends = np.stack([places[:, 0] - beyond_px * ways, places[:, 1] + beyond_px * ways], axis=1)
+    begins = places[:, 0] - beyond_px * ways
+    stops = places[:, 1] + beyond_px * ways
+    ends = np.stack([begins, stops], axis=1)
     cover = np.zeros(shape, np.uint8)
     for stroke in np.round(SIXTEENTHS * ends[:, :, ::-1]).astype(np.int32):
         cv2.polylines(cover, [stroke], False, 1, STROKE_PX, cv2.LINE_8, shift=4)

@@ -272,7 +272,8 @@ def _rounded(fit: _Fit, softness_px: float) -> Array:
     if radius_px < APART_PX:
         return fit.vertex[None]
     t, w = fit.t, fit.w
-    inward = -(t + w) / np.hypot(*(t + w))
+    between = t + w
+    inward = -between / np.hypot(*between)
     turns = math.copysign(math.pi - fit.angle, t[1] * w[0] - t[0] * w[1])
     shares = np.linspace(-0.5, 0.5, 3 + math.ceil(abs(turns) * radius_px))
     outward = math.atan2(-inward[1], -inward[0]) + turns * shares
@@ -287,11 +288,13 @@ def _between(t: Array, w: Array) -> float:
 
 def _felt(places: Array, at: int, near: float, far: float) -> EdgeLeg:
     """A leg as a parabola seen from its near end, or as a straight line if that fits about as well."""
-    rows = np.arange(round(min(near, far)), round(max(near, far)) + 1) + at
+    first, last = round(min(near, far)), round(max(near, far))
+    rows = np.arange(first, last + 1) + at
     leg = places[rows % len(places)]
     origin, end = (leg[-1], leg[0]) if near < 0 else (leg[0], leg[-1])
     along = (origin - end) / np.hypot(*(origin - end))
-    u, v = (leg - origin) @ along, (leg - origin) @ np.array([-along[1], along[0]])
+    out = leg - origin
+    u, v = out @ along, out @ np.array([-along[1], along[0]])
     from numpy.polynomial import polynomial
 
     straight, bent = (polynomial.polyfit(u, v, degree) for degree in (1, 2))

@@ -65,7 +65,8 @@ def parsed(text: str) -> Wanted:
 def _check_round(corners_px: Array) -> None:
     """Raise ValueError unless four places run round a convex figure clockwise, as one sees it."""
     ways = np.roll(corners_px, -1, axis=0) - corners_px
-    turns = ways[:, 0] * np.roll(ways[:, 1], -1) - ways[:, 1] * np.roll(ways[:, 0], -1)
+    x, y = ways.T
+    turns = x * np.roll(y, -1) - y * np.roll(x, -1)
     if (turns > 0).all():  # Y runs down
         return
     what = (
