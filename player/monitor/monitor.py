@@ -138,7 +138,8 @@ class Monitor:
         self._chart = chart
         if chart is not None:
             chart.begin(self.axes)
-        share, fade = 1 - self._fade(self.limit.settle_s), self._fade(self.limit.hold_s)
+        share = 1 - self._fade(self.limit.settle_s)
+        fade = self._fade(self.limit.hold_s)
         self._settings = np.array(
             [rate_hz, share, fade, self.limit.beyond_s, self.limit.tolerance_mm]
         )

@@ -216,7 +216,8 @@ class Gaps:
 
     def _bridge(self, rows: Phases, axis: int, a: int, b: int) -> Fault | None:
         """Fill a gap and count on behind it; the fault if it is too long to be certain."""
-        cycles, time_s = rows.cycles[:, axis], (rows.first_row + a) / self._rate_hz
+        cycles = rows.cycles[:, axis]
+        time_s = (rows.first_row + a) / self._rate_hz
         is_short = b - a <= self._longest_s * self._rate_hz
         if is_short and b + self._side > len(rows) and self._rests_from(rows, axis, a):
             cycles[a:], rows.surprise[a:, axis] = cycles[max(a - 1, 0)], 0

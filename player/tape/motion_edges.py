@@ -74,7 +74,8 @@ def furthest(
     (p0, v0), (p1, v1) = ((rows.mean(), numbers @ rows / (numbers @ numbers)) for rows in sides)
     place = most[0] * END_ROWS**2 / 24 + PLACE_NOISE * noise
     speed = most[0] * END_ROWS * 3 / 16 + noise / END_ROWS
-    ends, off = np.array([p0, v0, p1, v1]), np.array([place, speed, place, -speed])
+    ends = np.array([p0, v0, p1, v1])
+    off = np.array([place, speed, place, -speed])
     rows = len(laid) + 1 + 2 * half
     within = slice(half, half + len(laid))
     above = upper_edge(ends + off, rows, *most)[within] - laid

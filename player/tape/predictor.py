@@ -44,7 +44,8 @@ def predictor_gains(rate_hz: float, natural_hz: float = PREDICTOR_HZ) -> Float64
 def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32s) -> Float64s:
     """Count the phases of an axis anew, in place, from a state (place, speed, bend)."""
     turns, states = np.ascontiguousarray(phase)[None], state[None].copy()
-    counted, told = np.empty((len(phase), 1)), np.empty((len(phase), 1), np.float32)
+    counted = np.empty((len(phase), 1))
+    told = np.empty((len(phase), 1), np.float32)
     count_turns(turns, gains, states, counted, told)
     phase[:], surprise[:] = counted[:, 0], told[:, 0]
     return np.asarray(states[0])

@@ -43,7 +43,8 @@ def place_at(begin_mm: Place, block: Block, share: float) -> tuple[float, float]
     """The place at a share of a block's way."""
     turned = turned_rad(begin_mm, block) * share
     if not turned:
-        dx, dy = block.place_mm[0] - begin_mm[0], block.place_mm[1] - begin_mm[1]
+        dx = block.place_mm[0] - begin_mm[0]
+        dy = block.place_mm[1] - begin_mm[1]
         return begin_mm[0] + share * dx, begin_mm[1] + share * dy
     i, j = block.centre_mm
     cos, sin = math.cos(turned), math.sin(turned)

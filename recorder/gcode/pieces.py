@@ -148,7 +148,8 @@ def off_circle_mm(places):  # type: ignore[no-untyped-def]
 
 def curvature_per_mm(places: Array) -> float:
     """Curvature of the arc that is nearest to a row of places, positive to the left."""
-    chord, heading = math.dist(places[0], places[-1]), heading_rad(places)
+    chord = math.dist(places[0], places[-1])
+    heading = heading_rad(places)
     dx, dy = (places - places[0]).T
     u, v = (
         dx * math.cos(heading) + dy * math.sin(heading),

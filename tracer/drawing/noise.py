@@ -199,9 +199,8 @@ def _profiles(darkness: Kept) -> _Profiles | None:
     seen = _seen(darkness, middles[:, :, None] + across[:, :, None] * at_px)
     # 3. with one line in the middle and paper beside it
     outside = np.abs(at_px) > 0.75 * half_px
-    on_paper = np.all(_smooth(seen)[:, outside] < PAPER, axis=1)
-    on_ink = seen[:, len(at_px) // 2] > INK
-    good = steep & on_paper & on_ink
+    alone = np.all(_smooth(seen)[:, outside] < PAPER, axis=1) & (seen[:, len(at_px) // 2] > INK)
+    good = steep & alone
     if np.count_nonzero(good) < FEWEST_PROFILES:
         return None
     found = _Profiles(seen[good], at_px, middles[good], across[good])
