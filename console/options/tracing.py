@@ -62,8 +62,8 @@ LETTERING = option(
     "--lettering",
     "lettering_mm",
     type=LETTERS,
-    help="With --lines all, contours or outer, the letters to follow: all, none, or from a height on, as "
-    "2mm. The figures list the others.  [default: all; of contours with --cutter from three diameters on]",
+    help="With --lines all, contours or outer, which letters to follow: all, none, or a least height such as "
+    "2mm. The figures list the others.  [default: all; of contours with --cutter, three cutters high]",
 )
 LINE_WIDTH = option(
     "Line",
