@@ -78,8 +78,9 @@ class CompareJob:
             found = comparison.from_drawing(ink, paths[0], radius_mm=radius_mm)
         if found.is_elsewhere:
             listener.warning(
-                f"only {100 * found.measured_share:.0f} % of the path lies along the drawing's ink: it is"
-                " placed elsewhere, or is another drawing's; say by --zero X,Y where its zero lies"
+                f"only {100 * found.measured_share:.0f} % of the path lies along the drawing's ink: the"
+                " path has another zero, or belongs to another drawing; give the place of its zero with"
+                " --zero X,Y"
             )
         within = None if self.tolerance_mm is None else found.is_within(self.tolerance_mm)
         figures: dict[str, Any] = {

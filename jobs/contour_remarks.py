@@ -21,7 +21,7 @@ FEW = 6  # lines that are listed with their leads; of more the shortest
 def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
     """Remarks on a program whose closed lines were contoured."""
     if trace.fault is not None and contouring.asks:
-        yield "a line was lost, so it is not known what lies inside of what: lines may be cut as traced"
+        yield "a line was lost, so morfax cannot know which lines are holes: some lines may be cut as traced"
         return
     closed = [line for line in trace.lines if line.ending == "closed"]
     if contouring.lead_in is not None:
@@ -49,8 +49,8 @@ def of_order(trace: Trace, order: Sequence[int]) -> Iterator[str]:
         if late:
             numbers = ", ".join(map(str, late))
             yield (
-                f"by --order line {lines[outer].number} is cut before line {numbers} inside it: the part may"
-                " be loose by then"
+                f"--order cuts line {lines[outer].number} before line {numbers} inside it: the part may be"
+                " loose by then"
             )
 
 
@@ -67,8 +67,8 @@ def of_around(
     do = "" if cutter is None else "give --side inside for a hole, or "
     are = f"line {lines} lies" if len(inner) == 1 else f"lines {lines} lie"
     yield (
-        f"{are} inside line {outer}, which is not asked for: what is cut is taken for the outline of a part,"
-        f" not for a hole; {do}ask for line {outer} too"
+        f"{are} inside line {outer}, which is not cut: without line {outer} morfax cuts the outline of a part"
+        f" there, not a hole; {do}cut line {outer}, too"
     )
 
 

@@ -110,8 +110,8 @@ def refuse_without_z(card: Card, medium: str) -> None:
     if names:
         need = "needs" if names == ["a ramp"] else "need"
         raise WrongUse(
-            f"{' and '.join(names)} {need} a Z axis, and {medium} has none; leave out --tabs and --ramp, or"
-            " what the card says of them"
+            f"{' and '.join(names)} {need} a Z axis, and {medium} has none; leave out --tabs and --ramp,"
+            " or their entries on the card"
         )
 
 
@@ -132,4 +132,4 @@ def of_tabs(trace: Trace) -> Iterator[str]:
             " come loose"
         )
     if not any(trace.tabs):
-        yield "no line that is cut comes round: there is nothing to hold, and no tab"
+        yield "no line that is cut is closed: there are no tabs"

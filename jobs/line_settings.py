@@ -92,7 +92,8 @@ class LineSettings:
         for place, towards in self.arrows_mm:
             if place == towards:
                 raise WrongUse(
-                    f"--arrow {place[0]:g},{place[1]:g} goes nowhere; give a second place along the way"
+                    f"--arrow {place[0]:g},{place[1]:g} has two equal places; give a second place along"
+                    " the way"
                 )
 
     def _check_order(self) -> None:
@@ -100,7 +101,7 @@ class LineSettings:
         if self.lines == "all" and (self.arrows_mm or self.order):
             what = "--arrow" if self.arrows_mm else "--order"
             raise WrongUse(
-                f"--lines all puts its strokes in order by itself, so {what} cannot be served; give --lines"
+                f"--lines all puts its strokes in order by itself and does not take {what}; give --lines"
                 " contours, or numbers"
             )
         if self.order and not self.are_several:

@@ -81,13 +81,16 @@ def tell_what_is_lost(
         refuse_without_z(card, f"the machine {machine.name}")
         lost = _asked(card, tool, has_dwells=not machine.is_hpgl)
         what = (
-            f"{machine.name} has no Z, so that {program.name} holds no {', '.join(lost)}: each pass runs the "
+            f"{machine.name} has no Z, so {program.name} cannot hold {', '.join(lost)}: each pass runs the "
             "line once more, and a drilled hole is one dot"
         )
     elif program.suffix.lower() in medium.DRAWN:
         refuse_without_z(card, f"a drawing ({program.suffix})")
         lost = _asked(card, tool, has_dwells=False)
-        what = f"{program.name} holds what is cut, and no {', '.join(lost)}: set these where it is read"
+        what = (
+            f"{program.name} holds only what is cut, without {', '.join(lost)}: set them in the program that"
+            " reads it"
+        )
     else:
         return
     if lost:

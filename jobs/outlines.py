@@ -42,7 +42,7 @@ def check_unit(unit: str | None, *files: FilePath) -> None:
         return
     names = " and ".join(map(str, files))
     raise WrongUse(
-        f"--unit is for drawings from CAD, {', '.join(medium.OUTLINES)}; {names} is none"
+        f"--unit is for drawings from CAD, {', '.join(medium.OUTLINES)}; leave it out for {names}"
     )
 
 

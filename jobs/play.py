@@ -216,7 +216,7 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
     if str(tape) == PIPE and given:
         raise WrongUse(f"{_options(given)} is for files, not for a pipe or a device")
     if control != TAPE and not given.keys().isdisjoint(FOR_TAPES):
-        raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is none")
+        raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is not one")
     blocks = "programs of lines and arcs, .ngc"
     # setting, as it was written, the controls that have it, and in words what they play
     for name, option, has_it, what in (
@@ -226,7 +226,7 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
         ("feed_override", "--feed-override", (TAPE, pulses), f"tapes and for {blocks}"),
     ):
         if name in given and control not in has_it:
-            raise WrongUse(f"{option} is for {what}; {tape} is none")
+            raise WrongUse(f"{option} is for {what}; {tape} is not one")
     if "control" in given and not given.keys().isdisjoint(FOR_PULSES):
         raise WrongUse(
             f"{_options(given.keys() & FOR_PULSES)} is for the pulse control; leave --control out"

@@ -104,7 +104,7 @@ class ByHand:
         """What is set for each of some files: the machine for G-code alone; WrongUse if there is none."""
         if self.machine is not None and not any(map(medium.has_machine, files)):
             raise WrongUse(
-                f"--machine is for G-code, {', '.join(medium.BLOCKS)}; there is none here: leave it out"
+                f"--machine is for G-code, {', '.join(medium.BLOCKS)}; no file here is G-code: leave it out"
             )
         return [
             self if medium.has_machine(file) else replace(self, machine=None) for file in files
@@ -129,13 +129,13 @@ class ByHand:
         if machine is not None:
             if not medium.has_machine(file):
                 raise WrongUse(
-                    f"--machine is for G-code, {', '.join(medium.BLOCKS)}; {file} is none: leave it out"
+                    f"--machine is for G-code, {', '.join(medium.BLOCKS)}; {file} is not G-code: leave it out"
                 )
             chosen(machine, program=file)
         if (given or self.label or self.second) and control_of(file) != TAPE:
             raise WrongUse(
                 "--reference-frequency, --cycles-per-mm, --from, --tracks, --still, --alike, --closed, "
-                f"--label and --second are for tapes; {file} is none"
+                f"--label and --second are for tapes; {file} is not a tape"
             )
         return given if machine is None else {"machine": machine}
 

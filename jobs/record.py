@@ -74,8 +74,8 @@ class RecordJob:
         # 2. the recording
         if has_feed and medium.is_outline(self.source) and self.unit.chosen(program).z:
             listener.warning(
-                f"{self.source.name} says no depth: the tool runs along its lines at Z0; set the zero of Z "
-                "so deep in the work, or trace a scan with --depth"
+                f"{self.source.name} states no depth: the tool runs along its lines at Z0; set the zero of "
+                "Z at the depth of the cut, or trace a scan with --depth"
             )
         read = read_or_play(self.source, ByHand(), listener, feed_mm_s, self.drawn_unit)
         unit = self.unit.at(of_path_mm(self.zero, read, self.unit.placement))

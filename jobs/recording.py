@@ -98,7 +98,7 @@ class RecordingUnit:
             program is None or program.suffix.lower() not in medium.WITH_ARCS
         ):
             raise WrongUse(
-                f"--lines-only is for what has arcs, {', '.join(medium.WITH_ARCS)}; give -o such a name, "
+                f"--lines-only is for files with arcs, {', '.join(medium.WITH_ARCS)}; give -o such a name, "
                 "or leave it out"
             )
 

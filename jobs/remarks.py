@@ -142,8 +142,8 @@ def _of_gaps(trace: Trace, allowed_mm: float) -> Iterator[str]:
             x, y = line.place(len(line.xy_mm) - 1)
             yield (
                 f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm before a gap of {line.gap_mm:.1f} mm that"
-                f" --gap {allowed_mm:g}mm allows, but neither straight on nor along its bend does it meet"
-                " the line behind it: draw the line on there"
+                f" --gap {allowed_mm:g}mm allows, but the line behind the gap lies neither straight ahead"
+                " nor along the bend: close the gap on the drawing"
             )
         elif line.gap_mm is not None:
             x, y = line.start_mm
@@ -185,14 +185,14 @@ def _of_open(trace: Trace) -> Iterator[str]:
     apart_mm = math.dist(line.begin_mm, line.end_mm)
     if end is not None:
         yield (
-            f"the line is open, but runs past its own end at {end[0]:.1f},{end[1]:.1f} mm: if a closed line "
-            "is meant, --lines contours takes that"
+            f"the line is open, but runs past its own end at {end[0]:.1f},{end[1]:.1f} mm: if you mean a "
+            "closed line, --lines contours takes it"
         )
     elif apart_mm < BESIDE_WIDTHS * line.width_mm and line.length_mm > FAR_WIDTHS * apart_mm:
         x, y = line.begin_mm
         yield (
-            f"the line is open, and ends {apart_mm:.1f} mm from its beginning, at {x:.1f},{y:.1f} mm: if a "
-            "closed line is meant, draw what is missing there, on the sheet or by `morfax correct --bridge`"
+            f"the line is open, and ends {apart_mm:.1f} mm from its beginning, at {x:.1f},{y:.1f} mm: if you "
+            "mean a closed line, draw what is missing there, on the sheet or by `morfax correct --bridge`"
         )
 
 

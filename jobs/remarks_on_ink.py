@@ -204,7 +204,7 @@ def _of_others(trace: Trace) -> Iterator[str]:
     """Further lines of the sheet, where one was traced and nobody said which."""
     others = trace.others
     if others.lines:
-        lines = "1 further line" if others.lines == 1 else f"{others.lines} further lines"
+        lines = "1 other line" if others.lines == 1 else f"{others.lines} other lines"
         inside = f", {others.inside} of them inside it" if others.inside else ""
         yield (
             f"one line is traced; the sheet has {lines}{inside}: --lines contours cuts a part with its holes,"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -13,8 +13,13 @@ if TYPE_CHECKING:
     from morfax.tracer.program.unexplained import Unexplained
 
 
-def lines(trace: Trace, *, on_edges: bool = False) -> dict[str, Any]:
-    """What the head found of each line, in the order in which the lines are cut; an edge has no width."""
+def lines(
+    trace: Trace, cell_shares: Mapping[int, float], *, on_edges: bool = False
+) -> dict[str, Any]:
+    """What the head found of each line, in the order in which the lines are cut; an edge has no width.
+
+    `cell_shares` are the swinging cell's shares of the lines, by their numbers.
+    """
     rows: list[dict[str, Any]] = [
         {
             "line": line.number,
@@ -24,7 +29,7 @@ def lines(trace: Trace, *, on_edges: bool = False) -> dict[str, Any]:
             **({"outline": True} if line.on_edge else {}),
             "edge_roughness_mm": line.roughness_mm,
             "start_place_mm": line.start_mm,
-            "cell_share": line.cell_share,
+            "cell_share": cell_shares.get(line.number),
         }
         for line in trace.lines
     ]

@@ -141,7 +141,8 @@ class Traced:
         led = self.led.figures() if self.led else {}
         if not self.several:
             return led
-        return led | trace_figures.lines(self.trace, on_edges=self.on_edges)
+        cell_shares = self.led.of_lines if self.led else {}
+        return led | trace_figures.lines(self.trace, cell_shares, on_edges=self.on_edges)
 
     def name(self, file: FilePath) -> FilePath:
         """The name for a result: marked if the line was lost."""

@@ -218,7 +218,7 @@ def _refuse_marks(settings: TraceSettings, card: Card) -> None:
     for what, given in asked.items():
         if given:
             raise WrongUse(
-                f"--lines all follows crosses, ticks and dots as lines, so {what} cannot be served; give"
+                f"--lines all follows crosses, ticks and dots as lines, and does not take {what}; give"
                 " --lines contours"
             )
 

@@ -6,8 +6,8 @@ leader for the picture.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,10 +28,15 @@ THINNED = 30  # one position in 30 is drawn: every 50 um at 10 mm/s
 
 @dataclass(frozen=True, slots=True)
 class WhoLed:
-    """How far each of the `LEADERS` led the head, mm, and the runs of each with their places (n, 2) mm."""
+    """How far each of the `LEADERS` led the head, mm, and the runs of each with their places (n, 2) mm.
+
+    `of_lines`: the cell's share of each line, by its number, of the way that the head went: a cutter's path
+    is another.
+    """
 
     lengths_mm: tuple[float, ...]
     runs_mm: tuple[tuple[int, Array], ...] = ()
+    of_lines: Mapping[int, float] = field(default_factory=dict)
 
     @classmethod
     def along(cls, trace: Trace) -> WhoLed | None:
@@ -43,7 +48,10 @@ class WhoLed:
         if not lengths_mm.sum() > 0:
             return None
         runs = [run for line in lines for run in _runs(line)]
-        return cls(tuple(lengths_mm.tolist()), tuple(runs))
+        of_lines = {
+            line.number: share for line in lines if (share := line.cell_share) is not None
+        }
+        return cls(tuple(lengths_mm.tolist()), tuple(runs), of_lines)
 
     @property
     def cell_share(self) -> float:
@@ -72,9 +80,9 @@ class WhoLed:
         """A remark if the cell led less than it should."""
         if self.cell_share < LEAST_CELL_SHARE:
             yield (
-                f"the swinging cell led the head only {100 * self.cell_share:.0f} % of the way, stations and"
-                " memory the rest: --picture shows where; check the path there, or scan at a higher"
-                " resolution"
+                f"the swinging cell led the head only {100 * self.cell_share:.0f} % of the way, places felt"
+                " ahead and memory led the rest: --picture shows where; check the path there, or scan at"
+                " a higher resolution"
             )
 
 

@@ -150,6 +150,6 @@ def refuse_of_part(zero: Zero | None, program: FilePath) -> None:
     """Raise WrongUse for the zero of a part where only the sheet is known."""
     if zero in OF_PART:
         raise WrongUse(
-            f"--zero {zero} is of the part that was cut, and neither the drawing nor {program.name} says "
-            "where that is; give the place that trace told as zero_place_mm, such as --zero 12.3,45.6"
+            f"--zero {zero} is a place of the part, and neither the drawing nor {program.name} says where "
+            "the part is; give the place that trace printed as zero_place_mm, such as --zero 12.3,45.6"
         )

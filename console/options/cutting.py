@@ -16,7 +16,7 @@ KERF = option(
     "--kerf",
     "kerf_mm",
     type=CUTTER,
-    help="Width of the cut of a torch or laser, such as 1.2mm: the same as --cutter, in that trade's word.",
+    help="Width of the cut of a torch or laser, such as 1.2mm: the same as --cutter.",
 )
 CUTTING = (
     option(
@@ -44,7 +44,7 @@ CUTTING = (
         GROUP,
         "--lead-out",
         type=LEAD,
-        help="Leave a closed line through the scrap, in the same words.",
+        help="Leave a closed line through the scrap: the same for its end.",
     ),
     option(
         GROUP,

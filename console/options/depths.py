@@ -18,7 +18,7 @@ DEPTHS = (
         "--step-down",
         "step_down_mm",
         type=COUNTED,
-        help="Deepest cut of one pass, such as 1.5mm: each line is run at equal passes down to its depth.  "
+        help="Deepest cut of one pass, such as 1.5mm: each line is cut in equal passes down to its depth.  "
         "[default: the card's passes, or one]",
     ),
     option(
@@ -56,7 +56,7 @@ DEPTHS = (
         "--peck",
         "peck_mm",
         type=COUNTED,
-        help="Holes are drilled so deep at a time, such as 2mm, and the drill comes up in between.  "
+        help="Depth of one peck in a drilled hole, such as 2mm: the drill comes up after each.  "
         "[default: the card's, or at once]",
     ),
 )

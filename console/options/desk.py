@@ -18,7 +18,7 @@ def desk_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "-q",
         "--quiet",
         is_flag=True,
-        help="No figures (but --json), no notes, no progress bar; only what went wrong.",
+        help="Print only what went wrong, and the figures of --json: no table, notes or progress bar.",
     )
     @option("Output", "-v", "--verbose", is_flag=True, help="Say more on stderr.")
     @option(

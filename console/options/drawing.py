@@ -82,7 +82,7 @@ _DRAWING = (
         "Drawing",
         "--page",
         type=click.IntRange(min=1),
-        help="Page of a PDF, of a TIFF of several, or of moving pictures.  [default: the first]",
+        help="Page of a file that has several: a PDF, a TIFF, moving pictures.  [default: the first]",
     ),
     option(
         "Drawing",

@@ -92,7 +92,7 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         GROUP,
         "--mirror",
         type=click.Choice(["x", "y"]),
-        help="Run X, or Y, the other way.",
+        help="Mirror the program: X, or Y, runs the other way.",
     )
     @option(
         GROUP,

@@ -62,9 +62,8 @@ LETTERING = option(
     "--lettering",
     "lettering_mm",
     type=LETTERS,
-    help="With --lines all, contours or outer: which letters the head follows: all, none, or those as high "
-    "as 2mm, say, and higher. What is left out is told.  [default: all; of contours with --cutter those as "
-    "high as three cutters]",
+    help="With --lines all, contours or outer, which letters to follow: all, none, or a least height such as "
+    "2mm. The figures list the others.  [default: all; of contours with --cutter, three cutters high]",
 )
 LINE_WIDTH = option(
     "Line",
@@ -120,7 +119,7 @@ _LINE = (
         metavar="X,Y X,Y",
         help="Where a line begins, and a place to which the head goes from there, such as 40,26 50,26; "
         "several times for several lines. With --lines these lines begin so, without it they are the lines. "
-        "It goes before --climb and the machine's own direction.  [default: as it comes]",
+        "It takes precedence over --climb and the machine's direction.  [default: as it comes]",
     ),
     option(
         "Line",

@@ -82,7 +82,7 @@ PARTS: tuple[tuple[str, str, Any, str], ...] = (
         "--dropout-length",
         "dropout_s",
         TIME,
-        "Their length: half of them are shorter, half longer.",
+        "Length of the dropouts: half of them are shorter, half longer.",
     ),
     ("--dropout-depth", "dropout_db", DECIBELS, "Their depth, dB."),
     ("--hum", "hum_db", DECIBELS, "Hum, dB below the carrier."),
@@ -159,10 +159,10 @@ def part_options(verb: Any) -> Any:
 def command(
     tape: FilePath, output: FilePath, machine: str | None, seed: int, desk: Desk, **parts: Any
 ) -> None:
-    """Wear a tape as a real recorder and the years do.
+    """Add the wear of a real recorder to a tape: noise, flutter, dropouts.
 
-    Each part of the wear stands by itself; without any the tape is only copied. The sets are described
-    in docs/background/transport.md.
+    Each option adds one kind of wear; without any the tape is only copied. docs/background/transport.md
+    describes the presets.
     """
     worn = {name: value for name, value in parts.items() if value is not None}
     if "stamped_hz" in worn:

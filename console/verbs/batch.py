@@ -63,7 +63,7 @@ Examples:
     type=FILE,
     metavar="FOLDER",
     help="Write the page of a batch, FOLDER/report.html, and do nothing else: all drawings in small, those "
-    "that want a person's eye first.",
+    "that need a person's eye first.",
 )
 @option(
     "Batch",
@@ -84,7 +84,7 @@ Examples:
     type=LIMIT,
     default="120s",
     show_default=True,
-    help="How long one drawing may take; a longer one is marked, and costs no other.",
+    help="How long one drawing may take; one that takes longer is stopped and marked.",
 )
 @option(
     "Batch",
@@ -121,9 +121,10 @@ def command(
     """Trace all drawings of a folder, each into a folder of its own.
 
     DRAWINGS is a folder. Each drawing's results are in a folder of its name and a hash of its content, the
-    settings and the version: path.csv, the program, picture.png, figures.json. What is there already is not
-    done again, so an interrupted batch goes on where it was. A drawing that fails, hangs or crashes stops no
-    other. manifest.jsonl has a line for each drawing as it ends. Exit code 1: some failed.
+    settings and the version: path.csv, the program, picture.png, figures.json. Results that are there already
+    are not made again, so an interrupted batch goes on where it stopped. A drawing that fails, hangs or
+    crashes does not stop the others. manifest.jsonl gets a line for each drawing as it ends. Exit code 1:
+    some failed.
     """
     named: Any = drawings.file  # as it was given: an address is no path
     where = None if named is None else str(named)

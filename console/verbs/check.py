@@ -33,15 +33,15 @@ Examples:
     "Machine",
     "--machine",
     metavar="MACHINE",
-    help="The machine that shall run it: a name that `morfax machines` lists, or a .toml file of your "
-    "own.  [default: the one that the program names, or linuxcnc]",
+    help="The machine that will run the program: a name that `morfax machines` lists, or a .toml file of "
+    "your own.  [default: the one that the program names, or linuxcnc]",
 )
 @option(
     "Machine",
     "--stock",
     type=STOCK,
     help="The material, width x height x thickness (or without thickness): work beside or below it is "
-    "found.",
+    "a finding.",
 )
 @option(
     "Machine",

@@ -101,7 +101,7 @@ Examples:
     type=ZERO,
     help="Where the path's zero is on the drawing: sheet (its lower-left corner), reference (the drawing's "
     "reference point), lower-left or centre (of the part, where G-code of ours says that place at its head), "
-    "or X,Y in mm, as trace told zero_place_mm.  [default: what the program says, or sheet]",
+    "or X,Y in mm, as trace printed it as zero_place_mm.  [default: what the program says, or sheet]",
 )
 @DRAWN_UNIT
 @renamed("--origin", "--zero")
@@ -118,15 +118,15 @@ def command(
     desk: Desk,
     **options: Any,
 ) -> None:
-    """Say how far two contours are apart: paths, tapes, or one of them a drawing.
+    """Say how far two contours are apart: paths, programs, or one of them a drawing.
 
-    A and B are path files (.csv), drawings from CAD (.dxf, .svg), tapes (.wav; they are played first)
-    or, one of them, a drawing on paper. Only what is run with the tool in the work counts. Between two paths
-    the distance is measured both ways. Against a drawing on paper it is the distance to the ink's own centre,
-    measured across the path in the image, and the ink that no path covers is counted.
+    A and B are path files (.csv), drawings from CAD (.dxf, .svg), programs (.wav, .ngc …; they are played
+    first) or, one of them, a drawing on paper. Only motion with the tool in the work counts. Between two
+    paths the distance is measured both ways. Against a drawing on paper it is the distance to the middle of
+    the ink, measured across the path in the image; ink that no path covers is counted.
 
-    With --systems the systems are set side by side: A is a drawing and B is left out; the table has a row for
-    each system, and one that refuses or faults says why in its row.
+    With --systems the verb compares the control systems: A is a drawing, and B is left out. The table has a
+    row for each system; if a system refuses or faults, its row says why.
     """
     kerf_is_cutter(options)
     if options["systems"] is not None:

@@ -104,31 +104,34 @@ def _placed(name: str, text: str, kind: Any = CORRECTED) -> Decorator:
     type=click.Choice(["cw", "ccw"]),
     help="Which way round from --start.  [default: as it comes]",
 )
-@option("Correction", "--why", default="", help="A word on why, which is kept with them.")
+@option(
+    "Correction", "--why", default="", help="The reason, which is kept with the correction."
+)
 @option(
     "Correction",
     "--remove",
     type=click.IntRange(min=1),
     multiple=True,
-    help="Take one away by its number.",
+    help="Remove the correction of this number.",
 )
 @option(
     "Correction",
     "--undo",
     count=True,
-    help="Take the last one away; several times for several.",
+    help="Remove the last correction; give it several times for several.",
 )
-@option("Correction", "--list", "listed", is_flag=True, help="Only say which there are.")
+@option("Correction", "--list", "listed", is_flag=True, help="Only list the corrections.")
 @drawing_options("drawing")
 @desk_options
 def command(drawing: DrawingFile, desk: Desk, listed: bool, undo: int, **options: Any) -> None:
-    """Put right what the head got wrong: rub out, bridge, turn, stop.
+    """Correct what the head gets wrong on a drawing: rub out, bridge, turn, stop.
 
-    trace, run, lines and compare of the drawing use the corrections from then on. They are kept beside it, in
-    its name with .morfax.toml (--corrections: in another file), a text that may be edited. Places are X,Y:
-    with px columns from the left and rows from the top of the picture, as picture viewers show; in mm from
-    the sheet's lower-left corner. Without anything to do the corrections are listed. Ink is rubbed out and
-    drawn in the order of the file.
+    From then on trace, run, lines and compare of the drawing use the corrections. They are in a text file
+    beside the drawing, in its name with .morfax.toml (or in the file of --corrections), which you may edit.
+    Without anything to do, the verb lists the corrections.
+
+    Places are X,Y: with px columns from the left and rows from the top of the picture, as picture viewers
+    show; in mm from the sheet's lower-left corner. Rubber and pen work in the order of the file.
     """
     remove = options.pop("remove")
     add = () if listed else asked_corrections(options)

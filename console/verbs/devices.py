@@ -78,8 +78,8 @@ def command(
 ) -> None:
     """List the sound devices; play a test tone, and show the levels of its tracks.
 
-    A device is named by its number, its name or a part of it. With --test-tone the recorder is set to
-    record at its usual level; with --meters its playback is set to about -6 dB on every track.
+    Name a device by its number, its name or a part of it. With --test-tone, set the recorder to its usual
+    recording level; with --meters, set its playback to about -6 dB on every track.
     """
     if not 0 < lasts_s <= LONGEST_TONE_S:
         raise WrongUse(f"--for is {lasts_s:g} s; it may be up to {LONGEST_TONE_S:g}s")

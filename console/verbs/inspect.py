@@ -38,10 +38,10 @@ Examples:
 @tape_options
 @desk_options
 def command(tape: FilePath, picture: FilePath | None, by_hand: ByHand, desk: Desk) -> None:
-    """Say what is on a tape: tracks, carriers, levels, travel, format.
+    """Say what is in a program: of a tape its tracks, carriers, levels, travel, format.
 
-    Of a tape that cannot be played the figures say what can be known, and the fault says why it cannot be
-    played. Of a program in another medium (.steps, .cubic, .ngc) they say its format and what it does.
+    If a tape cannot be played, the figures hold what can be known, and the fault says why. Of a program in
+    another medium (.steps, .cubic, .ngc) the figures hold its format and what it does.
     """
     result = InspectJob(tape, by_hand, picture).run(desk)
     figures = dict(result.figures)

@@ -62,13 +62,14 @@ def command(
     picture: FilePath | None,
     desk: Desk,
 ) -> None:
-    """Say what is on a drawing: a numbered table of its lines, dots and likely lettering.
+    """List what is on a drawing: a numbered table of its lines, dots and likely lettering.
 
-    Nothing is traced. The numbers are those that `morfax trace --lines 1,3` takes, with the same options of
-    the drawing and of the line: lines that stand apart, the longest first; dots; then, with --follow, the
-    other lines of those that cross or touch. With --edge --lines all the numbers are this table's own. The
-    notes say what --lines contours leaves out, and what is
-    wrong with the scale, if anything is.
+    Nothing is traced. `morfax trace --lines 1,3` takes these numbers, if it has the same options for the
+    drawing and the line. First come lines that stand apart, the longest first, then dots, then, with
+    --follow, the other lines of those that cross or touch. With --edge --lines all the numbers are valid in
+    this table only.
+
+    Notes say what --lines contours leaves out, and what is wrong with the scale, if anything is.
     """
     if lines is not None and not drawing.edge:
         raise click.UsageError(

@@ -56,10 +56,10 @@ def command(
 ) -> None:
     """Record a tape anew without its dropouts.
 
-    A check signal says where the axes are behind each dropout; the way within is laid with the least
-    acceleration, and its largest possible error is reported. A bare tape is mended where its end tells which
-    dropout lost how many whole cycles: the end that it states, or with --closed its start. Where cycles could
-    have been lost in more than one way, nothing is written and the exit code is 5.
+    A check signal says where the axes are behind each dropout. morfax fills in the path within the dropout
+    with the least acceleration, and reports its largest possible error. A bare tape can be mended if its end,
+    or with --closed its start, shows which dropout lost how many whole cycles. If more than one way is
+    possible, nothing is written and the exit code is 5.
     """
     job = MendJob(tape, output, acceleration_mm_s2, by_hand)
     desk.figures(job.run(desk).figures)

@@ -72,9 +72,9 @@ def command(
 ) -> None:
     """Open the operator's panel in a browser: see the sheet, choose lines, run, watch, save.
 
-    DRAWING is a scan or photo, or a folder of drawings to choose from. The page does what the other verbs
-    do, and shows the command for it. What is set is kept in the panel's folder after each step, and is there
-    again after a new start. Ctrl-C ends the server.
+    DRAWING is a scan or photo, or a folder of drawings to choose from. The page does what the other verbs do,
+    and shows the command for it. The panel's folder keeps your settings after each step, so that a new start
+    shows them again. Ctrl-C ends the server.
     """
     try:
         from morfax.panel import server

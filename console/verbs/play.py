@@ -166,13 +166,13 @@ def command(
     desk: Desk,
     **control: Any,
 ) -> None:
-    """Play a tape into the simulated machine and write the path it runs.
+    """Play a program on the simulated machine and write the path that the machine runs.
 
-    The path is that of the machine's own lead screws, phase-locked to the tape. Without -o the verb only
-    prints figures. TAPE may be -, a pipe: a WAV, or raw 16-bit samples of four tracks. With --device
-    the tape comes from a sound device, as a recorder plays it. A drawing from CAD
-    (.dxf, .svg) is recorded on a tape first, as `morfax record` does it, and that tape is played. If
-    the machine faults, the path before the fault is kept, with `.incomplete` in its name.
+    The path is that of the machine's own lead screws, which a tape moves by phase lock. Without -o the verb
+    only prints figures. TAPE may be any program, or -, a pipe: a WAV, or raw 16-bit samples of four tracks.
+    With --device the tape comes from a sound device, as a recorder plays it. A drawing from CAD (.dxf, .svg)
+    is recorded on a tape first, as `morfax record` does it. If the machine faults, the path before the fault
+    is kept, with `.incomplete` in its name.
     """
     if (tape is None) == (intake.device is None):
         raise WrongUse("give a TAPE, or a --device that it comes from")

@@ -99,11 +99,12 @@ def command(
 ) -> None:
     """Record a path file, or another program, in the medium that the name after -o says.
 
-    SOURCE is a CSV file with the columns t_s, x_mm, y_mm, z_mm, tool (x_mm and y_mm, or x and y, are enough;
-    without times the path is run at the feed), and u_mm, v_mm … for further axes (A, B, C, U, V, W), which
-    only a tape takes; a drawing from CAD (.dxf, .svg), whose lines are run at the feed with the tool up
-    between them, inner ones first; or a program in any medium, which is first played on its own control.
-    With --device the tape is played out of a sound device as it is made, for a recorder to take.
+    SOURCE is one of three. A CSV file with the columns t_s, x_mm, y_mm, z_mm, tool (x_mm and y_mm, or x and
+    y, are enough; a path without times runs at the feed), and u_mm, v_mm … for further axes (A, B, C, U, V,
+    W), which only a tape takes. Or a drawing from CAD (.dxf, .svg): its lines run at the feed, inner ones
+    first, with the tool up between them. Or a program in any medium: its own control plays it first.
+
+    With --device the tape is played out of a sound device as it is made, so that a recorder can take it.
     """
     job = RecordJob(
         source,

@@ -50,12 +50,12 @@ def command(
     unit: RecordingUnit,
     desk: Desk,
 ) -> None:
-    """Go the whole way: trace a drawing, play the tape, compare all three.
+    """Go the whole way: trace a drawing, play the program, compare all three.
 
-    The folder then holds the tape (.wav), or with --machine the program in that machine's words, the traced
-    and the played path (.csv), the picture of the played path with its error in colour (.png) and the figures
-    (.json). Files of these names are written over. Mirrored, scaled or turned paths are compared with the
-    drawing as they were before.
+    The folder then holds the tape (.wav), or with --machine the program for that machine, the traced and the
+    played path (.csv), the picture of the played path with its error in colour (.png) and the figures
+    (.json). Files of these names are written over. If --mirror, --scale or --turn changes the program, the
+    comparison with the drawing undoes the change.
     """
     run_and_show(RunJob(drawing, folder, settings, unit), desk, panel)
 

@@ -79,15 +79,18 @@ def command(
     unit: RecordingUnit,
     desk: Desk,
 ) -> None:
-    """Follow the line of a drawing and record the head's motion on a tape.
+    """Follow the lines of a drawing and write a program: a tape, G-code, DXF and others.
 
-    DRAWING is a scan or photo (PNG, JPEG, TIFF, HEIC, …) or a PDF. A closed line is followed until it closes,
-    an open one from end to end. If the line is lost, what was traced before is kept, with `.incomplete` in
-    the names; of several lines (--lines) the others are cut all the same. The picture numbers them. If the
-    head finds no line to start on, --picture shows the sheet, so that a place for --start can be read off it.
-    The picture shows the drawing as it is; tape and path are mirrored, scaled and turned as asked for.
-    Several drawings are traced with the same options, each to results of its own name; one that fails does
-    not stop the others.
+    DRAWING is a scan or photo (PNG, JPEG, TIFF, HEIC, …) or a PDF. The head follows a closed line until it
+    closes, an open one from end to end. If it loses the line, what it traced before is kept, with
+    `.incomplete` in the names; of several lines (--lines) the others are cut all the same.
+
+    --picture shows the drawing with the path and the numbers of the lines; if the head finds no line to start
+    on, it shows the sheet, so that you can read a place for --start. Program and path are mirrored, scaled
+    and turned as the options say; the picture is not.
+
+    Several drawings are traced with the same options, each to results of its own name. A drawing that fails
+    does not stop the others.
     """
     outputs = TraceOutputs(output, path_file, picture, force)
     names = [str(name) for name in (output, path_file, picture) if name is not None]

@@ -82,7 +82,10 @@ class CubicPlayback(Supervised):
         name: str,
         historic: bool = False,
     ) -> None:
-        self.program, self.servo, self._name, self.format = program, servo, name, program.format
+        self.program = program
+        self.servo = servo
+        self._name = name
+        self.format = program.format
         self.notes = () if program.summed else (note_of_no_sum(name),)
         self.historic = historic
         self.base = (
@@ -124,7 +127,8 @@ class CubicPlayback(Supervised):
 
     def __iter__(self) -> Iterator[Motion]:
         """Play: the motion in blocks; raises LockFault or FollowingFault after the last good sample."""
-        fmt, start = self.format, np.array(self.program.checks[0], np.int64)
+        fmt = self.format
+        start = np.array(self.program.checks[0], np.int64)
         rate_hz = self.base.step_hz
         state = np.zeros((len(AXES), 2))
         state[:, 0] = self.start_mm

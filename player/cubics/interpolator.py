@@ -77,7 +77,9 @@ class CubicInterpolator:
 def ends(words: Words, points: int, linear: int = 1) -> Words:
     """Travel of register I in each interval (k, axes): p A + p(p-1)/2 A² + p(p-1)(p-2)/6 A³."""
     n = points // linear
-    first, second, third = words[..., 0], words[..., 1], words[..., 2]
+    first = words[..., 0]
+    second = words[..., 1]
+    third = words[..., 2]
     return np.asarray(
         linear * (n * first + n * (n - 1) // 2 * second + n * (n - 1) * (n - 2) // 6 * third)
     )
@@ -90,7 +92,9 @@ def slopes(words: Words, points: int, linear: int = 1) -> tuple[Words, Words]:
     The cubic's own slope is not the first difference: x'(0) = A - A²/2 + A³/3 to a step.
     """
     n = points // linear
-    first, second, third = words[..., 0], words[..., 1], words[..., 2]
+    first = words[..., 0]
+    second = words[..., 1]
+    third = words[..., 2]
     start = 6 * first - 3 * second + 2 * third
     return start, start + 6 * n * second - 6 * n * third + 3 * n * n * third
 

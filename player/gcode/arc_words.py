@@ -86,7 +86,9 @@ class ArcWords:
     def _by_radius(self, begin: Place, end: Place) -> Centre:
         """The centre that leaves less than half a turn, or with a negative radius more."""
         given = self.values["R"]
-        across, up, radius = end[0] - begin[0], end[1] - begin[1], given * self.scale
+        across = end[0] - begin[0]
+        up = end[1] - begin[1]
+        radius = given * self.scale
         chord = math.hypot(across, up)
         if chord == 0 or chord / 2 > abs(radius) + self.limits.beyond_mm(abs(radius)):
             more = f"{chord / 2:.4f} mm or more, or other ends"
@@ -97,14 +99,16 @@ class ArcWords:
             )
         height = math.sqrt(max(radius**2 - chord**2 / 4, 0.0))
         off = height * math.copysign(self.sense, self.sense * radius) / chord
-        return (begin[0] + end[0]) / 2 - off * up, (begin[1] + end[1]) / 2 + off * across
+        middle = (begin[0] + end[0]) / 2, (begin[1] + end[1]) / 2
+        return middle[0] - off * up, middle[1] + off * across
 
     def _by_offset(self, begin: Place, end: Place) -> Centre:
         """The centre from I and J, moved to be as far from both ends."""
         given_i, given_j = self.values.get("I", 0.0), self.values.get("J", 0.0)
         i, j = given_i * self.scale, given_j * self.scale
         centre = begin[0] + i, begin[1] + j
-        radius, other = math.hypot(i, j), math.dist(end[:2], centre)
+        radius = math.hypot(i, j)
+        other = math.dist(end[:2], centre)
         if radius == 0:
             raise WordError(self.kind, "has no centre; give I and J, or R")
         slack_mm = self.limits.slack_mm(radius)
@@ -114,7 +118,8 @@ class ArcWords:
                 f"is no centre of both ends: {radius:.4f} mm from the start, {other:.4f} mm from the "
                 f"end; they may differ by {slack_mm:.4f} mm",
             )
-        across, up = end[0] - begin[0], end[1] - begin[1]
+        across = end[0] - begin[0]
+        up = end[1] - begin[1]
         chord_squared = across**2 + up**2
         if chord_squared == 0:
             return centre

@@ -65,7 +65,7 @@ def feed_number(pulses_per_s: float, recirculations_hz: float) -> int:
 def override_number(share: float) -> int:
     """The override as a number of 10 bits; 1.0 passes every pulse."""
     if not 0 <= share <= 1:
-        raise ValueError(f"an override of {share:g} is none; give a share of 0 to 1")
+        raise ValueError(f"the override is {share:g}; give a share of 0 to 1")
     return round(share * 2**OVERRIDE_BITS)
 
 

@@ -79,7 +79,8 @@ class _Pen:
                 f"{self.name}, line {number}: {command[:20]!r} is not played; this control reads {_READ}",
                 line=number,
             )
-        code, values = found[1], self._values(number, found[1], found[2])
+        code = found[1]
+        values = self._values(number, found[1], found[2])
         if code == "VS" and values:
             self.feed_mm_s = 10 * values[0]
         self._set_scale(number, code, values)

@@ -257,7 +257,8 @@ class PulsePlayback(Supervised):
             yield from interpolator.recirculate(end, (0, 0), LINE, feed)
             return
         parts = math.ceil(abs(move.turned_rad) / LARGEST_ARC)
-        sense, centre = int(math.copysign(1, move.turned_rad)), self._pulses(move.centre_mm)
+        sense = int(math.copysign(1, move.turned_rad))
+        centre = self._pulses(move.centre_mm)
         radius = math.dist(move.centre_mm, move.end_mm[:2])
         last = math.atan2(
             move.end_mm[1] - move.centre_mm[1], move.end_mm[0] - move.centre_mm[0]

@@ -136,7 +136,8 @@ class ResidueInterpolator:
         residue: int | None = None,
     ) -> Iterator[Pulses]:
         """Load the residues and give command pulses, in parts, until the error is zero; sense 0 is a line."""
-        target, middle = np.array(end, np.int64), np.array(centre, np.int64)
+        target = np.array(end, np.int64)
+        middle = np.array(centre, np.int64)
         error = target - self.position
         if residue is None:
             residue = (self.servo_constant + int(np.abs(error).max())) // 2

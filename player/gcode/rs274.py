@@ -238,7 +238,7 @@ class GcodeReader:
         if not _ARC_WORDS.isdisjoint(values):
             raise self._fault(
                 _first_word("IJR", values),
-                f"belongs to an arc, and {kind} is none; leave it out",
+                f"belongs to an arc, and {kind} is not one; leave it out",
             )
         self.moves.append(
             Move(self.number, kind, end, 0.0 if kind == RAPID else self.feed_mm_s)

@@ -59,8 +59,9 @@ class FollowingLimit:
             )
         settings = [*errors_mm, self.beyond_s, self.tolerance_mm, self.settle_s, self.hold_s]
         if not all(0 <= value < math.inf for value in settings):
+            shown = ", ".join(f"{value:g}" for value in settings)
             raise ValueError(
-                f"a limit made of {settings} is none; errors, slope, tolerance and times are 0 or more"
+                f"a limit has the settings {shown}; errors, slope, tolerance and times must be 0 or more"
             )
 
     @classmethod
@@ -137,7 +138,8 @@ class Monitor:
         self._chart = chart
         if chart is not None:
             chart.begin(self.axes)
-        share, fade = 1 - self._fade(self.limit.settle_s), self._fade(self.limit.hold_s)
+        share = 1 - self._fade(self.limit.settle_s)
+        fade = self._fade(self.limit.hold_s)
         self._settings = np.array(
             [rate_hz, share, fade, self.limit.beyond_s, self.limit.tolerance_mm]
         )

@@ -152,7 +152,8 @@ def lost_way(
     gap: Gap, axis: str, rate_hz: float, position_mm: float, known: Behind | None
 ) -> DropoutFault:
     """The fault of a gap whose way is not known."""
-    time_s, length_s = gap.first / rate_hz, (gap.last - gap.first) / rate_hz
+    time_s = gap.first / rate_hz
+    length_s = (gap.last - gap.first) / rate_hz
     behind = "and the tape does not say where it is behind that: mend it (morfax mend) or copy it again"
     if known is not None:
         places = ",".join(f"{place_mm:.4f}" for place_mm in known.places_mm)

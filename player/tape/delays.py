@@ -126,7 +126,8 @@ class Delay:
     def _slope(self, first: int) -> float:
         """How fast the delay changes in seven that were told, from one on, s per row."""
         last = first + WINDOW or None
-        told, rows = np.array(self._told[first:last]), np.array(self._rows[first:last])
+        told = np.array(self._told[first:last])
+        rows = np.array(self._rows[first:last])
         off = rows - rows.mean()
         spread = float(off @ off)
         return float(off @ told) / spread if len(told) == WINDOW and spread else 0.0

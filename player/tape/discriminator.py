@@ -131,8 +131,10 @@ class Discriminator:
 
     def _demodulated(self, rows: Frames, row: int) -> Phases:
         """Run the kernels; before the tape's first full row that row is held."""
-        count, tracks = len(rows) - self._reach, rows.shape[1] // self.decimation
-        phase, levels = np.empty((tracks - 1, count)), np.empty((count, tracks), np.float32)
+        count = len(rows) - self._reach
+        tracks = rows.shape[1] // self.decimation
+        phase = np.empty((tracks - 1, count))
+        levels = np.empty((count, tracks), np.float32)
         cycles, surprise = (
             np.empty((count, tracks - 1)),
             np.empty((count, tracks - 1), np.float32),

@@ -207,7 +207,8 @@ class Gaps:
             return []
         apart = self._side + 2 * self._spread
         cuts = np.flatnonzero(np.diff(lost) > apart)
-        firsts, lasts = lost[np.r_[0, cuts + 1]], lost[np.r_[cuts, len(lost) - 1]]
+        firsts = lost[np.r_[0, cuts + 1]]
+        lasts = lost[np.r_[cuts, len(lost) - 1]]
         return [
             (max(int(a) - self._spread, 0), int(b) + 1 + self._spread)
             for a, b in zip(firsts, lasts, strict=True)
@@ -215,7 +216,8 @@ class Gaps:
 
     def _bridge(self, rows: Phases, axis: int, a: int, b: int) -> Fault | None:
         """Fill a gap and count on behind it; the fault if it is too long to be certain."""
-        cycles, time_s = rows.cycles[:, axis], (rows.first_row + a) / self._rate_hz
+        cycles = rows.cycles[:, axis]
+        time_s = (rows.first_row + a) / self._rate_hz
         is_short = b - a <= self._longest_s * self._rate_hz
         if is_short and b + self._side > len(rows) and self._rests_from(rows, axis, a):
             cycles[a:], rows.surprise[a:, axis] = cycles[max(a - 1, 0)], 0

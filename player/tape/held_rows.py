@@ -57,7 +57,8 @@ class HeldRows:
 
     def axis(self, axis: int, first: int, last: int) -> Array:
         """The places of one axis in the rows from `first` to before `last`, cycles."""
-        first, last = max(first, 0) + self._dropped, max(last, 0) + self._dropped
+        first = max(first, 0) + self._dropped
+        last = max(last, 0) + self._dropped
         if last <= len(self._blocks[0]):
             return self._blocks[0].cycles[first:last, axis]
         parts = []

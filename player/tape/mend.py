@@ -144,7 +144,8 @@ def _mend(place: Place, found: Bridge, reader: TapeReader, fmt: TapeFormat) -> M
     """The mend of a dropout; a motion of acceleration A in it may swing out by A T² / 16."""
     cycles = (reader.told or {})[place]
     unknown_mm = (abs(found.off + cycles) / 2 + found.reach / 4) * fmt.mm_per_cycle
-    time_s, axis = place[0] / fmt.motion_rate_hz, fmt.axes[place[1]]
+    time_s = place[0] / fmt.motion_rate_hz
+    axis = fmt.axes[place[1]]
     length_s = reader.bridged[time_s, axis]
     return Mend(axis, time_s, length_s, cycles, unknown_mm, unknown_mm)
 

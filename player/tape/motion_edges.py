@@ -46,15 +46,19 @@ def upper_edge(ends: Array, rows: int, acceleration: float, speed: float) -> Arr
     t = np.arange(1, rows)
     left = rows - t
     # 1. the fastest that it may be going, and how high it is then: from the left, and back from the right
-    s0, top0 = v0 + most * t, p0 + v0 * t + most * t**2 / 2
-    s1, top1 = v1 - most * left, p1 - v1 * left + most * left**2 / 2
+    s0, s1 = v0 + most * t, v1 - most * left
+    top0 = p0 + v0 * t + most * t**2 / 2
+    top1 = p1 - v1 * left + most * left**2 / 2
     # 2. the speed at which both are as high
     apart = np.maximum(s0 - s1, LEAST_ACCELERATION)
     s = (s0**2 - s1**2 - 4 * most * (top0 - top1)) / (2 * apart)
     s = np.clip(s, np.minimum(s0, s1), np.maximum(s0, s1))
-    edge = np.minimum(top0 - (s - s0) ** 2 / (4 * most), top1 - (s - s1) ** 2 / (4 * most))
+    from_left = top0 - (s - s0) ** 2 / (4 * most)
+    from_right = top1 - (s - s1) ** 2 / (4 * most)
+    edge = np.minimum(from_left, from_right)
     # 3. no faster than the program runs
-    return np.asarray(np.minimum(edge, np.minimum(p0 + speed * t, p1 + speed * left)))
+    fastest = np.minimum(p0 + speed * t, p1 + speed * left)
+    return np.asarray(np.minimum(edge, fastest))
 
 
 def furthest(
@@ -70,7 +74,8 @@ def furthest(
     (p0, v0), (p1, v1) = ((rows.mean(), numbers @ rows / (numbers @ numbers)) for rows in sides)
     place = most[0] * END_ROWS**2 / 24 + PLACE_NOISE * noise
     speed = most[0] * END_ROWS * 3 / 16 + noise / END_ROWS
-    ends, off = np.array([p0, v0, p1, v1]), np.array([place, speed, place, -speed])
+    ends = np.array([p0, v0, p1, v1])
+    off = np.array([place, speed, place, -speed])
     rows = len(laid) + 1 + 2 * half
     within = slice(half, half + len(laid))
     above = upper_edge(ends + off, rows, *most)[within] - laid

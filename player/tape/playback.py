@@ -283,7 +283,8 @@ class TapePlayback(Supervised):
             return
         self.end_error_mm = self.end_mm - np.array(fmt.end_mm) - self._zero_mm
         axis = int(np.argmax(np.abs(self.end_error_mm)))
-        error_mm, position_mm = float(self.end_error_mm[axis]), float(self.end_mm[axis])
+        error_mm = float(self.end_error_mm[axis])
+        position_mm = float(self.end_mm[axis])
         if abs(error_mm) * fmt.cycles_per_mm <= END_CYCLES:
             return
         raise LockFault(

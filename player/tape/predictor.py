@@ -35,13 +35,17 @@ Float64s = NDArray[np.float64]
 def predictor_gains(rate_hz: float, natural_hz: float = PREDICTOR_HZ) -> Float64s:
     """Shares of the surprise that go to position, velocity per row and half acceleration per row²."""
     theta = math.exp(-2 * math.pi * natural_hz / rate_hz)
-    return np.array([1 - theta**3, 1.5 * (1 - theta**2) * (1 - theta), 0.5 * (1 - theta) ** 3])
+    of_place = 1 - theta**3
+    of_velocity = 1.5 * (1 - theta**2) * (1 - theta)
+    of_acceleration = 0.5 * (1 - theta) ** 3
+    return np.array([of_place, of_velocity, of_acceleration])
 
 
 def recount(phase: Float64s, gains: Float64s, state: Float64s, surprise: Float32s) -> Float64s:
     """Count the phases of an axis anew, in place, from a state (place, speed, bend)."""
     turns, states = np.ascontiguousarray(phase)[None], state[None].copy()
-    counted, told = np.empty((len(phase), 1)), np.empty((len(phase), 1), np.float32)
+    counted = np.empty((len(phase), 1))
+    told = np.empty((len(phase), 1), np.float32)
     count_turns(turns, gains, states, counted, told)
     phase[:], surprise[:] = counted[:, 0], told[:, 0]
     return np.asarray(states[0])

@@ -166,7 +166,8 @@ class Rehearsal:
     ) -> MotionFault:
         """The fault of a row and axis of a block."""
         row, axis = at
-        name, time_s = self._format.axes[axis], (self._rows + row) / self._format.motion_rate_hz
+        name = self._format.axes[axis]
+        time_s = (self._rows + row) / self._format.motion_rate_hz
         place = ",".join(f"{mm:.2f}" for mm in positions_mm[row, :2])
         return MotionFault(
             f"{name.upper()}, at {place} mm and {time_s:.3f} s, {what}",

@@ -80,8 +80,10 @@ class Riding:
 def _level_step(levels: NDArray[np.float32], within: tuple[int, int], rows: int) -> float:
     """How far the levels (n, tracks) on both sides of a gap lie apart, as a share, by so many rows."""
     a, b = within
-    before, after = levels[a - rows : a].mean(axis=0), levels[b : b + rows].mean(axis=0)
-    return float(np.abs(after / np.maximum(before, SILENT_LEVEL) - 1).max())
+    before = levels[a - rows : a].mean(axis=0)
+    after = levels[b : b + rows].mean(axis=0)
+    ratio = after / np.maximum(before, SILENT_LEVEL)
+    return float(np.abs(ratio - 1).max())
 
 
 def _sides(cycles: Array, a: int, b: int, rows: int) -> tuple[Side, Side]:

@@ -69,7 +69,7 @@ class SectorWheel:
                 f"give 0 to {most_mm:g} mm"
             )
         if not 0 <= self.light <= 1:
-            raise ValueError(f"a lamp of {self.light:.0%} is none; give 0% to 100%")
+            raise ValueError(f"the lamp has {self.light:.0%} of its light; give 0% to 100%")
 
     @property
     def is_lit(self) -> bool:

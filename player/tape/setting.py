@@ -41,7 +41,7 @@ class Setting:
         slowest, fastest = OVERRIDES
         if not slowest <= self.override <= fastest:
             raise ValueError(
-                f"an override of {self.override:.0%} is none; give {slowest:.0%} to {fastest:.0%}"
+                f"the override is {self.override:.0%}; give {slowest:.0%} to {fastest:.0%}"
             )
         far = [shift for shift in self.zero_mm if not abs(shift) <= LARGEST_ZERO_MM]
         if far:

@@ -110,7 +110,8 @@ class Subcarrier:
         begins, ends = self._held.start, self._held.stop
         if ends + count > len(self._theta):
             held, size = ends - begins, ROOM * (ends - begins + count)
-            theta, points = np.empty(size), np.empty((size, self._points.shape[1]), complex)
+            theta = np.empty(size)
+            points = np.empty((size, self._points.shape[1]), complex)
             theta[:held], points[:held] = self.theta, self.points
             self._theta, self._points, self._held = theta, points, slice(0, held)
             ends = held

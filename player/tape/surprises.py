@@ -88,7 +88,8 @@ class Surprises:
         lost, jumps = np.empty((2, *rows.surprise.shape), bool)
         if _beyond(rows.surprise, told, (self._gain_rows2, self._slow), least, (lost, jumps)):
             accelerations = told[0]
-            dips, own = _dips(rows.levels), KINK * (accelerations * self._gauge_rows) ** 2
+            dips = _dips(rows.levels)
+            own = KINK * (accelerations * self._gauge_rows) ** 2
             lost |= jumps & (np.maximum(dips[:, :1], dips[:, 1:]) > own)
         return np.asarray(lost)
 

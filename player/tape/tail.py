@@ -42,7 +42,8 @@ def tail_of(
     way: Array, first_row: int, delay: Delay, bounds: ToldBounds, fmt: TapeFormat
 ) -> Tail:
     """What becomes of a way (n,), cycles, that goes from a row to the tape's end."""
-    last, mean_rows = first_row + len(way) - 1, round(MEAN_S * fmt.motion_rate_hz)
+    last = first_row + len(way) - 1
+    mean_rows = round(MEAN_S * fmt.motion_rate_hz)
     settled = max(int(delay.settled_row), first_row)
     if bounds.rests(settled, last):
         off = apart(way[settled - first_row :], mean_rows) - COUNT_CYCLES

@@ -112,5 +112,6 @@ def _travelled(tape: Tape, reference: int, others: list[int]) -> Array:
     for phases in discriminate(
         (block[:, [reference, *others]] for block in tape.stored_blocks()), organ
     ):
-        first, last = (phases.cycles[0] if not phases.first_row else first), phases.cycles[-1]
+        first = phases.cycles[0] if not phases.first_row else first
+        last = phases.cycles[-1]
     return np.asarray(last - first)

@@ -160,7 +160,8 @@ class Watch:
         if not wrong.any():
             return None
         row, axis = (int(i) for i in np.argwhere(wrong)[0])
-        name, time_s = self._format.axes[axis], (phases.first_row + row) / rate_hz
+        name = self._format.axes[axis]
+        time_s = (phases.first_row + row) / rate_hz
         return row, LockFault(
             f"{name.upper()} moves at {speed[row, axis] * self._format.mm_per_cycle:.3g} mm/s at "
             f"{time_s:.3f} s, and its "

@@ -131,9 +131,12 @@ def differences(samples: Words, points: int, linear: int = 1) -> Words:
         samples[1:, :, 0],
         samples[1:, :, 1],
     )
-    a, b = 2 * (x1 - x2) + m1 + m2, 3 * (x2 - x1) - 2 * m1 - m2
+    a = 2 * (x1 - x2) + m1 + m2
+    b = 3 * (x2 - x1) - 2 * m1 - m2
     n = points // linear
-    words = np.stack([a + b * n + m1 * n**2, 6 * a + 2 * b * n, 6 * a], axis=-1)
+    first = a + b * n + m1 * n**2
+    second = 6 * a + 2 * b * n
+    words = np.stack([first, second, 6 * a], axis=-1)
     return np.asarray(words * linear**2)
 
 
@@ -152,7 +155,8 @@ def hermite(samples: Words, at: Array) -> Array:
         samples[k + 1, :, 0],
         samples[k + 1, :, 1],
     )
-    a, b = 2 * (x1 - x2) + m1 + m2, 3 * (x2 - x1) - 2 * m1 - m2
+    a = 2 * (x1 - x2) + m1 + m2
+    b = 3 * (x2 - x1) - 2 * m1 - m2
     return np.asarray(((a * u + b) * u + m1) * u + x1)
 
 

@@ -95,7 +95,8 @@ def _laid(
     how = root.get("preserveAspectRatio", "")
     if "none" not in how and abs(x_mm / y_mm - 1) > SHAPED:
         x_mm = y_mm = max(x_mm, y_mm) if "slice" in how else min(x_mm, y_mm)
-    aside_mm, down_mm = (wide_mm - wide * x_mm) / 2, (high_mm - high * y_mm) / 2
+    aside_mm = (wide_mm - wide * x_mm) / 2
+    down_mm = (high_mm - high * y_mm) / 2
     return SvgSheet(x_mm, y_mm, aside_mm - left * x_mm, high_mm - down_mm + top * y_mm)
 
 

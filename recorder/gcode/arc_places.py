@@ -43,11 +43,14 @@ def place_at(begin_mm: Place, block: Block, share: float) -> tuple[float, float]
     """The place at a share of a block's way."""
     turned = turned_rad(begin_mm, block) * share
     if not turned:
-        dx, dy = block.place_mm[0] - begin_mm[0], block.place_mm[1] - begin_mm[1]
+        dx = block.place_mm[0] - begin_mm[0]
+        dy = block.place_mm[1] - begin_mm[1]
         return begin_mm[0] + share * dx, begin_mm[1] + share * dy
     i, j = block.centre_mm
     cos, sin = math.cos(turned), math.sin(turned)
-    return begin_mm[0] + i - cos * i + sin * j, begin_mm[1] + j - sin * i - cos * j
+    x_mm = begin_mm[0] + i - cos * i + sin * j
+    y_mm = begin_mm[1] + j - sin * i - cos * j
+    return x_mm, y_mm
 
 
 def places_along(blocks: Sequence[Block]) -> Array:

@@ -148,7 +148,8 @@ def off_circle_mm(places):  # type: ignore[no-untyped-def]
 
 def curvature_per_mm(places: Array) -> float:
     """Curvature of the arc that is nearest to a row of places, positive to the left."""
-    chord, heading = math.dist(places[0], places[-1]), heading_rad(places)
+    chord = math.dist(places[0], places[-1])
+    heading = heading_rad(places)
     dx, dy = (places - places[0]).T
     u, v = (
         dx * math.cos(heading) + dy * math.sin(heading),
@@ -156,8 +157,10 @@ def curvature_per_mm(places: Array) -> float:
     )
     if np.abs(v).max() > 0.2 * chord:  # more than a third of a turn: a chord says little
         side = places[len(places) // 2] - places.mean(axis=0)
-        across = dx[len(dx) // 4] * dy[len(dy) // 2] - dy[len(dy) // 4] * dx[len(dx) // 2]
-        return math.copysign(1 / max(kasa(places)[2], float(np.hypot(*side)) / 10), across)
+        quarter, half = len(dx) // 4, len(dx) // 2
+        across = dx[quarter] * dy[half] - dy[quarter] * dx[half]
+        least_mm = float(np.hypot(*side)) / 10
+        return math.copysign(1 / max(kasa(places)[2], least_mm), across)
     weight = u * u - chord * u + v * v
     return 2 * float(v @ weight) / max(float(weight @ weight), 1e-30)
 

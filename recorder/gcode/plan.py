@@ -163,7 +163,8 @@ class _Planner:
             [*np.round(segment.end_mm, self.writing.decimals), self.place[2]]
         )
         half = segment.turned_rad / 2
-        (dx, dy), bulge = (place - self.place)[:2], segment.length_mm / 2 * math.tan(half / 2)
+        dx, dy = (place - self.place)[:2]
+        bulge = segment.length_mm / 2 * math.tan(half / 2)
         is_straight = abs(bulge) < self.last_digit_mm
         if is_straight or abs(segment.curvature_per_mm) * _LARGEST_RADIUS_MM < 1:
             chords = math.ceil(math.sqrt(abs(bulge) / (self.tolerance_mm - off_mm))) or 1
@@ -209,7 +210,9 @@ def _slope(points: Array) -> float:
 
 def _straightest(points: Array, tolerance_mm: float) -> tuple[list[int], float]:
     """Points whose chords stay within a tolerance of all others (Douglas, Peucker), and the largest gap."""
-    kept, worst_mm, waiting = {0, len(points) - 1}, 0.0, [(0, len(points) - 1)]
+    kept = {0, len(points) - 1}
+    worst_mm = 0.0
+    waiting = [(0, len(points) - 1)]
     while waiting:
         first, last = waiting.pop()
         off_mm = _off_line_mm(points[first : last + 1])
@@ -224,7 +227,8 @@ def _straightest(points: Array, tolerance_mm: float) -> tuple[list[int], float]:
 
 def _off_line_mm(points: Array) -> Array:
     """Distance of each point from the straight piece between first and last."""
-    along, off = points[-1] - points[0], points - points[0]
+    along = points[-1] - points[0]
+    off = points - points[0]
     square = float(along @ along)
     share = np.clip(off @ along / square, 0.0, 1.0) if square else np.zeros(len(points))
     return np.sqrt(((off - np.multiply.outer(share, along)) ** 2).sum(axis=1))

@@ -177,7 +177,8 @@ def smallest_inner_radius_mm(lines: Sequence[list[Block]]) -> float | None:
     rings = [
         line[at[0] : at[1] + 1] if at else line for line, at in zip(lines, rounds, strict=True)
     ]
-    places, closed = [places_along(ring) for ring in rings], [at is not None for at in rounds]
+    places = [places_along(ring) for ring in rings]
+    closed = [at is not None for at in rounds]
     depth = nested(places, closed).sum(axis=1)
     found = list[float]()
     for number, line in enumerate(rings):

@@ -85,7 +85,8 @@ class _Text:
     def begin(self, start_mm: Array, feed_mm_s: float) -> None:
         """Write the way to the start: Z alone first where that is up, last where it is down."""
         self.place_mm = [float(mm) for mm in start_mm]
-        across_mm_s, up_mm_s = min(self.machine.rapid_mm_s[:2]), self.machine.rapid_mm_s[2]
+        across_mm_s = min(self.machine.rapid_mm_s[:2])
+        up_mm_s = self.machine.rapid_mm_s[2]
         x_y = "G0" + self._words("XY", self.place_mm[:2])
         z = self._words("Z", self.place_mm[2:])
         if not self.machine.z:
@@ -112,7 +113,8 @@ class _Text:
 
     def _move(self, block: Block) -> None:
         """Write a rapid, a line or an arc."""
-        across_mm_s, up_mm_s = min(self.machine.rapid_mm_s[:2]), self.machine.rapid_mm_s[2]
+        across_mm_s = min(self.machine.rapid_mm_s[:2])
+        up_mm_s = self.machine.rapid_mm_s[2]
         arc = block.code in ARCS
         axes = "XY" if arc else "XYZ"
         words = ""

@@ -97,13 +97,15 @@ def stretches(path: Path, tolerance_mm: float) -> Iterator[Stretch]:
 def _moving(path: Path) -> _Steps:
     """The steps of a path without those that stand, each with the dwell before it (0 s: none)."""
     step = np.diff(path.positions_mm, axis=0)
-    across_mm, up_mm = np.hypot(step[:, 0], step[:, 1]), step[:, 2]
+    across_mm = np.hypot(step[:, 0], step[:, 1])
+    up_mm = step[:, 2]
     took_s = np.diff(path.t_s)
     climbs = (np.abs(up_mm) > LEVEL * across_mm) & (np.abs(up_mm) > NOISE_MM)
     stands = (took_s >= DWELL_S) & (np.hypot(across_mm, up_mm) <= 2 * NOISE_MM)
     index = np.flatnonzero(~stands & (climbs | (across_mm > NOISE_MM / 10)))
     climbs[index] = _with_rests(climbs[index], across_mm[index])
-    begins_s, ends_s = path.t_s[index], path.t_s[index] + took_s[index]
+    begins_s = path.t_s[index]
+    ends_s = path.t_s[index] + took_s[index]
     stood_s = begins_s - np.r_[begins_s[:1], ends_s[:-1]]
     dwelt_s = np.where(stood_s >= DWELL_S, stood_s, 0.0)
     return _Steps(index, across_mm[index], up_mm[index], took_s[index], dwelt_s, climbs[index])
@@ -127,7 +129,8 @@ def _moves(steps: _Steps, first: int, last: int) -> list[tuple[int, int]]:
     """Ranges of steps between two cuts: one in a plane, of those that climb one for each move of Z."""
     if first == last or not steps.climbs[first]:
         return [(first, last)] if first < last else []
-    up_mm, took_s = steps.up_mm[first:last], steps.took_s[first:last]
+    up_mm = steps.up_mm[first:last]
+    took_s = steps.took_s[first:last]
     turns = np.flatnonzero(np.diff(_senses(up_mm)) != 0) + 1
     found = []
     for a, b in pairwise([0, *turns.tolist(), len(up_mm)]):

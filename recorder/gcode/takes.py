@@ -34,7 +34,8 @@ def codes(text: str) -> frozenset[Code]:
         found = _CODE.fullmatch(part)
         if not found or found[3] not in (None, found[1]):
             raise ValueError(f"{part!r} is no word such as G38.2 or M100-M199")
-        first, last = float(found[2]), float(found[4] or found[2])
+        first = float(found[2])
+        last = float(found[4] or found[2])
         whole = range(int(first), int(last) + 1) if found[4] else ()
         named |= {(found[1], first)} | {(found[1], float(number)) for number in whole}
     return frozenset(named)

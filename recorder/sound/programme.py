@@ -131,7 +131,8 @@ def programme_within(blocks: Iterator[Stored], rate_hz: int) -> tuple[int, int] 
     runs = np.flatnonzero(np.convolve(up, np.ones(SETTLING), "valid") == SETTLING)
     if not len(runs):
         return None
-    first, last = int(runs[0]), int(np.flatnonzero(up)[-1]) + 1
+    first = int(runs[0])
+    last = int(np.flatnonzero(up)[-1]) + 1
     first += (
         SETTLING if first else 0
     )  # a recording that begins with carriers has no silence to leave

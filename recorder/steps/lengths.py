@@ -94,7 +94,8 @@ def cut(
 
 def _traced_back(last: int, winner: int, book: _Book) -> tuple[Steps, Array]:
     """The steps and distances of the winning course, from its start."""
-    steps, distances = np.zeros((last + 1, 3), np.int64), np.zeros(last + 1)
+    steps = np.zeros((last + 1, 3), np.int64)
+    distances = np.zeros(last + 1)
     for level in range(last, -1, -1):
         steps[level], distances[level] = book.taken[level, winner], book.off[level, winner]
         winner = int(book.parents[level, winner])

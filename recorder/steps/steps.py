@@ -146,7 +146,8 @@ def _rows(
 ) -> Iterator[int]:
     """The rows one by one; with two vector commands in a row, runs of vectors are taken in pairs."""
     vectors = _vector_commands(lengths, changes).tolist()
-    z_moves, tool = (changes[:, 2] != 0).tolist(), (down * TOOL_DOWN).tolist()
+    z_moves = (changes[:, 2] != 0).tolist()
+    tool = (down * TOOL_DOWN).tolist()
     axis = _axis_codes(changes).tolist()
     at = 0
     while at < len(vectors):
@@ -211,7 +212,9 @@ def _limits(fmt: StepFormat, share: float) -> Limits:
 
 def _lengths(parts: list[Segment], fmt: StepFormat) -> tuple[Steps, NDArray[np.bool_], float]:
     """The lengths of all legs with the rests between them, and the largest distance from the motion, mm."""
-    taken, down, off = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.bool_)], 0.0
+    taken = [np.zeros((0, 3), np.int64)]
+    down = [np.zeros(0, np.bool_)]
+    off = 0.0
     origin = parts[0].places_mm[0] if parts else np.zeros(3)
     at = np.zeros(3, np.int64)
     for leg in parts:
@@ -221,7 +224,8 @@ def _lengths(parts: list[Segment], fmt: StepFormat) -> tuple[Steps, NDArray[np.b
             leg.speed_mm_s / fmt.step_mm * fmt.interval_s,
         )
         lengths, away = cut(places, speeds, leg.spacing_mm / fmt.step_mm, at)
-        z_mm = origin[2] + (at[2] + np.cumsum(np.r_[rest, lengths][:, 2])) * fmt.step_mm
+        z_steps = at[2] + np.cumsum(np.r_[rest, lengths][:, 2])
+        z_mm = origin[2] + z_steps * fmt.step_mm
         at = at + lengths.sum(axis=0)
         taken += [rest, lengths]
         down.append(z_mm <= IN_WORK_BELOW_MM)

@@ -180,7 +180,8 @@ def said_by(told: int) -> CheckFrame | None:
         return None
     track = told >> 56 & (MOST_TRACKS - 1)
     bits = _middle_bits(version, track)
-    codes, code_mask = told & ((1 << 2 * _CODE_BITS) - 1), (1 << _CODE_BITS) - 1
+    codes = told & ((1 << 2 * _CODE_BITS) - 1)
+    code_mask = (1 << _CODE_BITS) - 1
     word = told >> 2 * _CODE_BITS & ((1 << _COUNT_BITS) - 1)
     middle, count = word & ((1 << bits) - 1), word >> bits
     if count >> (_COUNT_BITS - bits - 1):

@@ -206,7 +206,8 @@ def _object(text: str) -> dict[str, Any]:
 def _check_entries(values: dict[str, Any]) -> None:
     """Raise TapeFault unless exactly the entries of this version are there."""
     known = _entries(values.get("version"))
-    missing, unknown = sorted(known - values.keys()), sorted(values.keys() - known)
+    missing = sorted(known - values.keys())
+    unknown = sorted(values.keys() - known)
     if missing:
         raise TapeFault(f"the tape's text chunk lacks {missing[0]}; {_AGAIN}")
     if unknown:

@@ -130,7 +130,8 @@ class Dropouts:
         near = [d for d in self.met[-1000:] if d.start_s + d.length_s + FLANK_S > first_s]
         if not near:
             return None
-        gains, t_s = np.ones((count, tracks)), first_s + np.arange(count) / rate_hz
+        gains = np.ones((count, tracks))
+        t_s = first_s + np.arange(count) / rate_hz
         for dropout in near:
             inside = (
                 np.minimum(t_s - dropout.start_s, dropout.start_s + dropout.length_s - t_s)

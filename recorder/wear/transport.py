@@ -105,7 +105,8 @@ def _aged(
     progress: Progress | None,
 ) -> Aged:
     """Run an open tape through the transport into a file."""
-    kind, deck = medium(target, sample), Deck(wear, sound.samplerate, sound.channels, seed)
+    kind = medium(target, sample)
+    deck = Deck(wear, sound.samplerate, sound.channels, seed)
     rate_hz, total_s = wear.stamped_hz or sound.samplerate, sound.frames / sound.samplerate
     text = text_of(source, sound)
     with written_beside(target) as beside:

@@ -106,7 +106,7 @@ def test_a_part_that_is_cut_out_before_its_holes_is_told_of(
 ) -> None:
     done = morfax("trace", "plate.png", "--lines", "1,2,3", "--order", "1,2,3", "-o", "a.csv")
     assert done.exit_code == 0
-    assert "line 1 is cut before line 2, 3 inside it" in " ".join(done.err.split())
+    assert "--order cuts line 1 before line 2, 3 inside it" in " ".join(done.err.split())
 
 
 @pytest.mark.parametrize(
@@ -116,9 +116,9 @@ def test_a_part_that_is_cut_out_before_its_holes_is_told_of(
         (("--lines", "2", "--arrow", "26,30", "20,30"), "the nearest line that is followed"),
         (("--arrow", "26,30", "20,30", "--start", "16,23"), "--arrow and --start both"),
         (("--arrow", "26,30", "20,30", "--direction", "cw"), "--arrow and --direction both"),
-        (("--arrow", "26,30", "26,30"), "goes nowhere"),
-        (("--lines", "all", "--arrow", "26,30", "20,30"), "cannot be served"),
-        (("--lines", "all", "--order", "1"), "cannot be served"),
+        (("--arrow", "26,30", "26,30"), "has two equal places"),
+        (("--lines", "all", "--arrow", "26,30", "20,30"), "does not take --arrow"),
+        (("--lines", "all", "--order", "1"), "does not take --order"),
         (("--order", "1"), "for several lines"),
         (("--lines", "1,2", "--order", "1,1"), "twice"),
         (("--lines", "1,2", "--order", "7"), "no line 7"),

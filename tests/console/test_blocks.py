@@ -72,7 +72,7 @@ def test_what_is_for_another_control_is_refused(bracket: Path, morfax: Morfax) -
         "is for programs of lines"
         in morfax("play", "bracket.wav", "--control", "herbert").fault
     )
-    assert "an override of 3 is none" in morfax("play", bracket, "--feed-override", "3").fault
+    assert "the override is 3; give" in morfax("play", bracket, "--feed-override", "3").fault
 
 
 @pytest.mark.parametrize(

@@ -74,6 +74,16 @@ def test_a_line_too_small_for_the_cutter_is_told_of_and_listed(
     assert "lines_left_out" not in smaller.figures and "left out" not in smaller.err
 
 
+def test_a_line_s_cell_share_is_of_the_way_that_the_head_went_with_a_cutter_too(
+    morfax: Morfax, here: Path
+) -> None:
+    bracket = ("trace", SAMPLES / "bracket.png", "--lines", "contours", "--json")
+    plain = morfax(*bracket, "-o", "plain.csv").figures["lines"]
+    cut = morfax(*bracket, "--cutter", "4mm", "--climb", "-o", "cut.csv").figures["lines"]
+    shares = [{line["line"]: line["cell_share"] for line in lines} for lines in (plain, cut)]
+    assert shares[0] == shares[1] and len(shares[0]) == 2
+
+
 def test_a_drawn_program_is_traced_with_a_cutter_and_begins_and_ends_on_its_reference_point(
     morfax: Morfax, here: Path
 ) -> None:
@@ -136,7 +146,7 @@ def test_run_takes_a_cutter(morfax: Morfax, here: Path) -> None:
         (
             ("--cutter", "300mm", "--side", "inside"),
             7,
-            "a cutter of 300 mm goes nowhere inside of the lines; give a smaller --cutter, up to 70.8 mm,",
+            "a cutter of 300 mm has no room inside of any line; give a smaller --cutter, up to 70.8 mm,",
         ),
     ],
 )
@@ -162,10 +172,10 @@ def test_a_hole_that_is_asked_for_alone_is_not_cut_as_an_outline_without_a_word(
     )
     answer = morfax(*options)
     assert answer.exit_code == 0
-    assert "line 2 lies inside line 1, which is not asked for" in answer.err
-    assert "give --side inside for a hole, or ask for line 1 too" in answer.err
+    assert "line 2 lies inside line 1, which is not cut" in answer.err
+    assert "give --side inside for a hole, or cut line 1, too" in answer.err
     for further in (("--side", "inside"), ("--side", "left"), ("--lines", "1,2")):
-        assert "which is not asked for" not in morfax(*options, *further).err
+        assert "which is not cut" not in morfax(*options, *further).err
 
 
 def test_a_cutter_takes_all_contours_unless_one_line_or_a_card_is_asked_for(

@@ -86,7 +86,7 @@ def test_the_zero_of_a_part_is_not_of_a_drawing(morfax: Morfax, path_file: Path)
     answer = morfax("compare", SAMPLES / "cam.png", path_file, "--zero", "centre")
     assert (
         answer.exit_code == 2
-        and "give the place that trace told as zero_place_mm" in answer.fault
+        and "give the place that trace printed as zero_place_mm" in answer.fault
     )
 
 
@@ -140,7 +140,7 @@ def test_a_program_says_its_zero_and_the_size_of_the_part_and_compare_takes_them
     # 7 mm away hardly any of it lies on ink, and what does is no measure
     far = morfax("compare", *told, "--zero", "sheet", "--tolerance", "5mm")
     assert far.exit_code == 1 and far.figures["within_tolerance"] is False
-    assert "% of the path lies along the drawing's ink: it is placed elsewhere" in far.err
+    assert "% of the path lies along the drawing's ink: the path has another zero" in far.err
 
 
 def test_a_plotter_that_cannot_come_to_a_lead_is_told_the_zero_that_goes(

@@ -69,7 +69,7 @@ def test_a_dead_lamp_stops_the_machine(morfax: Morfax, here: Path, tape_file: Pa
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (("--feed-override", "300%"), "an override of 300% is none; give 10% to 200%"),
+        (("--feed-override", "300%"), "the override is 300%; give 10% to 200%"),
         (("--feed-override", "0"), "'0' is no share; give 120%"),
         (("--zero-adjustment", "1"), "is no place"),
         (
@@ -82,7 +82,7 @@ def test_a_dead_lamp_stops_the_machine(morfax: Morfax, here: Path, tape_file: Pa
             ("--wheel-division", "1mm"),
             "1 mm off their places make no wheel; give 0 to 0.188 mm",
         ),
-        (("--lamp", "150%"), "a lamp of 150% is none; give 0% to 100%"),
+        (("--lamp", "150%"), "the lamp has 150% of its light; give 0% to 100%"),
         (("--motor", "steam"), "'steam' is not one of 'electric', 'hydraulic'"),
     ],
 )

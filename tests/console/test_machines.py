@@ -183,12 +183,12 @@ def test_a_plotter_file_has_its_speed_and_force_and_is_played(
         (
             "a.nc",
             ("--machine", "grbl-laser"),
-            "grbl-laser has no Z, so that a.nc holds no depth, pecks",
+            "grbl-laser has no Z, so a.nc cannot hold depth, pecks",
         ),
         (
             "a.dxf",
             (),
-            "a.dxf holds what is cut, and no depth, pecks, dwells: set these where it is read",
+            "a.dxf holds only what is cut, without depth, pecks, dwells: set them in the program",
         ),
         ("a.ngc", (), ""),
     ],

@@ -70,7 +70,7 @@ def test_a_program_with_z_of_a_drawing_without_depths_says_so(
     morfax: Morfax, here: Path
 ) -> None:
     assert morfax("record", SAMPLES / "cam.csv", "-o", "part.dxf").exit_code == 0
-    told = "part.dxf says no depth: the tool runs along its lines at Z0"
+    told = "part.dxf states no depth: the tool runs along its lines at Z0"
     assert told in morfax("record", "part.dxf", "-o", "a.ngc").err
     assert told not in morfax("record", "part.dxf", "-o", "a.nc", "--machine", "grbl-pen").err
 
@@ -98,7 +98,7 @@ def test_a_unit_is_for_drawings_from_cad(path_file: Path, here: Path, morfax: Mo
 def test_nothing_of_a_dxf_is_traced(part: Path, morfax: Morfax) -> None:
     answer = morfax("trace", part, "-o", "part.ngc")
     assert answer.exit_code == 3
-    assert "part.dxf holds lines already" in answer.fault and "morfax record" in answer.fault
+    assert "part.dxf already holds lines" in answer.fault and "morfax record" in answer.fault
 
 
 def test_a_scan_is_compared_with_the_drawing_from_cad(here: Path, morfax: Morfax) -> None:

@@ -178,5 +178,5 @@ def test_edges_of_filled_shapes_take_no_ink(here: Path) -> None:
     Image.fromarray(levels).save("square.png", dpi=(300, 300))
     square = DrawingFile(Path("square.png"), edge=True)
     CorrectJob(square, (Correction("rub", (Place(100, 100),)),)).run()
-    with pytest.raises(CardFault, match="cannot be served with --edge"):
+    with pytest.raises(CardFault, match="does not work with --edge"):
         square.open()

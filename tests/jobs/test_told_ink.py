@@ -52,7 +52,7 @@ def test_pale_lines_are_told_where_all_ink_is_asked_for() -> None:
 def open_where(line: LineSettings, places_mm: Points) -> tuple[list[str], list[str]]:
     """What is said of a line that is perhaps closed, and how its lines end."""
     said, endings = said_of(inked(places_mm, width_mm=0.6, seed=1), line)
-    return [text for text in said if "if a closed line is meant" in text], endings
+    return [text for text in said if "if you mean a closed line" in text], endings
 
 
 def test_a_line_that_runs_past_its_own_end_is_told_and_the_advice_closes_it() -> None:
@@ -63,7 +63,7 @@ def test_a_line_that_runs_past_its_own_end_is_told_and_the_advice_closes_it() ->
     tip_mm = round_mm[100] + [[4.0, 6.0]]
     tufted = np.vstack([round_mm[:101], tip_mm, round_mm[103:]])
     (said,), endings = open_where(LineSettings(), tufted)
-    assert endings == ["ended"] and "--lines contours takes that" in said
+    assert endings == ["ended"] and "--lines contours takes it" in said
     assert open_where(LineSettings(lines="contours"), tufted) == ([], ["closed"])
 
 

@@ -237,7 +237,8 @@ class Easel:
         rows, columns = np.mgrid[window]
         begin, way = piece[0], piece[1] - piece[0]
         x, y = columns - begin[0], rows - begin[1]
-        along = np.clip((x * way[0] + y * way[1]) / max(float(way @ way), 1e-12), 0.0, 1.0)
+        square = max(float(way @ way), 1e-12)
+        along = np.clip((x * way[0] + y * way[1]) / square, 0.0, 1.0)
         return window, np.hypot(x - along * way[0], y - along * way[1])
 
 
@@ -255,7 +256,8 @@ def _profile(seen: Array, aside_mm: Array) -> tuple[float, float, float] | None:
     paper = np.flatnonzero(~inked)
     if inked[0] or inked[-1]:
         return None
-    begin, end = int(paper[paper < middle][-1]) + 1, int(paper[paper > middle][0]) - 1
+    begin = int(paper[paper < middle][-1]) + 1
+    end = int(paper[paper > middle][0]) - 1
     if end - begin < 2:
         return None
     # 2. its soft edges

@@ -161,7 +161,7 @@ def _goes_nowhere(curves: Sequence[DriveCurve], cutter: Cutter) -> MotionFault:
     most_mm = max((room.passes_mm for room in rooms if room is not None), default=0.0)
     up_to = f", up to {most_mm:g} mm" if most_mm > 0 else ""
     return MotionFault(
-        f"a cutter of {cutter.diameter_mm:g} mm goes nowhere {cutter.side} of the lines;"
+        f"a cutter of {cutter.diameter_mm:g} mm has no room {cutter.side} of any line;"
         f" give a smaller --cutter{up_to}, or another --side"
     )
 

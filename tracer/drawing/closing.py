@@ -142,17 +142,15 @@ def note(closed: list[Closed], softness_mm: float) -> str:
     more = f"; and {len(closed) - TOLD} more places" if len(closed) > TOLD else ""
     least_mm = CLEAR * softness_mm
     text = (
-        f"edges nearer than {least_mm:.2f} mm cannot be told apart on this scan, and are closed"
-        f" across: {told}{more}"
+        f"this scan cannot show edges nearer than {least_mm:.2f} mm apart; they are closed across:"
+        f" {told}{more}"
     )
     even = [each.apart_mm for each in closed if each.apart_mm and not each.narrows]
     if not even:
-        return (
-            f"{text}; what they look like there only a finer scan, or a larger print, can show"
-        )
+        return f"{text}; only a finer scan, or a larger print, can show their shape"
     times = math.ceil(10 * ROOM * least_mm / min(even)) / 10
     return (
-        f"{text}; to have them followed, print the shape {times:g} times as large and give --scale"
+        f"{text}; to follow them, print the shape {times:g} times as large and give --scale"
         f" {1 / times:.4g}"
     )
 
@@ -168,7 +166,9 @@ def _strokes(places: Array, shape: tuple[int, ...], beyond_px: float) -> Grey:
     """Strokes from place to place of each pair (n, 2, 2), and so far beyond."""
     across = places[:, 1] - places[:, 0]
     ways = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
-    ends = np.stack([places[:, 0] - beyond_px * ways, places[:, 1] + beyond_px * ways], axis=1)
+    begins = places[:, 0] - beyond_px * ways
+    stops = places[:, 1] + beyond_px * ways
+    ends = np.stack([begins, stops], axis=1)
     cover = np.zeros(shape, np.uint8)
     for stroke in np.round(SIXTEENTHS * ends[:, :, ::-1]).astype(np.int32):
         cv2.polylines(cover, [stroke], False, 1, STROKE_PX, cv2.LINE_8, shift=4)

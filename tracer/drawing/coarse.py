@@ -80,7 +80,7 @@ def note(seen_px: float, pitch_mm: float) -> str:
     return (
         f"the lines look {seen_px:.1f} pixels wide, as lines of 1.5 pixels and less do: details below "
         f"{DETAIL_PX * pitch_mm:.2g} mm may be cut off, and the path strays where lines touch; scan at "
-        f"{wanted_dpi(pitch_mm)} dpi, or save the drawing so much larger"
+        f"{wanted_dpi(pitch_mm)} dpi, or save the drawing that much larger"
     )
 
 

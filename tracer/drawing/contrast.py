@@ -72,7 +72,7 @@ def strokes_of(patches: Patches, least: float, pitch_mm: float) -> NDArray[np.bo
         return np.asarray(strokes)
     if least > MOST_ASKED:
         raise DrawingFault(
-            "no line on the drawing: its grey levels vary everywhere, as of noise, hatching or a pattern, "
+            "no line on the drawing: its grey levels vary everywhere, as in noise, hatching or a pattern, "
             "and no line stands out; check the file"
         )
     raise DrawingFault(

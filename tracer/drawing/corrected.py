@@ -40,7 +40,7 @@ def corrected(
         return replace(drawing, corrected=laid)
     if drawing.edges_mm:
         raise CardFault(
-            f"{corrections.file or 'the file of corrections'} rubs out or draws ink, which cannot be served"
+            f"{corrections.file or 'the file of corrections'} rubs out or draws ink, which does not work"
             " with --edge: change the picture itself, or leave --edge or those corrections out"
         )
     darkness = drawing.darkness.copy()

@@ -163,7 +163,8 @@ def _densest(units: Array, weights: Array) -> Array:
 
 def _angle(a: Array, b: Array) -> float:
     """Angle between two directions, rad."""
-    return math.acos(min(1.0, float(a @ b) / float(np.hypot.reduce(a) * np.hypot.reduce(b))))
+    lengths = float(np.hypot.reduce(a) * np.hypot.reduce(b))
+    return math.acos(min(1.0, float(a @ b) / lengths))
 
 
 def _unlike(wanted: Array, found: Array) -> float:

@@ -72,7 +72,8 @@ def _rows(boxes_mm: Array) -> NDArray[np.int32]:
     pairs = pairs_within(middles, within_mm)
     a, b = pairs.T
     lower = np.minimum(high[a], high[b])
-    beside = np.minimum(bottom[a], bottom[b]) - np.maximum(top[a], top[b]) > BESIDE * lower
+    shared = np.minimum(bottom[a], bottom[b]) - np.maximum(top[a], top[b])
+    beside = shared > BESIDE * lower
     alike = lower > ALIKE * np.maximum(high[a], high[b])
     apart_mm = np.maximum(left[a], left[b]) - np.minimum(right[a], right[b])
     mean_mm = 0.5 * (high[a] + high[b])

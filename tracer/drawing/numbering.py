@@ -48,7 +48,8 @@ class Ink(NamedTuple):
         middle = complex(np.sum(share * z))
         z = z - middle
         square = np.abs(z) ** 2
-        third, without_signs = np.sum(share * z * square), np.sum(share * np.abs(z) * square)
+        third = np.sum(share * z * square)
+        without_signs = np.sum(share * np.abs(z) * square)
         side = cmath.phase(third)
         if abs(third) < LOPSIDED * without_signs:
             side = 0.5 * cmath.phase(np.sum(share * z * z))

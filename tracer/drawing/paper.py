@@ -70,7 +70,8 @@ class Paper:
     def rows(self, top: int, bottom: int) -> Levels:
         """The paper of some rows of the picture."""
         by = self.by_px
-        first, last = max(0, top // by - 1), min(len(self.reduced), -(-bottom // by) + 1)
+        first = max(0, top // by - 1)
+        last = min(len(self.reduced), -(-bottom // by) + 1)
         part = self.reduced[first:last]
         large = cv2.resize(part, None, fx=by, fy=by, interpolation=cv2.INTER_LINEAR)
         rows = slice(top - first * by, bottom - first * by)

@@ -97,7 +97,7 @@ def _no_picture(file: Path) -> DrawingFault:
     """The fault of a file that is no picture."""
     if file.suffix.lower() in DRAWN_LINES:
         return DrawingFault(
-            f"{file} holds lines already, and nothing is to be traced; give it to morfax record"
+            f"{file} already holds lines, so there is nothing to trace; give it to morfax record"
         )
     return DrawingFault(
         f"{file} is not an image that can be read; give a PNG, JPEG or TIFF file"

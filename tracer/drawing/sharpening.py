@@ -4,9 +4,9 @@ Signals: an outline (n, 2) in pixels where a picture has half of its contrast, a
 (standard deviation, pixels) in; out the outline with its sharp corners.
 
 The lens leaves the legs of a corner where they are from 3 s / sin(a) on, for a softness s and an angle a
-between the legs. There they are felt, as parabolas where they are bent. How far inside the vertex the outline
-is tells the corner's round (see `lens`). A corner that does not fit its outline beside the vertex stays as it
-is: the lens does not explain it.
+between the legs. There they are felt (see `edge_leg`). How far inside the vertex the outline is, gives the
+corner's round (see `lens`). A corner that does not fit its outline beside the vertex stays as it is: the lens
+does not explain it.
 
 Source: our own. Questions: a round that moves the outline by less than noise does (`FURTHER`, `NOISE`) is
 taken for a sharp corner: at a right angle a round of 0.12 mm at 300 dpi, which moves it by 0.05 mm.
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
+from morfax.tracer.drawing.edge_leg import EdgeLeg
 from morfax.tracer.drawing.lens import radius_of, way_inside
 
 APART_PX = 0.25  # between the places of an outline
@@ -36,11 +37,9 @@ CLEAR_OF_ROUND = 2.0  # standard deviations from where the round touches the leg
 # standard deviations: noise, beside the vertex; the lens moves an outline there by no more than at it
 ASIDE = 0.25
 TRIES = 5  # each with the legs felt where the angle and the round of the one before leave them clear
-BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
 # of the way, and standard deviations: by noise the outline of a sharp corner is further inside (98 %)
 FURTHER, NOISE = 0.18, 0.05
 SHORT, LEGS = 0.1, 0.35  # and by the legs' bend less far
-NEARLY_PARALLEL = 0.1  # sine of the angle between legs that do not meet
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,24 +48,6 @@ class Edge:
 
     outline: Array
     corners: NDArray[np.int64]
-
-
-class EdgeLeg(NamedTuple):
-    """A leg of a corner: its near end, the direction towards the corner, and a polynomial across it."""
-
-    origin: Array
-    along: Array
-    across: Array
-
-    def beside(self, place: Array) -> tuple[Array, Array]:
-        """The leg beside a place, and its direction there."""
-        u = float((place - self.origin) @ self.along)
-        left = np.array([-self.along[1], self.along[0]])
-        powers = np.arange(len(self.across))
-        slope = float(np.sum(powers[1:] * self.across[1:] * u ** powers[:-1]))
-        direction = self.along + slope * left
-        beside = self.origin + u * self.along + float(np.sum(self.across * u**powers)) * left
-        return beside, direction / np.hypot(*direction)
 
 
 def sharpened(outline: Array, softness_px: float) -> Edge:
@@ -221,7 +202,10 @@ def _corner(
         ]
         if min(ends) - away < SHORTEST_LEG * dense:
             break
-        legs = _felt(places, at, -away, -ends[0]), _felt(places, at, away, ends[1])
+        legs = (
+            EdgeLeg.felt(places, at, -away, -ends[0]),
+            EdgeLeg.felt(places, at, away, ends[1]),
+        )
         first, last = max(0, round(at - away)), min(len(places) - 1, round(at + away))
         fit = _fit(places[first : last + 1], legs, softness_px)
         # legs that do not meet stand on the round of a narrow tip
@@ -238,7 +222,7 @@ def _corner(
 
 def _fit(outline: Array, legs: tuple[EdgeLeg, EdgeLeg], softness_px: float) -> _Fit | None:
     """The corner that two legs make beside a piece of outline; None if they make none."""
-    met = _met(*legs)
+    met = legs[0].met(legs[1])
     if met is None:
         return None
     vertex, t, w = met
@@ -272,7 +256,8 @@ def _rounded(fit: _Fit, softness_px: float) -> Array:
     if radius_px < APART_PX:
         return fit.vertex[None]
     t, w = fit.t, fit.w
-    inward = -(t + w) / np.hypot(*(t + w))
+    between = t + w
+    inward = -between / np.hypot(*between)
     turns = math.copysign(math.pi - fit.angle, t[1] * w[0] - t[0] * w[1])
     shares = np.linspace(-0.5, 0.5, 3 + math.ceil(abs(turns) * radius_px))
     outward = math.atan2(-inward[1], -inward[0]) + turns * shares
@@ -283,35 +268,3 @@ def _rounded(fit: _Fit, softness_px: float) -> Array:
 def _between(t: Array, w: Array) -> float:
     """The angle between two directions, rad."""
     return math.acos(float(np.clip(t @ w, -1, 1)))
-
-
-def _felt(places: Array, at: int, near: float, far: float) -> EdgeLeg:
-    """A leg as a parabola seen from its near end, or as a straight line if that fits about as well."""
-    rows = np.arange(round(min(near, far)), round(max(near, far)) + 1) + at
-    leg = places[rows % len(places)]
-    origin, end = (leg[-1], leg[0]) if near < 0 else (leg[0], leg[-1])
-    along = (origin - end) / np.hypot(*(origin - end))
-    u, v = (leg - origin) @ along, (leg - origin) @ np.array([-along[1], along[0]])
-    from numpy.polynomial import polynomial
-
-    straight, bent = (polynomial.polyfit(u, v, degree) for degree in (1, 2))
-    off = [float(np.std(v - polynomial.polyval(u, each))) for each in (straight, bent)]
-    return EdgeLeg(origin, along, bent if off[1] < BENT * off[0] else straight)
-
-
-def _met(a: EdgeLeg, b: EdgeLeg) -> tuple[Array, Array, Array] | None:
-    """Where two legs meet, and their directions there, towards the corner; None if they do not."""
-    place = 0.5 * (a.origin + b.origin)
-    for _ in range(6):
-        (p, t), (q, w) = a.beside(place), b.beside(place)
-        cross = t[0] * w[1] - t[1] * w[0]
-        if abs(cross) < NEARLY_PARALLEL:
-            return None
-        gap = q - p
-        place = p + t * (gap[0] * w[1] - gap[1] * w[0]) / cross
-    reach = 4 * float(np.hypot(*(a.origin - b.origin)))
-    for leg in (a, b):
-        beyond = place - leg.origin
-        if np.hypot(*beyond) > reach or beyond @ leg.along < 0:
-            return None
-    return place, t, w

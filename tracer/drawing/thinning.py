@@ -55,7 +55,13 @@ def _goes(turn: int) -> NDArray[np.bool_]:
     """For each pattern of ink neighbours (P2 the lowest bit) whether the pixel goes in that turn."""
     bits = np.arange(256)[:, None] >> np.arange(NEIGHBOURS) & 1
     p2, p3, p4, p5, p6, p7, p8, p9 = bits.T.astype(bool)
-    pieces = (~p2 & (p3 | p4)) + 0 + (~p4 & (p5 | p6)) + (~p6 & (p7 | p8)) + (~p8 & (p9 | p2))
+    begins = (
+        ~p2 & (p3 | p4),
+        ~p4 & (p5 | p6),
+        ~p6 & (p7 | p8),
+        ~p8 & (p9 | p2),
+    )
+    pieces = np.sum(begins, axis=0)
     one = (p9 | p2) + 0 + (p3 | p4) + (p5 | p6) + (p7 | p8)
     other = (p2 | p3) + 0 + (p4 | p5) + (p6 | p7) + (p8 | p9)
     least = np.minimum(one, other)

@@ -61,7 +61,8 @@ def crossings(
         return Crossings(np.empty((0, 2)), np.empty(0, np.intp), np.empty(0))
     profiles = _averaged(seen @ (step / np.linalg.norm(step)), averaged)
     # 2. half between both sides, nearest to the steepest place
-    high, low = profiles[:, :part].mean(axis=1), profiles[:, -part:].mean(axis=1)
+    high = profiles[:, :part].mean(axis=1)
+    low = profiles[:, -part:].mean(axis=1)
     half = (high + low) / 2
     fall = -np.gradient(profiles, across, axis=1)
     steepest = np.argmax(fall, axis=1)
@@ -87,8 +88,9 @@ def light_at(picture: Picture, places_px: Array) -> Array:
     y = np.clip(places_px[..., 1] - 0.5, 0, rows - 1.001)
     left, top = x.astype(int), y.astype(int)
     x, y = (x - left)[..., None], (y - top)[..., None]
-    upper = (1 - x) * LIGHT[picture[top, left]] + x * LIGHT[picture[top, left + 1]]
-    lower = (1 - x) * LIGHT[picture[top + 1, left]] + x * LIGHT[picture[top + 1, left + 1]]
+    right, bottom = left + 1, top + 1
+    upper = (1 - x) * LIGHT[picture[top, left]] + x * LIGHT[picture[top, right]]
+    lower = (1 - x) * LIGHT[picture[bottom, left]] + x * LIGHT[picture[bottom, right]]
     return np.asarray((1 - y) * upper + y * lower, float)
 
 

@@ -57,8 +57,8 @@ def fit_named(picture: Picture, paper: Format, focal: Focal) -> Choice:
         return Choice(each, _fit(picture, found, each))
     if _likeliest(outline.corners_of(found), photo_of(picture), focal)[1] > FITS_ALONE:
         doubt = (
-            "no sheet of any sides stands so before a camera: the picture was cropped to one side or"
-            f" stretched, so nothing but --flatten tells that the sheet is {paper.name}"
+            "no camera sees a sheet in this shape: the picture was cropped to one side or stretched, so only"
+            f" --flatten says that the sheet is {paper.name}"
         )
         return Choice(each, _fit(picture, found, each), doubt)
     fitting = _fitting(picture, found, focal)
@@ -81,8 +81,8 @@ def fit_any(picture: Picture, focal: Focal) -> Choice:
     if len(fitting) == 1:
         each = fitting[0]
         doubt = (
-            f"by its shape alone the sheet is taken for {each.name}, {each.width_mm:g} x {each.height_mm:g}"
-            " mm; if it is another, give it, such as --flatten paper=a4"
+            f"morfax takes the sheet for {each.name}, {each.width_mm:g} x {each.height_mm:g} mm, by its shape"
+            " alone; if it has another format, give that, such as --flatten paper=a4"
         )
         return Choice(each, _fit(picture, found, each), doubt)
     if fitting:

@@ -238,4 +238,6 @@ def _meet(a: Array, b: Array) -> Array:
     """Where two lines meet; not finite where they are parallel."""
     with np.errstate(divide="ignore", invalid="ignore"):
         cross = a[0] * b[1] - a[1] * b[0]
-        return np.array([a[2] * b[1] - a[1] * b[2], a[0] * b[2] - a[2] * b[0]]) / cross
+        x = a[2] * b[1] - a[1] * b[2]
+        y = a[0] * b[2] - a[2] * b[0]
+        return np.array([x, y]) / cross

@@ -71,10 +71,12 @@ def _fill(flat: Picture, pitch_mm: float, box: Box) -> None:
     y, x = np.mgrid[0 : outer.shape[0], 0 : outer.shape[1]]
     dy, dx = min(ring, top), min(ring, left)
     about = np.ones(outer.shape[:2], bool)
-    about[dy : dy + bottom - top, dx : dx + right - left] = False
+    inner = (slice(dy, dy + bottom - top), slice(dx, dx + right - left))
+    about[inner] = False
     light = outer.min(axis=2)
     about &= light >= np.percentile(light[about], LIGHTER)
     plane = np.stack([np.ones_like(x), x, y], axis=-1).astype(float)
     found = np.linalg.lstsq(plane[about], outer[about].astype(float), rcond=None)[0]
-    filled = np.clip(np.round(plane @ found), 0, 255).astype(np.uint8)
-    flat[top:bottom, left:right] = filled[dy : dy + bottom - top, dx : dx + right - left]
+    levels = np.round(plane @ found)
+    filled = np.clip(levels, 0, 255).astype(np.uint8)
+    flat[top:bottom, left:right] = filled[inner]

@@ -47,12 +47,12 @@ def parsed(text: str) -> Wanted:
         return Wanted("paper", formats.parsed(size))
     places = [_PLACE.fullmatch(part) for part in before.split()]
     if not equals or not places or not all(places):
-        raise ValueError(f"{text.strip()[:60]!r} says no way to flatten; give {ALLOWED}")
+        raise ValueError(f"{text.strip()[:60]!r} is not a way to flatten; give {ALLOWED}")
     try:
         corners = [(float(place[1]), float(place[2])) for place in places if place]
     except ValueError:
         raise ValueError(
-            f"{text.strip()[:60]!r} says no way to flatten; give {ALLOWED}"
+            f"{text.strip()[:60]!r} is not a way to flatten; give {ALLOWED}"
         ) from None
     if len(corners) != 4:
         raise ValueError(
@@ -65,7 +65,8 @@ def parsed(text: str) -> Wanted:
 def _check_round(corners_px: Array) -> None:
     """Raise ValueError unless four places run round a convex figure clockwise, as one sees it."""
     ways = np.roll(corners_px, -1, axis=0) - corners_px
-    turns = ways[:, 0] * np.roll(ways[:, 1], -1) - ways[:, 1] * np.roll(ways[:, 0], -1)
+    x, y = ways.T
+    turns = x * np.roll(y, -1) - y * np.roll(x, -1)
     if (turns > 0).all():  # Y runs down
         return
     what = (

@@ -52,7 +52,8 @@ class HeadPath:
             return False
         chord = near[-1] - near[0]
         d = near - near[0]
-        aside = (d[:, 1] * chord[0] - d[:, 0] * chord[1]) / max(np.hypot(*chord), 1e-9)
+        chord_mm = max(np.hypot(*chord), 1e-9)
+        aside = (d[:, 1] * chord[0] - d[:, 0] * chord[1]) / chord_mm
         return bool(np.abs(aside).max() < within_mm)
 
 

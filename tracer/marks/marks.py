@@ -236,7 +236,9 @@ def _beside_dot(view: View, path: HeadPath, begin: int, end: int) -> View:
     A ragged line is wide in places.
     """
     reach = int(sizes.BESIDE_DOT * view.width_mm / path.step_mm)
-    near = [*range(begin - 2 * reach, begin - reach), *range(end + reach, end + 2 * reach)]
+    before = range(begin - 2 * reach, begin - reach)
+    behind = range(end + reach, end + 2 * reach)
+    near = [*before, *behind]
     widths = []
     for k in near[::2]:
         if 0 <= k < len(path.places):

@@ -100,7 +100,8 @@ def _small_patches(
 ) -> Iterator[tuple[int, Array]]:
     """The patches of a reference point's size, about as high as wide, near a line, and their middles."""
     pitch_mm, boxes = sheet.drawing.pitch_mm, sheet.patches.boxes
-    high, wide = boxes[:, 1] - boxes[:, 0], boxes[:, 3] - boxes[:, 2]
+    top, bottom, left, right = boxes.T
+    high, wide = bottom - top, right - left
     sides_mm = sheet.patches.longer_sides * pitch_mm
     small = (sides_mm >= LEAST_MM) & (sides_mm <= LARGEST_MM) & _is_square(high, wide)
     patches = np.flatnonzero(small)
@@ -229,7 +230,10 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
 def _crossing(one: Array, other: Array) -> Array:
     """Where the straight lines through two strokes' places (n, 2) cross."""
     (a, t), (b, u) = _straight(one), _straight(other)
-    return a + t * (u[1] * (b - a)[0] - u[0] * (b - a)[1]) / (t[0] * u[1] - t[1] * u[0])
+    across = b - a
+    of_way = u[1] * across[0] - u[0] * across[1]
+    of_lines = t[0] * u[1] - t[1] * u[0]
+    return a + t * of_way / of_lines
 
 
 def _straight(places: Array) -> tuple[Array, Array]:

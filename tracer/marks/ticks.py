@@ -118,7 +118,8 @@ def felt(
     wide = float(np.median(middles[:, 2])) / width if len(middles) > 2 else 0.0
     if not sizes.SEEN[0] < wide < sizes.SEEN[1]:
         return None
-    nearest, reach = float(seen[:, 1].min()), float(seen[:, 1].max()) - 0.5 * width
+    nearest = float(seen[:, 1].min())
+    reach = float(seen[:, 1].max()) - 0.5 * width
     from_line_mm = nearest - 0.5 * width
     least_mm = max(sizes.LEAST_MM, sizes.LEAST_WIDTHS * width)
     if reach - max(0.0, from_line_mm) <= least_mm or from_line_mm > sizes.FARTHEST_MM:
@@ -187,7 +188,8 @@ def _square_to(
     """
     width, lean, away = view.width_mm, math.hypot(1.0, slant), stroke.middles[:, 1]
     base = Base(place, square, stroke.side)
-    away_mm, farthest_mm = float(np.median(away)) * lean, float(away.max()) * lean + width
+    away_mm = float(np.median(away)) * lean
+    farthest_mm = float(away.max()) * lean + width
     seen = _stroke_at(view.cells, base, away_mm, farthest_mm, width)
     seen = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width * lean + 0.5 * width * abs(slant)]
     out = stroke.side * np.array([-square[1], square[0]])

@@ -85,7 +85,8 @@ def _to_turn(
     idle_mm, came = np.where([True, bool(may_turn[order[0]])], 0.0, np.inf), []
     for a, b in pairwise(order):
         # from a (as is, turned) to b (as is, turned)
-        steps = np.hypot(*(ends[:, b][None] - ends[::-1, a][:, None]).transpose(2, 0, 1))
+        ways = ends[:, b][None] - ends[::-1, a][:, None]
+        steps = np.hypot(*ways.transpose(2, 0, 1))
         total = idle_mm[:, None] + steps
         total[:, 1] = total[:, 1] if may_turn[b] else np.inf
         came.append(total.argmin(axis=0))

@@ -54,9 +54,12 @@ def most_astray(drawing: Drawing, way_mm: Array) -> Astray:
     # 1. the sheet about the way, and how much of the way is in each pixel
     rows, columns = drawing.darkness.shape
     around = AROUND_PX * finer
-    x, y = way_mm[:, 0] / pitch_mm - 0.5, rows - way_mm[:, 1] / pitch_mm - 0.5
-    top, bottom = max(0, int(y.min()) - around), min(rows, int(y.max()) + around + 2)
-    left, right = max(0, int(x.min()) - around), min(columns, int(x.max()) + around + 2)
+    x = way_mm[:, 0] / pitch_mm - 0.5
+    y = rows - way_mm[:, 1] / pitch_mm - 0.5
+    top = max(0, int(y.min()) - around)
+    bottom = min(rows, int(y.max()) + around + 2)
+    left = max(0, int(x.min()) - around)
+    right = min(columns, int(x.max()) + around + 2)
     sheet = np.asarray(drawing.darkness[top:bottom, left:right], np.float64)
     spacing_mm = pitch_mm * finer / SAMPLES
     places = evenly(way_mm, spacing_mm)
@@ -89,8 +92,10 @@ def _spread(at: Array, shape: tuple[int, ...]) -> Darkness:
         for right in (0, 1):
             row = np.clip(first[:, 0] + down, 0, shape[0] - 1)
             column = np.clip(first[:, 1] + right, 0, shape[1] - 1)
-            weight = np.abs(1 - down - share[:, 0]) * np.abs(1 - right - share[:, 1])
-            sums += np.bincount(row * shape[1] + column, weight, len(sums))
+            of_row = np.abs(1 - down - share[:, 0])
+            of_column = np.abs(1 - right - share[:, 1])
+            pixel = row * shape[1] + column
+            sums += np.bincount(pixel, of_row * of_column, len(sums))
     return sums.reshape(shape)
 
 

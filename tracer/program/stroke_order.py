@@ -43,7 +43,9 @@ def in_order(begins_mm: Array, ends_mm: Array) -> tuple[NDArray[np.int64], NDArr
 def _idle_mm(places: Array, way: NDArray[np.int64], turned: NDArray[np.bool_]) -> float:
     """The idle way of an order, mm."""
     first, last = turned.astype(int), 1 - turned
-    return float(np.hypot(*(places[way, first][1:] - places[way, last][:-1]).T).sum())
+    begins, ends = places[way, first], places[way, last]
+    idle = begins[1:] - ends[:-1]
+    return float(np.hypot(*idle.T).sum())
 
 
 @njit(cache=True)

@@ -185,7 +185,8 @@ class Sketch:
             return None
         place = self.tangle.places_mm[int(np.argmax(np.where(left, distance, 0)))]
         along = lines[:, 2:] - lines[:, :2]
-        t = np.sum((place - lines[:, :2]) * along, axis=1) / (np.sum(along**2, axis=1) + 1e-18)
+        come = np.sum((place - lines[:, :2]) * along, axis=1)
+        t = come / (np.sum(along**2, axis=1) + 1e-18)
         feet = lines[:, :2] + np.clip(t, 0, 1)[:, None] * along
         piece = int(np.argmin(np.hypot(*(feet - place).T)))
         foot = feet[piece]

@@ -58,7 +58,9 @@ def stretches_over(
 def _turned(before: Array, after: Array) -> float:
     """By how much a way turns from one part to the next, rad."""
     arriving, leaving = before[-1] - before[-2], after[1] - after[0]
-    return abs(turn(math.atan2(arriving[1], arriving[0]), math.atan2(leaving[1], leaving[0])))
+    arriving_rad = math.atan2(arriving[1], arriving[0])
+    leaving_rad = math.atan2(leaving[1], leaving[0])
+    return abs(turn(arriving_rad, leaving_rad))
 
 
 def as_drawn(plan: Plan, tangle: Tangle, width_mm: float) -> list[Array]:

@@ -166,7 +166,8 @@ def _ink(view: View, fronts: Fronts, ended: Flags) -> tuple[Array, Array, float]
     others = cv2.dilate(other, square, iterations=ABOUT_PX)
     i, j = np.nonzero(inside | ((about > 0) & (others == 0)))
     # 2. as places on the sheet
-    x, y = (j + left + 0.5) * pitch, (view.cells.shape[0] - i - top - 0.5) * pitch
+    x = (j + left + 0.5) * pitch
+    y = (view.cells.shape[0] - i - top - 0.5) * pitch
     places = np.column_stack([x, y])
     darkness = np.minimum(seen[i, j] / (2 * view.level), DARKEST).astype(float)
     # 3. some of them, if there are many

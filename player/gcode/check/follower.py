@@ -245,7 +245,8 @@ class CheckingReader(GcodeReader):
 
     def _in_inverse_time(self, first: int, f: float) -> None:
         """G93: F is one over the minutes of the line."""
-        begin, length_mm = self.moves[first - 1].end_mm if first else (0.0, 0.0, 0.0), 0.0
+        begin = self.moves[first - 1].end_mm if first else (0.0, 0.0, 0.0)
+        length_mm = 0.0
         for move in self.moves[first:]:
             length_mm += math.dist(begin, move.end_mm)
             begin = move.end_mm

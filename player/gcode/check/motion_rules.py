@@ -136,10 +136,12 @@ def check_travel(steps: Sequence[Step], machine: Machine, findings: Findings) ->
         span = whole[1][axis] - whole[0][axis]
         if span <= most + BELOW_MM:
             continue
-        low, high = steps[0].begin_mm[axis], steps[0].begin_mm[axis]
+        low = steps[0].begin_mm[axis]
+        high = steps[0].begin_mm[axis]
         for step in steps:
             lower, upper = step.bounds_mm()
-            low, high = min(low, lower[axis]), max(high, upper[axis])
+            low = min(low, lower[axis])
+            high = max(high, upper[axis])
             if high - low > most + BELOW_MM:
                 what = f"the program needs {span:.1f} mm of {name}"
                 allowed = f"the machine travels {most:g} mm (travel_mm)"

@@ -47,10 +47,12 @@ class Plane:
         """Places along an arc that is not level, the end the last."""
         from_, to = self.turned_to(begin), self.turned_to(end)
         count = max(1, math.ceil(abs(turned) / CHORD_RAD))
-        across, up = from_[0] - centre[0], from_[1] - centre[1]
+        across = from_[0] - centre[0]
+        up = from_[1] - centre[1]
         places: list[Place] = []
         for k in range(1, count):
-            cos, sin = math.cos(turned * k / count), math.sin(turned * k / count)
+            cos = math.cos(turned * k / count)
+            sin = math.sin(turned * k / count)
             place = [0.0, 0.0, 0.0]
             place[self.axes[0]] = centre[0] + cos * across - sin * up
             place[self.axes[1]] = centre[1] + sin * across + cos * up

@@ -253,7 +253,7 @@ def test_what_cannot_be_run_is_refused_before_anything_moves() -> None:
         match=r"line 1: F9000: a speed of 150000 pulses/s has no feed number; give 0.256 to",
     ):
         playback("G1 X5 F9000")
-    with pytest.raises(ValueError, match="an override of 2 is none"):
+    with pytest.raises(ValueError, match="the override is 2; give"):
         playback("G1 X5 F600", control=PulseControl(override=2.0))
 
 

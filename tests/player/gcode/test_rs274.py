@@ -171,7 +171,7 @@ def test_where_the_machine_stands_is_where_the_program_first_sends_each_axis() -
         ("G1 X1", "G1 has no feed; give F"),
         ("G1 X1 F0", "F0 moves nothing; give a feed above zero"),
         ("G1 X1 F-5", "F-5 moves nothing"),
-        ("G1 X1 I5 F60", "I5 belongs to an arc, and G1 is none"),
+        ("G1 X1 I5 F60", "I5 belongs to an arc, and G1 is not one"),
         ("G2 X1 F60", "G2 has no centre; give I and J, or R"),
         ("G2 X1 I1 R1 F60", "R1 stands with a centre"),
         (

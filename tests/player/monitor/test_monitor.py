@@ -184,7 +184,7 @@ def test_a_table_learnt_from_a_sound_run_passes_that_run() -> None:
     "points", [[], [(1, 0)], [(0, 0), (0, 1)], [(0, -1)], [(0, 0), (float("inf"), 1)]]
 )
 def test_what_is_no_table_is_refused(points: list[tuple[float, float]]) -> None:
-    with pytest.raises(ValueError, match=r"give finite ones|are 0 or more"):
+    with pytest.raises(ValueError, match=r"give finite ones|must be 0 or more"):
         FollowingLimit.table(points, 0.1)
 
 

@@ -131,7 +131,7 @@ def test_the_reference_sets_how_fast_the_cells_edges_come() -> None:
     [
         ({"eccentricity_mm": 4.0}, "4 mm off its axis is broken; give 0 to 3 mm"),
         ({"eccentricity_mm": float("nan")}, "broken"),
-        ({"light": 1.5}, "a lamp of 150% is none; give 0% to 100%"),
+        ({"light": 1.5}, "the lamp has 150% of its light; give 0% to 100%"),
         ({"division_mm": 0.3}, "edges stand 0.3 mm off their places make no wheel"),
     ],
 )

@@ -168,8 +168,8 @@ def test_motors_stop_at_their_top_speed() -> None:
 @pytest.mark.parametrize(
     ("setting", "says"),
     [
-        ({"override": 3.0}, "an override of 300% is none; give 10% to 200%"),
-        ({"override": float("nan")}, "is none"),
+        ({"override": 3.0}, "the override is 300%; give 10% to 200%"),
+        ({"override": float("nan")}, "the override is nan%; give"),
         ({"zero_mm": (0.0, 2 * LARGEST_ZERO_MM)}, "a zero of 2000 mm is too far"),
         ({"zero_mm": (0.0, float("inf"))}, "too far"),
     ],

@@ -349,7 +349,7 @@ def test_a_pattern_that_is_all_over_the_sheet_is_told(
     hatched = np.where((x + y) % period_px < ink_px, 0, 255).astype(np.uint8)
     Image.fromarray(hatched).save(tmp_path / "hatched.png", dpi=DPI)
     with pytest.raises(
-        DrawingFault, match="vary everywhere, as of noise, hatching or a pattern"
+        DrawingFault, match="vary everywhere, as in noise, hatching or a pattern"
     ):
         Drawing.open(tmp_path / "hatched.png")
 

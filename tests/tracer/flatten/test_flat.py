@@ -230,7 +230,10 @@ def test_a_named_format_is_believed_where_no_sheet_stands_so_and_this_is_told() 
     sheared = cv2.warpAffine(sheet, shear, sheet.shape[1::-1], borderValue=sheet[0, 0].tolist())
     found = made(np.asarray(sheared, np.uint8), parsed("paper=a4"))
     assert len(found.warnings) == 1
-    assert re.match(r"no sheet of any sides .* tells that the sheet is a4$", found.warnings[0])
+    assert re.match(
+        r"no camera sees a sheet in this shape.* --flatten says that the sheet is a4$",
+        found.warnings[0],
+    )
     inside = np.array([(30, 30), (180, 40), (105, 150), (20, 270), (190, 260)], float)
     seen = camera.to_photo(inside, A4) @ shear[:, :2].T + shear[:, 2]
     assert np.abs(found.projection.to_sheet(seen) - inside).max() < 0.15 * MM  # 5 px a mm
@@ -249,8 +252,8 @@ def test_the_one_format_that_fits_is_taken() -> None:
     found = made(plain(camera, LETTER), AUTO)
     assert found.told == "edges of letter, 215.9 x 279.4 mm"
     assert found.warnings == (
-        "by its shape alone the sheet is taken for letter, 215.9 x 279.4 mm; if it is another, give it, such"
-        " as --flatten paper=a4",
+        "morfax takes the sheet for letter, 215.9 x 279.4 mm, by its shape alone; if it has another format,"
+        " give that, such as --flatten paper=a4",
     )
 
 

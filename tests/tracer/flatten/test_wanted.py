@@ -22,13 +22,13 @@ def test_the_ways() -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("mark", "says no way to flatten; give auto, marks, paper=a4"),
-        ("paper", "says no way to flatten"),
+        ("mark", "is not a way to flatten; give auto, marks, paper=a4"),
+        ("paper", "is not a way to flatten"),
         ("paper=b9", "is no format of paper"),
-        (PLACES, "says no way to flatten"),
+        (PLACES, "is not a way to flatten"),
         ("1,2 3,4 5,6=20x30mm", "four places make a rectangle, 3 were given"),
-        ("1,2 3,4 5,6 7=20x30mm", "says no way to flatten"),
-        ("1,2 3..4,4 5,6 7,8=20x30mm", "says no way to flatten"),
+        ("1,2 3,4 5,6 7=20x30mm", "is not a way to flatten"),
+        ("1,2 3..4,4 5,6 7,8=20x30mm", "is not a way to flatten"),
         (f"{PLACES}=200", "is no format of paper"),
         (
             "120,80 150,2880 3850,2900 3900,95=200x100mm",

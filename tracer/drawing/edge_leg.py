@@ -1,0 +1,69 @@
+"""A leg of a corner of an edge, felt where the lens has left it in its place.
+
+Signals: places (n, 2) of an outline and the part of them that is a leg in; out the leg as a straight line or
+a parabola, and where it meets another.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+
+BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
+NEARLY_PARALLEL = 0.1  # sine of the angle between legs that do not meet
+
+
+class EdgeLeg(NamedTuple):
+    """A leg of a corner: its near end, the direction towards the corner, and a polynomial across it."""
+
+    origin: Array
+    along: Array
+    across: Array
+
+    @classmethod
+    def felt(cls, places: Array, at: int, near: float, far: float) -> EdgeLeg:
+        """A leg as a parabola seen from its near end, or as a straight line if that fits about as well."""
+        first, last = round(min(near, far)), round(max(near, far))
+        rows = np.arange(first, last + 1) + at
+        leg = places[rows % len(places)]
+        origin, end = (leg[-1], leg[0]) if near < 0 else (leg[0], leg[-1])
+        along = (origin - end) / np.hypot(*(origin - end))
+        out = leg - origin
+        u, v = out @ along, out @ np.array([-along[1], along[0]])
+        from numpy.polynomial import polynomial
+
+        straight, bent = (polynomial.polyfit(u, v, degree) for degree in (1, 2))
+        off = [float(np.std(v - polynomial.polyval(u, each))) for each in (straight, bent)]
+        return cls(origin, along, bent if off[1] < BENT * off[0] else straight)
+
+    def beside(self, place: Array) -> tuple[Array, Array]:
+        """The leg beside a place, and its direction there."""
+        u = float((place - self.origin) @ self.along)
+        left = np.array([-self.along[1], self.along[0]])
+        powers = np.arange(len(self.across))
+        slope = float(np.sum(powers[1:] * self.across[1:] * u ** powers[:-1]))
+        direction = self.along + slope * left
+        beside = self.origin + u * self.along + float(np.sum(self.across * u**powers)) * left
+        return beside, direction / np.hypot(*direction)
+
+    def met(self, other: EdgeLeg) -> tuple[Array, Array, Array] | None:
+        """Where two legs meet, and their directions there, towards the corner; None if they do not."""
+        place = 0.5 * (self.origin + other.origin)
+        for _ in range(6):
+            (p, t), (q, w) = self.beside(place), other.beside(place)
+            cross = t[0] * w[1] - t[1] * w[0]
+            if abs(cross) < NEARLY_PARALLEL:
+                return None
+            gap = q - p
+            place = p + t * (gap[0] * w[1] - gap[1] * w[0]) / cross
+        reach = 4 * float(np.hypot(*(self.origin - other.origin)))
+        for leg in (self, other):
+            beyond = place - leg.origin
+            if np.hypot(*beyond) > reach or beyond @ leg.along < 0:
+                return None
+        return place, t, w
