@@ -41,17 +41,23 @@ def _middle(values: NDArray[np.floating]) -> float:
     return 0.5 * (lower + upper)
 
 
-def percentile(values: NDArray[np.floating], percent: float) -> float:
-    """The number below which so many percent of numbers (n,) lie: straight between two; n is not 0."""
+def percentile(
+    values: NDArray[np.floating], percent: float, kind: type[np.floating] | None = None
+) -> float:
+    """The number below which so many percent of numbers (n,) lie: straight between two; n is not 0.
+
+    numpy calculates in the type of the numbers, which may be given otherwise.
+    """
+    kind = kind or values.dtype.type
     at = (len(values) - 1) * (percent / 100)
     below = int(at)
     parted = np.partition(values, below)
     low = parted[below]
     high = parted[below + 1 :].min() if below + 1 < len(parted) else low
-    step, share = float(high - low), at - below
+    step, share = kind(high - low), at - below
     if share < 0.5:
-        return float(low) + step * share
-    return float(high) - step * (1 - share)
+        return float(kind(low) + step * share)
+    return float(kind(high) - step * (1 - share))
 
 
 def medians(values: NDArray[np.floating]) -> NDArray[np.floating]:

@@ -28,12 +28,20 @@ def test_the_median_of_many_is_found_without_ordering_them(count: int, seed: int
     assert math.isnan(median(values))
 
 
-@given(st.integers(1, 50), st.floats(0, 100), st.integers(0, 1000))
+@given(
+    st.integers(1, 50),
+    st.floats(0, 100),
+    st.sampled_from([np.float32, np.float64]),
+    st.integers(0, 1000),
+)
 def test_a_percentile_is_that_of_numpy_to_the_bit(
-    count: int, percent: float, seed: int
+    count: int, percent: float, kind: type[np.floating], seed: int
 ) -> None:
-    values = np.random.default_rng(seed).normal(size=count)
+    values = np.random.default_rng(seed).normal(size=count).astype(kind)
     assert percentile(values, percent) == float(np.percentile(values, percent))
+    # numpy calculates several at once in double precision
+    both = np.percentile(values, [percent, 50.0])
+    assert percentile(values, percent, np.float64) == both[0]
 
 
 @given(st.integers(1, 9), st.integers(0, 1000))

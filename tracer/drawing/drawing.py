@@ -29,7 +29,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import median
+from morfax.motion.median import median, percentile
 from morfax.tracer.drawing import coarse, grain, inks, large, noise, paper, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot, runs_in
 from morfax.tracer.drawing.border import without_border
@@ -298,7 +298,7 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness 
     patches = Patches.of([runs])
     strokes = strokes_of(patches, least, pitch_mm)
     every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
-    ink = float(np.percentile(patches.pixels_of(strokes, seen)[::every], DARKER))
+    ink = percentile(patches.pixels_of(strokes, seen)[::every], DARKER)
     return ink, None if is_quiet else seen
 
 

@@ -148,7 +148,8 @@ def paper_noise(sample: NDArray[np.float32]) -> float:
     paper = sample[sample < PAPER]
     if not len(paper):
         return math.nan
-    return percentile(paper, DARKER) - percentile(paper, 50.0)
+    usual, darker = (percentile(paper, percent, np.float64) for percent in (50.0, DARKER))
+    return darker - usual
 
 
 def every_px(size: int) -> int:
@@ -236,7 +237,8 @@ def _part(darkness: Kept, rows: slice, columns: slice) -> Any:
 
 def _even(count: int) -> NDArray[np.int64]:
     """Numbers of at most `MOST_PROFILES` of so many, all over them."""
-    return np.unique(np.linspace(0, max(count - 1, 0), min(count, MOST_PROFILES)).astype(int))
+    numbers = np.linspace(0, max(count - 1, 0), min(count, MOST_PROFILES)).astype(int)
+    return numbers[np.diff(numbers, prepend=-1) > 0]
 
 
 def _slope(darkness: Kept, places: Array, reach_px: float = SLOPE_PX) -> Array:
