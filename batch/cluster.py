@@ -169,7 +169,7 @@ def _name(file: str) -> str:
 
 def _fetched(address: str) -> Files:
     """A drawing at an address, with its corrections if they are beside it; raises OSError."""
-    from morfax.tracer.corrections.correction_file import beside
+    from morfax.tracer.corrections import beside
 
     system, path = file_system(address)
     found = {_name(address): bytes(system.cat_file(path))}

@@ -6,7 +6,9 @@ code. Verbs are loaded when they are called, so that `morfax --help` does not wa
 
 from __future__ import annotations
 
+import atexit
 import errno
+import gc
 import importlib
 import os
 import signal
@@ -23,6 +25,9 @@ from morfax.jobs import kernels
 from morfax.jobs.damaged_kernels import compile_damaged_again
 from morfax.motion.faults import DrawingFault, Fault, FileFault
 
+# objects that Python makes before it looks for rings of them that nobody holds (its own figure is 700). The
+# modules of a verb make 80 000, which all stay: to look through them took a twelfth of a short `trace`
+OBJECTS = 50_000
 AGAIN_S = 0.1  # from an interrupt that was lost to the next: what lost it is over by then, or loses that too
 VERBS = {
     "lines": "List what is on a drawing: a numbered table of its lines, dots and likely lettering.",
@@ -107,7 +112,7 @@ def main(words: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code. Whatever goes wrong ends as one line on stderr."""
     kernels.choose_cache()
     compile_damaged_again(lambda line: click.echo(line, err=True))
-    with _stopped_by_signals():
+    with _rings_sought_seldom(), _stopped_by_signals():
         return _ended(words)
 
 
@@ -149,6 +154,18 @@ def _failed(error: Exception) -> int:
         traceback.print_exc()
     mistake = f"a mistake in morfax: {type(error).__name__}: {' '.join(str(error).split())}"
     return _say(f"{mistake} (MORFAX_TRACEBACK=1 shows where)", MISTAKE)
+
+
+@contextmanager
+def _rings_sought_seldom() -> Iterator[None]:
+    """Have Python look for rings of objects less often than it does as a rule."""
+    atexit.register(gc.freeze)  # at the end, too: the process gives all of its memory back
+    before = gc.get_threshold()
+    gc.set_threshold(OBJECTS, *before[1:])
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 @contextmanager

@@ -28,7 +28,7 @@ class CorrectionSettings:
 
     def file_of(self, drawing: FilePath) -> FilePath:
         """The name of the file of a drawing."""
-        from morfax.tracer.corrections.correction_file import beside
+        from morfax.tracer.corrections import beside
 
         return beside(drawing) if self.file is None else self.file
 
@@ -46,8 +46,6 @@ class CorrectionSettings:
 
         Raises CardFault for a mistake in the file or for one of another page, FileFault if it cannot be read.
         """
-        from morfax.tracer.corrections.correction_file import read_corrections
-
         if self.file is not None and not self.used:
             raise WrongUse(
                 "--corrections and --no-corrections were both given; give one of them"
@@ -57,6 +55,8 @@ class CorrectionSettings:
             file = self.file
         if file is None:
             return None
+        from morfax.tracer.corrections.correction_file import read_corrections
+
         corrections = read_corrections(file)
         why_not = _of_another(corrections, drawing, page)
         if why_not is not None:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.operator.operator import Panel
 
+NAME = "{}"  # in a result's name: it stands for the drawing's name, without its suffix
+
 
 @dataclass(frozen=True, slots=True)
 class TraceOutputs:

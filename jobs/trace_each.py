@@ -15,14 +15,12 @@ from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.settings import DrawingFile, TraceSettings
-from morfax.jobs.trace import TraceJob, TraceOutputs, TraceResult
+from morfax.jobs.trace import NAME, TraceJob, TraceOutputs, TraceResult
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
 
 if TYPE_CHECKING:
     from morfax.tracer.operator.operator import Panel
-
-NAME = "{}"  # stands for the drawing's name, without its suffix
 
 
 @dataclass(frozen=True, slots=True)

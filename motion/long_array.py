@@ -94,9 +94,9 @@ class LongArray:
         return np.vstack(parts[::-1]) if parts else np.empty((0, self._columns))
 
     def whole(self) -> Array:
-        """All rows as one array, (n, columns): a mapped one, if any of them are in a file."""
+        """All rows as one array, (n, columns), not to be changed: a mapped one, if any are in a file."""
         if not self._filed:
-            return np.vstack(self._newest) if self._newest else np.empty((0, self._columns))
+            return self._in_one()
         if self._newest:
             self._to_file()
         if len(self._filed) > 1:  # cut, or copied, and gone on from there
@@ -110,6 +110,14 @@ class LongArray:
             self._filed = [(together, 0, len(self))]
         file, first, rows = self._filed[0]
         return file.mapped(first, rows, self._columns)
+
+    def _in_one(self) -> Array:
+        """The newest rows as one array, which is put together once; it is not to be changed."""
+        if not self._newest:
+            return np.empty((0, self._columns))
+        if len(self._newest) > 1:
+            self._newest = [np.vstack(self._newest)]
+        return self._newest[0]
 
     def _to_file(self) -> None:
         """Put the newest rows into the file, behind what is there."""

@@ -38,8 +38,16 @@ def steps_mm(line_mm: Array) -> Array:
 def lengths_mm(line_mm: Array) -> Array:
     """Length of a polyline up to each of its places, (n,) mm."""
     lengths = np.zeros(max(1, len(line_mm)))
-    np.cumsum(steps_mm(line_mm), out=lengths[1:])
+    _add_up(np.ascontiguousarray(line_mm, float), lengths)
     return lengths
+
+
+@njit(cache=True)
+def _add_up(line_mm, lengths):  # type: ignore[no-untyped-def]
+    """Fill in the length up to each place, from that up to the first one on."""
+    for k in range(1, len(line_mm)):
+        dx, dy = line_mm[k, 0] - line_mm[k - 1, 0], line_mm[k, 1] - line_mm[k - 1, 1]
+        lengths[k] = lengths[k - 1] + math.hypot(dx, dy)
 
 
 def lengths_by_blocks(line_mm: Array) -> Iterator[tuple[int, Array, Array]]:
@@ -48,7 +56,8 @@ def lengths_by_blocks(line_mm: Array) -> Iterator[tuple[int, Array, Array]]:
     """
     first, come_mm = 0, 0.0
     for places in blocks(line_mm, before=1):
-        lengths = np.cumsum(np.r_[come_mm, steps_mm(places)])
+        lengths = np.full(max(1, len(places)), come_mm)
+        _add_up(np.ascontiguousarray(places, float), lengths)
         yield first, places, lengths
         first, come_mm = first + len(places) - 1, float(lengths[-1])
 

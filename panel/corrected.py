@@ -77,7 +77,7 @@ def lay_corrections(drawing: FilePath, text: str) -> None:
 
 def _file(drawing: FilePath) -> FilePath:
     """The name of the file of corrections."""
-    from morfax.tracer.corrections.correction_file import beside
+    from morfax.tracer.corrections import beside
 
     return beside(drawing)
 

@@ -13,10 +13,8 @@ from morfax.console.options.files import FILE, PATHS, PICTURES, ProgramOrFolder,
 from morfax.console.options.groups import Verb, option
 from morfax.console.options.placement import unit_options
 from morfax.console.options.tracing import trace_options
-from morfax.console.terminal.each import trace_each
 from morfax.console.terminal.sheet import sheet_shown
-from morfax.jobs.trace import TraceJob, TraceOutputs
-from morfax.jobs.trace_each import NAME, TraceEachJob
+from morfax.jobs.trace import NAME, TraceJob, TraceOutputs
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
@@ -95,6 +93,9 @@ def command(
     outputs = TraceOutputs(output, path_file, picture, force)
     names = [str(name) for name in (output, path_file, picture) if name is not None]
     if len(drawings) > 1 or any(NAME in name for name in names) or (output and output.is_dir()):
+        from morfax.console.terminal.each import trace_each
+        from morfax.jobs.trace_each import TraceEachJob
+
         trace_each(TraceEachJob(drawings, outputs, settings, unit), desk, panel)
         return
     job = TraceJob(drawings[0], outputs, settings, unit)

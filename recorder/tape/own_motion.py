@@ -18,6 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 
 STATED_CYCLES = 1.0  # an axis that moves by less is stated
 OWN_CYCLES = 0.5  # an axis that moves by less has no motion of its own
@@ -43,16 +44,16 @@ class OwnMotion:
             return
         if self._first is None:
             self._first = cycles[0].copy()
-        columns = cycles.T
-        for axis, column in enumerate(columns):
-            place = self._first[axis]
-            self._low[axis] = min(self._low[axis], column.min() - place)
-            self._high[axis] = max(self._high[axis], column.max() - place)
+        rows = np.ascontiguousarray(cycles, float)
+        for axis, place in enumerate(self._first):
+            least, most = _range(rows, axis, -1)
+            self._low[axis] = min(self._low[axis], least - place)
+            self._high[axis] = max(self._high[axis], most - place)
         open_ = np.flatnonzero(self._apart_high - self._apart_low < STATED_CYCLES)
         for pair in open_.tolist():
-            apart = columns[self._one[pair]] - columns[self._other[pair]]
-            self._apart_low[pair] = min(self._apart_low[pair], float(apart.min()))
-            self._apart_high[pair] = max(self._apart_high[pair], float(apart.max()))
+            least, most = _range(rows, self._one[pair], self._other[pair])
+            self._apart_low[pair] = min(self._apart_low[pair], least)
+            self._apart_high[pair] = max(self._apart_high[pair], most)
 
     @property
     def range_cycles(self) -> Array:
@@ -96,3 +97,17 @@ class OwnMotion:
         return self.standing(names, STATED_CYCLES), tuple(
             name for axis, name in enumerate(names) if axis in alike
         )
+
+
+@njit(cache=True, nogil=True)
+def _range(rows, one, other):  # type: ignore[no-untyped-def]
+    """The least and the most of a column, or of its difference from another one (-1: none); nan where one of
+    them is none.
+    """
+    least, most = np.inf, -np.inf
+    for k in range(len(rows)):
+        value = rows[k, one] - rows[k, other] if other >= 0 else rows[k, one]
+        if np.isnan(value):
+            return np.nan, np.nan
+        least, most = min(least, value), max(most, value)
+    return least, most

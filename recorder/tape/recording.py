@@ -37,6 +37,7 @@ from morfax.recorder.tape.carrier import Carrier, Frames
 from morfax.recorder.tape.check_signal import CheckWriter
 from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat
 from morfax.recorder.tape.own_motion import OwnMotion
+from morfax.recorder.tape.speed_gauge import SpeedGauge
 
 _BLOCK_SAMPLES = 8192  # a megabyte of frames, which stays in the processor's cache
 _PLACE_DECIMALS = 6  # of the start and end in the text chunk: a nanometre
@@ -130,7 +131,7 @@ def record_live(
             out.put(frames)
     still, alike = tape.own.told(fmt.axes)
     fmt = replace(fmt, end_mm=_place(tape.last_mm), still=still, alike=alike)
-    return LiveRecording(fmt, tape.count, tuple(tape.largest_speed_mm_s.tolist()))
+    return LiveRecording(fmt, tape.count, tape.largest_speed_mm_s)
 
 
 class _Take:
@@ -144,10 +145,15 @@ class _Take:
         self._samples = 0
         self.count = 0
         self.last_mm = first_mm
-        self.largest_speed_mm_s = np.zeros(len(first_mm))
+        self._speeds = SpeedGauge(fmt)
         self.own = OwnMotion(len(first_mm))
         self._first_mm = first_mm
         self._check = CheckWriter(fmt) if fmt.checked else None
+
+    @property
+    def largest_speed_mm_s(self) -> tuple[float, ...]:
+        """The largest speed of each axis so far."""
+        return tuple(self._speeds.largest_mm_s.tolist())
 
     def frames(self, blocks: Iterable[Array]) -> Iterator[Frames]:
         """All frames of the tape, standstill included."""
@@ -190,16 +196,7 @@ class _Take:
     def _gauge(self, positions: Array) -> None:
         """Note the largest speeds; raise MotionFault where an axis leaves the deviation."""
         fmt = self._format
-        speed = np.diff(positions, axis=0, prepend=self.last_mm[None]) * fmt.motion_rate_hz
-        fast = np.abs(speed) > fmt.largest_speed_mm_s * (
-            1 + 1e-9
-        )  # a motion at the very limit is let through
-        if fast.any():
-            at, axis = np.argwhere(fast)[0].tolist()
-            raise _too_fast(
-                fmt, axis, (self._samples + at) / fmt.motion_rate_hz, float(speed[at, axis])
-            )
-        self.largest_speed_mm_s = np.maximum(self.largest_speed_mm_s, np.abs(speed).max(axis=0))
+        self._speeds.feed(positions, self.last_mm, self._samples)
         self._samples += len(positions)
         self.own.feed(positions * fmt.cycles_per_mm)
         self.last_mm = positions[-1]
@@ -252,17 +249,6 @@ def _check(positions: Array, rate_hz: float, done: int, fmt: TapeFormat) -> None
         time_s, name = (done + at) / rate_hz, fmt.axes[axis]
         message = f"axis {name} is at {positions[at, axis]} mm at {time_s:.4f} s; positions must be finite"
         raise MotionFault(message, axis=name, time_s=time_s)
-
-
-def _too_fast(fmt: TapeFormat, axis: int, time_s: float, speed_mm_s: float) -> MotionFault:
-    """The fault of a speed at which the track would leave its band."""
-    message = (
-        f"axis {fmt.axes[axis]} moves at {abs(speed_mm_s):.4g} mm/s at {time_s:.4f} s; this tape "
-        "takes at most "
-        f"{fmt.largest_speed_mm_s:.4g} mm/s ({fmt.largest_deviation_hz:.4g} Hz of deviation): move "
-        "slower there"
-    )
-    return MotionFault(message, axis=fmt.axes[axis], time_s=time_s, speed_mm_s=speed_mm_s)
 
 
 def finish(beside: FilePath, fmt: TapeFormat, file: FilePath) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 import importlib
 import os
 import re
@@ -204,3 +205,13 @@ def test_a_reader_that_goes_away_is_no_fault(path_file: Path) -> None:
 def _with_house() -> dict[str, str]:
     """The environment, with the packages on the path wherever the command is called."""
     return {**os.environ, "PYTHONPATH": str(Path(cli.__file__).absolute().parents[2])}
+
+
+def test_rings_of_objects_are_sought_seldom_while_a_verb_runs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    before, seen = gc.get_threshold(), list[tuple[int, int, int]]()
+    monkeypatch.setattr(cli, "_ended", lambda words: seen.append(gc.get_threshold()) or 0)
+    assert cli.main(["--help"]) == 0
+    assert seen[0][0] == cli.OBJECTS > before[0]
+    assert gc.get_threshold() == before

@@ -383,6 +383,29 @@ def test_jobs_know_no_terminal_and_load_no_machine() -> None:
     assert done.stdout.splitlines() == ["[]", "[]"]
 
 
+def test_a_plain_trace_loads_neither_masked_arrays_nor_what_other_drawings_need(
+    tmp_path: Path,
+) -> None:
+    """numpy.ma alone (np.percentile and np.unique ask for it) takes a twentieth of a short trace."""
+    absent = [
+        "numpy.ma",
+        "morfax.tracer.corrections.corrections",
+        "morfax.tracer.following.edge_follower",
+        "morfax.tracer.tangles.sketch",
+        "morfax.motion.offset",
+        "morfax.jobs.trace_each",
+    ]
+    words = ["trace", str(SAMPLES / "cam.png"), "-o", str(tmp_path / "a.wav")]
+    code = (
+        "import sys; from morfax.console.cli import main;"
+        f" code = main({words}); print(code, [name for name in {absent} if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == "0 []"
+
+
 def test_all_the_ink_of_a_plate_is_followed_without_scipy(tmp_path: Path) -> None:
     """scipy.spatial takes as long to import as numpy, numba and OpenCV together."""
     grey = np.full((500, 500), 240, np.uint8)

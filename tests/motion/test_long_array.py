@@ -54,6 +54,16 @@ def test_what_comes_is_copied() -> None:
     assert np.array_equal(array.whole(), ROWS[:50])
 
 
+def test_rows_in_memory_are_put_together_once() -> None:
+    kept = LongArray()
+    kept.add(np.ones((3, 2)))
+    kept.add(np.zeros((2, 2)))
+    whole = kept.whole()
+    assert len(whole) == 5 and kept.whole() is whole
+    kept.add(np.ones((1, 2)))
+    assert len(kept.whole()) == 6 and len(whole) == 5
+
+
 @settings(max_examples=30)
 @given(first=st.integers(0, 2000), then=st.integers(0, 300), other=st.integers(0, 2000))
 def test_copies_go_on_by_themselves_also_when_rows_are_cut(

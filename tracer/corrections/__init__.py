@@ -3,3 +3,17 @@
 The room asks the ground floor only. The drawing takes the ink from it, the lines take turns and stops, and
 the jobs read and write its file.
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SUFFIX = ".morfax.toml"  # in the place of the drawing's own
+
+
+def beside(drawing: Path) -> Path:
+    """The name of a drawing's file of corrections; most drawings have none, and nothing else is loaded."""
+    return drawing.with_name(f"{drawing.stem}{SUFFIX}")

@@ -39,7 +39,6 @@ from morfax.tracer.corrections.corrections import (
     Span,
 )
 
-SUFFIX = ".morfax.toml"
 CALLED = "the file of corrections"
 HEAD = (
     "# Corrections of a drawing, which morfax trace uses: see docs/reference/corrections.md\n"
@@ -48,11 +47,6 @@ _KEYS = ("drawing", "correction")
 _PICTURE_KEYS = ("name", "pixels", "sha256", "page")
 _ENTRY_KEYS = ("do", "at", "width", "from", "direction", "why")
 _SUM_DIGITS = 64  # of SHA-256
-
-
-def beside(drawing: FilePath) -> FilePath:
-    """The name of a drawing's file of corrections."""
-    return drawing.with_name(f"{drawing.stem}{SUFFIX}")
 
 
 def read_corrections(file: FilePath) -> Corrections:

@@ -20,22 +20,22 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import CardFault
-from morfax.tracer.corrections.corrections import (
-    INKED,
-    STOPS,
-    TURNS,
-    Correction,
-    Corrections,
-    Direction,
-    Kind,
-    Place,
-    Span,
-)
+
+if TYPE_CHECKING:
+    from morfax.tracer.corrections.corrections import (
+        Correction,
+        Corrections,
+        Direction,
+        Kind,
+        Place,
+        Span,
+    )
 
 RUBBER_MM = 2.0  # diameter of the rubber where no width is given: our own figure
 SAME_SHAPE_PX = 2.0  # rounding of a rendered page, in the larger picture's pixels
@@ -126,6 +126,8 @@ class SheetSize:
         """Corrections on this sheet; raises CardFault if they belong to a picture of another shape, or one of
         them lies beside the sheet.
         """
+        from morfax.tracer.corrections.corrections import INKED, STOPS, TURNS
+
         self._check_shape(corrections)
         each = [
             (n, one, self._places_mm(corrections, n, one))
@@ -208,12 +210,16 @@ class SheetSize:
         """A place in pixels of this sheet's picture."""
         if place.unit == "px":
             return place
+        from morfax.tracer.corrections.corrections import Place
+
         return Place(
             place.x / self.width_mm * self.columns, (1 - place.y / self.height_mm) * self.rows
         )
 
     def span_in_pixels(self, span: Span) -> Span:
         """A length in pixels of this sheet's picture."""
+        from morfax.tracer.corrections.corrections import Span
+
         return span if span.unit == "px" else Span(span.amount / self.width_mm * self.columns)
 
 

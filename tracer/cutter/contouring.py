@@ -22,7 +22,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from morfax.motion.faults import MotionFault
-from morfax.motion.offset import OffsetPath
 from morfax.tracer.cutter.contour import Beside, Cut
 from morfax.tracer.following.line import Line
 
@@ -82,6 +81,8 @@ def turned_round(beside: Beside, contouring: Contouring) -> Beside:
     keeps_direction = not beside.cut.closed or beside.cut.line.as_told
     if keeps_direction or not contouring.turns(beside.left):
         return beside
+    from morfax.motion.offset import OffsetPath
+
     paths = [
         OffsetPath(path.points_mm[::-1].copy(), path.closed, path.guide)
         for path in beside.paths

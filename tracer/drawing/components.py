@@ -53,14 +53,7 @@ class Patches:
     @cached_property
     def boxes(self) -> Numbers:
         """First row, last row + 1, first column, last column + 1 of each patch; (n, 4) pixels."""
-        edges = []
-        for low, high in ((self.row, self.row + 1), (self.begin, self.end)):
-            least = np.full(self.count, np.iinfo(np.int32).max, np.int32)
-            most = np.zeros(self.count, np.int32)
-            np.minimum.at(least, self.patch, low)
-            np.maximum.at(most, self.patch, high)
-            edges += [least, most]
-        return np.column_stack(edges)
+        return np.asarray(_boxes(self.row, self.begin, self.end, self.patch, self.count))
 
     @cached_property
     def longer_sides(self) -> Numbers:
@@ -148,6 +141,18 @@ def _paint(mask, row, begin, end):  # type: ignore[no-untyped-def]
     for k in range(len(row)):
         for column in range(max(begin[k], 0), min(end[k], mask.shape[1])):
             mask[row[k], column] = 1
+
+
+@njit(cache=True)
+def _boxes(row, begin, end, patch, count):  # type: ignore[no-untyped-def]
+    """First row, last row + 1, first column, last column + 1 of the runs of each patch."""
+    boxes = np.zeros((count, 4), np.int32)
+    boxes[:, 0] = boxes[:, 2] = 2**31 - 1
+    for k in range(len(row)):
+        box = boxes[patch[k]]
+        box[0], box[1] = min(box[0], row[k]), max(box[1], row[k] + 1)
+        box[2], box[3] = min(box[2], begin[k]), max(box[3], end[k])
+    return boxes
 
 
 @njit(cache=True)

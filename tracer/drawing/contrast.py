@@ -112,10 +112,20 @@ class Contrast:
 
     def darkness(self, ink: float) -> Darkness:
         """The sheet, where the contrast of ink is 1; bare paper far from anything dark is 0."""
+        seen = np.zeros(self.grey.shape, np.float32)
+        return self._filled(seen, self._about_dark(ink), ink)
+
+    def in_parts_of(self, ink: float, everywhere: Darkness) -> Darkness:
+        """The same of the contrast on the whole sheet, in its place."""
+        part = np.float32(ink)
+        _in_parts_of(everywhere, self._about_dark(ink), self.blocks.by, part)
+        return everywhere
+
+    def _about_dark(self, ink: float) -> Near:
+        """The blocks that are near something a tenth as dark as ink."""
         about = 2 * math.ceil(BARE_FROM_MM / self.paper.pitch_mm) + 1
         blocks = cv2.dilate(self.above(FAINT * ink), np.ones((about, about), np.uint8))
-        seen = np.zeros(self.grey.shape, np.float32)
-        return self._filled(seen, np.asarray(blocks, np.uint8), ink)
+        return np.asarray(blocks, np.uint8)
 
     def everywhere(self) -> Darkness:
         """Contrast on the whole sheet."""
@@ -164,14 +174,14 @@ def _fill(grey, paper, how, blocks, seen, first, last):  # type: ignore[no-untyp
         (3, columns), np.float32
     )  # rows of the paper, interpolated, each in its place
     held = np.full(3, -1)  # which they are
-    line = np.empty(columns, np.float32)
+    line, shares = np.empty(columns, np.float32), _shares(columns, by)
     for i in range(first, last):
         stretches = stretches_of(blocks[i], by, columns)
         if not len(stretches):
             continue
         for row in range(max(i - 1, 0), min(i + 2, len(paper))):
             if held[row % 3] != row:
-                _across(paper[row], by, wide[row % 3])
+                _across(paper[row], by, shares, wide[row % 3])
                 held[row % 3] = row
         for k in range(i * by, min(i * by + by, rows)):
             at = (k + 0.5) / by - 0.5
@@ -191,6 +201,7 @@ def _softened(grey, paper, how, chosen, weights, seen):  # type: ignore[no-untyp
     rows, columns = grey.shape
     by, reach = how[0], len(weights) // 2
     wide, line = np.empty((2, columns), np.float32), np.empty(columns, np.float32)
+    shares = _shares(columns, by)
     down, longer = np.empty(columns, np.float32), np.empty(columns + 2 * reach, np.float32)
     before = -2  # the row of the paper that is interpolated already
     for n in range(len(chosen)):
@@ -200,8 +211,8 @@ def _softened(grey, paper, how, chosen, weights, seen):  # type: ignore[no-untyp
             at = (k + 0.5) / by - 0.5
             upper = int(np.floor(at))
             if upper != before:
-                _across(paper[max(upper, 0)], by, wide[0])
-                _across(paper[min(upper + 1, len(paper) - 1)], by, wide[1])
+                _across(paper[max(upper, 0)], by, shares, wide[0])
+                _across(paper[min(upper + 1, len(paper) - 1)], by, shares, wide[1])
                 before = upper
             _between(wide[0], wide[1], np.float32(at - upper), line)
             _held_against(grey[k], line, how, line)
@@ -217,18 +228,50 @@ def _add(weight, line, total):  # type: ignore[no-untyped-def]
         total[j] += weight * line[j]
 
 
+@njit(cache=True, nogil=True)
+def _in_parts_of(seen, blocks, by, unit):  # type: ignore[no-untyped-def]
+    """Divide the contrast by a unit in some blocks, and make it 0 elsewhere."""
+    rows, columns = seen.shape
+    for i in range(len(blocks)):
+        stretches = stretches_of(blocks[i], by, columns)
+        for k in range(i * by, min(i * by + by, rows)):
+            done, line = 0, seen[k]
+            for stretch in stretches:
+                begin, end = stretch[0], stretch[1]
+                line[done:begin] = 0.0
+                for j in range(begin, end):
+                    line[j] /= unit
+                done = end
+            line[done:] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def _first_beyond(block, by):  # type: ignore[no-untyped-def]
+    """The first pixel of a block beyond its middle, or at it."""
+    half = by - by // 2
+    return block * by + half if 2 * half == by else block * by + half - 1
+
+
+@njit(cache=True, nogil=True)
+def _shares(columns, by):  # type: ignore[no-untyped-def]
+    """How far each column is from the middle of the block to its left to that of the next, of the way."""
+    shares = np.empty(columns, np.float32)
+    for block in range(-1, columns // by + 1):
+        begin = _first_beyond(block, by)
+        for j in range(max(begin, 0), min(begin + by, columns)):
+            shares[j] = np.float32((j + 0.5) / by - 0.5 - block)
+    return shares
+
+
 @njit(cache=True, nogil=True, fastmath={"contract"})
-def _across(paper, by, wide):  # type: ignore[no-untyped-def]
+def _across(paper, by, shares, wide):  # type: ignore[no-untyped-def]
     """Interpolate a row of the paper at each column."""
     columns, last = len(wide), len(paper) - 1
-    half = by - by // 2  # the first pixel of a block beyond its middle, or at it
     for block in range(-1, last + 1):
         left, right = paper[max(block, 0)], paper[min(block + 1, last)]
-        step = right - left
-        begin = block * by + half if 2 * half == by else block * by + half - 1
+        step, begin = right - left, _first_beyond(block, by)
         for j in range(max(begin, 0), min(begin + by, columns)):
-            share = np.float32((j + 0.5) / by - 0.5 - block)
-            wide[j] = left + share * step
+            wide[j] = left + shares[j] * step
 
 
 @njit(cache=True, nogil=True, fastmath={"contract"})

@@ -29,7 +29,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import median
+from morfax.motion.median import median, percentile
 from morfax.tracer.drawing import coarse, grain, inks, large, noise, paper, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot, runs_in
 from morfax.tracer.drawing.border import without_border
@@ -261,10 +261,14 @@ def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes, float]:
     to be a line.
     """
     contrast = Contrast.of(grey, pitch_mm)
-    ink = _ink_contrast(contrast, pitch_mm)
-    sample = contrast.pixels(noise.every_px(grey.size)) / np.float32(ink)
-    noise_of_paper = noise.paper_noise(sample)
-    return contrast.darkness(ink), contrast.paper.shapes(ink), noise_of_paper
+    ink, everywhere = _ink_contrast(contrast, pitch_mm)
+    every = noise.every_px(grey.size)
+    sample = contrast.pixels(every) if everywhere is None else everywhere[::every, ::every]
+    noise_of_paper = noise.paper_noise(sample / np.float32(ink))
+    shapes = contrast.paper.shapes(ink)
+    if everywhere is None:
+        return contrast.darkness(ink), shapes, noise_of_paper
+    return contrast.in_parts_of(ink, everywhere), shapes, noise_of_paper
 
 
 def border_note(edges: tuple[str, ...]) -> str:
@@ -276,10 +280,13 @@ def border_note(edges: tuple[str, ...]) -> str:
     )
 
 
-def _ink_contrast(contrast: Contrast, pitch_mm: float) -> float:
-    """Contrast of the strokes against the paper, grey levels: that of the longer strokes' darker part."""
+def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness | None]:
+    """Contrast of the strokes against the paper, grey levels: that of the longer strokes' darker part; and
+    that of the whole sheet where its noise asked for it.
+    """
     least = LEAST_CONTRAST
-    if _above_noise(contrast.sample(SOFT_PX)) < SURELY * LEAST_CONTRAST:
+    is_quiet = _above_noise(contrast.sample(SOFT_PX)) < SURELY * LEAST_CONTRAST
+    if is_quiet:
         dark = contrast.above(least)
         seen = contrast.within(dark)
         runs = runs_behind_spot(seen, dark, contrast.blocks.by, SOFT_PX, least)
@@ -291,7 +298,8 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> float:
     patches = Patches.of([runs])
     strokes = strokes_of(patches, least, pitch_mm)
     every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
-    return float(np.percentile(patches.pixels_of(strokes, seen)[::every], DARKER))
+    ink = percentile(patches.pixels_of(strokes, seen)[::every], DARKER)
+    return ink, None if is_quiet else seen
 
 
 def _above_noise(sample: Darkness) -> float:

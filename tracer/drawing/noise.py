@@ -30,11 +30,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import median
+from morfax.motion.median import median, percentile
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.paper import ROBUST
-from morfax.tracer.drawing.tiles import Kept
+from morfax.tracer.drawing.tiles import Kept, Tiles
 
 INK = 0.5  # darker is ink
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
@@ -124,7 +124,7 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
     paper = _paper(darkness) if paper is None else paper
     middle = np.maximum(_middle(profiles), PAPER)
     looks_px = STEP_PX * profiles.seen.sum(axis=1) / middle
-    seen_px = float(np.percentile(looks_px, RIGHT_ON_IT))
+    seen_px = percentile(looks_px, RIGHT_ON_IT)
     width_px = _pen(profiles, paper, _ink(darkness, profiles)[0])[1]
     along = profiles.across[:, ::-1] * [1, -1]
     here = _seen(darkness, profiles.middles.T)
@@ -145,10 +145,11 @@ def _paper(darkness: Any) -> float:
 
 def paper_noise(sample: NDArray[np.float32]) -> float:
     """Standard deviation of the paper's pixels, by the darker ones of a sample: scanners clip the white."""
-    if not np.any(sample < PAPER):
+    paper = sample[sample < PAPER]
+    if not len(paper):
         return math.nan
-    usual, darker = np.percentile(sample[sample < PAPER], [50.0, DARKER])
-    return float(darker - usual)
+    usual, darker = (percentile(paper, percent, np.float64) for percent in (50.0, DARKER))
+    return darker - usual
 
 
 def every_px(size: int) -> int:
@@ -215,16 +216,29 @@ def _runs(darkness: Kept, across: bool) -> Array:
     """
     every = max(1, darkness.size // SEARCHED)
     long, wide = darkness.shape[::-1] if across else darkness.shape
+    some, inner = slice(every // 2, long, every), slice(1, wide - 1)
+    lines = _part(darkness, inner, some).T if across else _part(darkness, some, inner)
+    row, begin, end = runs_in(lines, INK)
     rows = np.arange(every // 2, long, every)
-    places = np.ix_(rows, np.arange(1, wide - 1))
-    row, begin, end = runs_in(darkness[places[::-1] if across else places], INK)
     edges = [np.column_stack([rows[row], at + 0.5]) for at in (begin, end)]
     return np.stack(edges, axis=2)
 
 
+def _part(darkness: Kept, rows: slice, columns: slice) -> Any:
+    """Some rows and columns of the sheet, a step apart."""
+    if not isinstance(darkness, Tiles):
+        return darkness[rows, columns]
+    down, along = (
+        np.arange(*part.indices(side))
+        for part, side in zip((rows, columns), darkness.shape, strict=True)
+    )
+    return darkness.at(*np.ix_(down, along))
+
+
 def _even(count: int) -> NDArray[np.int64]:
     """Numbers of at most `MOST_PROFILES` of so many, all over them."""
-    return np.unique(np.linspace(0, max(count - 1, 0), min(count, MOST_PROFILES)).astype(int))
+    numbers = np.linspace(0, max(count - 1, 0), min(count, MOST_PROFILES)).astype(int)
+    return numbers[np.diff(numbers, prepend=-1) > 0]
 
 
 def _slope(darkness: Kept, places: Array, reach_px: float = SLOPE_PX) -> Array:

@@ -27,7 +27,6 @@ from morfax.tracer.following import knots
 from morfax.tracer.following.branches import Branches
 from morfax.tracer.following.direction import Direction, goes, turned_about, turned_to
 from morfax.tracer.following.edge_check import kept_to
-from morfax.tracer.following.edge_follower import EdgeFollower
 from morfax.tracer.following.enlarger import enlarged, reduced
 from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.following.follower import Follower
@@ -84,8 +83,7 @@ class Attempts:
         follower = follower or branch
         if follower is None:
             put_down = enlarged(stance, times)
-            kind = EdgeFollower if put_down.view.on_edge else Follower
-            follower = kind(put_down, self.settings, MOTION_RATE_HZ, wanted)
+            follower = _kind(put_down)(put_down, self.settings, MOTION_RATE_HZ, wanted)
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
         run = follower.follow(times * self.longest_mm, reduced_told, keep, before)
         self.branches.ended(follower, run)
@@ -247,4 +245,13 @@ def _goes_twice(run: Followed) -> bool:
     places = evenly(run.positions_mm[::THINNED], step_mm)
     near = cKDTree(places).query_pairs(2 * step_mm, output_type="ndarray")
     again = near[np.ptp(near, axis=1) * STEP > AGAIN] if len(near) else near
-    return len(np.unique(again[:, 1])) > TWICE * len(places) + AGAIN / STEP
+    return len(set(again[:, 1].tolist())) > TWICE * len(places) + AGAIN / STEP
+
+
+def _kind(put_down: Stance) -> type[Follower]:
+    """The head for a line, or for the edge of a filled shape."""
+    if not put_down.view.on_edge:
+        return Follower
+    from morfax.tracer.following.edge_follower import EdgeFollower
+
+    return EdgeFollower

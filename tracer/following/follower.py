@@ -53,7 +53,6 @@ from morfax.tracer.junctions.width_change import of_another_pen
 from morfax.tracer.marks.dots import dot_at_end
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of
 from morfax.tracer.tangles.memory import Tangles
-from morfax.tracer.tangles.solution import Approach
 
 # the share of a change of a clean line's width that the head takes over at once; by trial
 SWELLS = 0.5
@@ -231,6 +230,8 @@ class Follower(RunEnds):
 
     def _out_of_tangle(self, incoming: Leg, plan: Plan | None) -> tuple[Plan | None, bool]:
         """The way out of a tangle, or the plan if this is none; and whether the tangle explains the way."""
+        from morfax.tracer.tangles.solution import Approach
+
         self.carriage.says("in a tangle")
         number = self._ways_out.junctions.next(self.carriage.travel_mm)
         way_in, rank = self.carriage.stands(), self._ways_out.turns.other.count(number)

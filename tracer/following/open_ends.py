@@ -18,6 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.plain_places import local_view
 from morfax.tracer.head.stance import Stance
@@ -169,7 +170,7 @@ def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
     if len(seen) < FEWEST or long_mm < SPUR_WIDTHS * view.width_mm - radius:
         return False
     widths = seen[len(seen) // 4 : -len(seen) // 4, 2]
-    grows_mm = np.median(widths[-4:]) - np.median(widths[:4])
+    grows_mm = median(widths[-4:]) - median(widths[:4])
     if grows_mm > max(GROWS * view.width_mm, GROWS_PX * view.pitch_mm):
         return False
     return not _is_mark(view, inward, heading, radius)

@@ -25,7 +25,8 @@ from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import Leg, bend_at, centre_at, turn
+from morfax.tracer.sensing.leg import Leg, centre_at, turn
+from morfax.tracer.sensing.parabola import bend_at
 from morfax.tracer.sensing.photocell import LEVEL, Cells, darkness_at, ring
 from morfax.tracer.sensing.ray import edges
 from morfax.tracer.sensing.scout import felt, leg_mm

@@ -20,6 +20,7 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
@@ -88,7 +89,7 @@ def _deviations_mm(view: View, place_mm: Array, heading: float) -> tuple[float, 
         np.std(_circles(view, seen[::EVERY, :2] + side * BESIDE_PX * view.pitch_mm * left))
         for side in (-1, 1)
     ]
-    per_mm = float(np.median(seen[:, 2])) / (CIRCLE_PX * view.pitch_mm)
+    per_mm = median(seen[:, 2]) / (CIRCLE_PX * view.pitch_mm)
     return strays_mm, math.sqrt(float(np.mean(np.square(heard)))) / per_mm
 
 

@@ -29,7 +29,8 @@ from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
 from morfax.tracer.head.settings import LEAD_SWEEPS, TIGHTEST_RAD
 from morfax.tracer.head.state import HOME, MORE, Home, Tuning
-from morfax.tracer.sensing.leg import ROBUST, turn
+from morfax.tracer.sensing.leg import turn
+from morfax.tracer.sensing.parabola import ROBUST
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 

@@ -21,10 +21,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.arrays import median as median_of
+from morfax.motion.compiled import njit
 from morfax.motion.curves import hermite
-from morfax.motion.median import median
 from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto, through_nodes
 from morfax.tracer.sensing.leg import Leg, meet, turn
+from morfax.tracer.sensing.ray import edge_along, edges
 from morfax.tracer.sensing.view import View
 
 HIDDEN = 8  # stations at a corner between those that its legs are felt by
@@ -213,30 +215,39 @@ def _edge_mm(view: View, corner: Corner, side: int) -> float:
     before, after = corner.headings_rad()
     x, y = math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)
     outward = math.atan2(side * y, side * x)
-    reach = REACH_WIDTHS * corner.width_mm + REACH_PX * view.pitch_mm
-    aside = np.array([math.sin(outward), -math.cos(outward)])
-    edges_mm = []
-    for off in np.linspace(-ACROSS, ACROSS, RAYS) * corner.width_mm:
-        place = corner.vertex_mm + off * aside
-        edge = _edge_outward(view, place, outward, (corner.width_mm, reach))
-        # outside, the pen's round leaves the tangent by off²/width
-        edges_mm.append(edge + (off * off / corner.width_mm if side > 0 else 0.0))
-    return median(edges_mm)
+    reach_mm = REACH_WIDTHS * corner.width_mm + REACH_PX * view.pitch_mm
+    vertex_mm = corner.incoming.place(corner.beyond_mm)
+    return float(_edge(view.cells, vertex_mm, outward, (corner.width_mm, reach_mm), side > 0))
 
 
-def _edge_outward(
-    view: View, place: Array, outward: float, width_reach_mm: tuple[float, float]
-) -> float:
+@njit(cache=True)
+def _edge(cells, vertex, outward, sizes_mm, is_outside):  # type: ignore[no-untyped-def]
+    """How far the ink reaches from a vertex, mm: the median of some rays. `sizes_mm`: the line's width, and
+    how far the edge is sought.
+    """
+    width_mm, c, s = sizes_mm[0], math.cos(outward), math.sin(outward)
+    found = np.empty(RAYS)
+    for k in range(RAYS):
+        off = (k * (2 * ACROSS / (RAYS - 1)) - ACROSS) * width_mm
+        place = vertex[0] + off * s, vertex[1] + off * -c
+        found[k] = _edge_outward(cells, place, outward, sizes_mm)
+        if is_outside:  # the pen's round leaves the tangent by off²/width
+            found[k] += off * off / width_mm
+    return median_of(found)
+
+
+@njit(cache=True)
+def _edge_outward(cells, place, outward, sizes_mm):  # type: ignore[no-untyped-def]
     """Where the ink about a place ends outward, mm; NaN if there is no ink.
 
     A light speck in the ink does not end it.
     """
-    width_mm, reach_mm = width_reach_mm
-    _, edge = view.edges(place, outward - math.pi / 2, reach_mm)
+    width_mm, reach_mm = sizes_mm
+    _, edge = edges(cells, place[0], place[1], outward - math.pi / 2, reach_mm)
     within_mm = 0.5 * width_mm
-    within = place - within_mm * np.array([math.cos(outward), math.sin(outward)])
-    beyond = view.ink_along(within, outward, reach_mm) - within_mm
-    return float(np.fmax(edge, beyond))
+    x, y = place[0] - within_mm * math.cos(outward), place[1] - within_mm * math.sin(outward)
+    beyond = edge_along(cells, x, y, outward, reach_mm) - within_mm
+    return beyond if math.isnan(edge) or beyond > edge else edge
 
 
 def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:

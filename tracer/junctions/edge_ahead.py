@@ -25,6 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
+from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.sharpening import APART_PX, PutBack, corners_of
 from morfax.tracer.head.course import FELT_LEGS, SMOOTH
@@ -68,7 +69,7 @@ class EdgeAhead:
     def softness_mm(self) -> float:
         """Standard deviation of the lens as the circling cell sees through it, mm."""
         radius_mm = CIRCLE_PX * self.view.pitch_mm
-        first = min(float(np.median(self.felt[:, 2])), STEEPEST)
+        first = min(median(self.felt[:, 2]), STEEPEST)
         # first = (ρ - ρ³/8 + ρ⁵/64) / √(2π), ρ: the radius in standard deviations
         ratio = wanted = math.sqrt(math.tau) * first
         for _ in range(20):

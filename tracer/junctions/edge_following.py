@@ -26,6 +26,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.median import median
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
@@ -170,7 +171,7 @@ def _along_outside(
     count = math.floor(length_mm / view.step_mm) + 1
     if count < FEWEST_STATIONS or base < 2:
         return None
-    width = float(np.median(seen[base:, 2]))
+    width = median(seen[base:, 2])
     pose = float(seen[base, 0]), float(seen[base, 1]), math.atan2(way[1], way[0])
     felt = _along_edge(view.cells, pose, side, width, Walk(view.step_mm, count, count))
     if len(felt) < FEWEST_STATIONS:

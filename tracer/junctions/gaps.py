@@ -19,7 +19,8 @@ import numpy as np
 from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, straight_on
-from morfax.tracer.sensing.leg import FEWEST, leg_of
+from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.view import View
 
 EVERY_MM = 0.1  # gaps are tried in these steps: the option shows as many digits

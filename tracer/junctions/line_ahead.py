@@ -18,7 +18,8 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.sensing.leg import FEWEST, Leg, goes_straight, leg_of, turn
+from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
+from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View

@@ -25,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.choice import PASSES, WayIn, survey
@@ -79,7 +80,7 @@ def another_pen(view: View, leg: Leg) -> bool:
     seen = other.feel(leg.end_mm, leg.heading_rad, STEADY_WIDTHS * leg.width_mm)
     if len(seen) * view.step_mm < STEADY_WIDTHS * leg.width_mm:
         return False
-    near, far = (float(np.median(part[:, 2])) for part in np.array_split(seen, 2))
+    near, far = (median(part[:, 2]) for part in np.array_split(seen, 2))
     within_mm = STEADY * leg.width_mm
     return abs(far - near) < within_mm and float(np.std(seen[:, 2])) < within_mm
 

@@ -8,11 +8,13 @@ Source: our own.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.long_array import LongArray, blocks
-from morfax.motion.polyline import lengths_by_blocks
 
 
 class HeadPath:
@@ -20,20 +22,16 @@ class HeadPath:
 
     def __init__(self, positions: Array, step_mm: float) -> None:
         self.step_mm = step_mm
-        position, there = LongArray(1), LongArray()
-        # the newest position that the head came to by moving, and how far it had come there
-        moved = np.zeros((1, 2))
-        for first, places, lengths in lengths_by_blocks(positions):
-            new = np.flatnonzero(np.diff(lengths) > 0) + 1
-            moved = np.vstack([moved[-1:], np.column_stack([lengths[new], first + new])])
-            is_last = first + len(places) == len(positions)
-            at_mm = step_mm * np.arange(len(there), np.ceil(lengths[-1] / step_mm))
-            at_mm = at_mm if is_last else at_mm[at_mm < lengths[-1]]
-            columns = [np.interp(at_mm, lengths, column) for column in places.T[:2]]
-            there.add(np.column_stack(columns))
-            position.add(np.interp(at_mm, *moved.T)[:, None])
-        self.at_mm, self.position = step_mm * np.arange(len(there)), position.whole()[:, 0]
-        self.places = there.whole()
+        walked, at = LongArray(3), np.zeros(3)
+        for block in blocks(positions, before=1):
+            walked.add(_walked(block, step_mm, len(walked), at))
+            at[0] += len(block) - 1
+        there = walked.whole()
+        count = math.ceil(at[1] / step_mm)
+        if len(there) < count:  # the last length is the end of the path, but for rounding
+            there = np.vstack([there, [*positions[-1, :2], at[2]]])
+        self.at_mm, self.position = step_mm * np.arange(count), there[:count, 2]
+        self.places = there[:count, :2].copy()
         self.along = _along(self.places)
 
     def place(self, mm: float) -> tuple[float, float]:
@@ -55,6 +53,36 @@ class HeadPath:
         chord_mm = max(np.hypot(*chord), 1e-9)
         aside = (d[:, 1] * chord[0] - d[:, 0] * chord[1]) / chord_mm
         return bool(np.abs(aside).max() < within_mm)
+
+
+@njit(cache=True)
+def _walked(block, step_mm, number, at):  # type: ignore[no-untyped-def]
+    """Place and position (n, 3) at each multiple of a step from a number on, as far as a block of positions
+    goes.
+
+    `at` is moved along: the number of the block's first position, the length up to there, and the newest
+    position to which the head came by moving.
+    """
+    out, count = np.empty((1024, 3)), 0
+    first, come_mm, moved = at
+    for k in range(len(block) - 1):
+        x, y = block[k, 0], block[k, 1]
+        dx, dy = block[k + 1, 0] - x, block[k + 1, 1] - y
+        next_mm = come_mm + math.hypot(dx, dy)
+        if next_mm == come_mm:
+            continue
+        long_mm = next_mm - come_mm
+        while (number + count) * step_mm < next_mm:
+            on_mm = (number + count) * step_mm - come_mm
+            if count == len(out):
+                out = np.concatenate((out, np.empty_like(out)))
+            out[count, 0] = dx / long_mm * on_mm + x
+            out[count, 1] = dy / long_mm * on_mm + y
+            out[count, 2] = (first + k + 1 - moved) / long_mm * on_mm + moved
+            count += 1
+        come_mm, moved = next_mm, first + k + 1
+    at[1], at[2] = come_mm, moved
+    return out[:count]
 
 
 def _along(places: Array) -> Array:

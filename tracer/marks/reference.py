@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
+from morfax.motion.median import median
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.marks.sizes import (
     ALIKE,
@@ -176,7 +177,7 @@ def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
         return None
     centre = _crossing(np.vstack(arms[:2]), arms[2])
     reaches = np.hypot(*(np.array([a, b, c]) - centre).T)
-    if np.ptp(reaches) > ALIKE * np.median(reaches):
+    if np.ptp(reaches) > ALIKE * median(reaches):
         return None
     # 3. no lines pass or cross here
     reach_mm = float(reaches.max())

@@ -22,8 +22,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.median import median
 from morfax.tracer.marks import sizes
-from morfax.tracer.sensing.leg import LEAST_OFF_MM, OUTLIERS, ROBUST
+from morfax.tracer.sensing.parabola import LEAST_OFF_MM, OUTLIERS, ROBUST
 from morfax.tracer.sensing.photocell import LEVEL, STEP_PX
 from morfax.tracer.sensing.probe import is_tip
 from morfax.tracer.sensing.ray import Ray, end_of_ink, seen_on
@@ -115,7 +116,7 @@ def felt(
     seen = _stroke_at(view.cells, base, away_mm, longest_mm + width, width)
     # 1. as wide, as long and as near as a stroke may be
     middles = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width]
-    wide = float(np.median(middles[:, 2])) / width if len(middles) > 2 else 0.0
+    wide = median(middles[:, 2]) / width if len(middles) > 2 else 0.0
     if not sizes.SEEN[0] < wide < sizes.SEEN[1]:
         return None
     nearest = float(seen[:, 1].min())
@@ -188,7 +189,7 @@ def _square_to(
     """
     width, lean, away = view.width_mm, math.hypot(1.0, slant), stroke.middles[:, 1]
     base = Base(place, square, stroke.side)
-    away_mm = float(np.median(away)) * lean
+    away_mm = median(away) * lean
     farthest_mm = float(away.max()) * lean + width
     seen = _stroke_at(view.cells, base, away_mm, farthest_mm, width)
     seen = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width * lean + 0.5 * width * abs(slant)]
@@ -200,7 +201,7 @@ def _robust_line(x: Array, y: Array) -> tuple[float, float]:
     """Slope and offset of the straight line y(x), without places that a speck has drawn aside."""
     for _ in range(2):
         rest = np.abs(y - np.polyval(np.polyfit(x, y, 1), x))
-        good = rest <= OUTLIERS * max(ROBUST * float(np.median(rest)), LEAST_OFF_MM)
+        good = rest <= OUTLIERS * max(ROBUST * median(rest), LEAST_OFF_MM)
         x, y = x[good], y[good]
     slope, offset = np.polyfit(x, y, 1)
     return float(slope), float(offset)

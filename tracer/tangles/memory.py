@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,11 +22,13 @@ from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import stroke_end
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.redrawing import Redrawing
-from morfax.tracer.tangles.sketch import MOST_LEGS, Sketch
-from morfax.tracer.tangles.solution import Approach, unravelled
-from morfax.tracer.tangles.strands import same_line, stretches_over
-from morfax.tracer.tangles.tangle import Tangle, tangle_ahead
+
+if (
+    TYPE_CHECKING
+):  # most lines have no tangle: what solves one is imported where the head comes to one
+    from morfax.tracer.tangles.redrawing import Redrawing
+    from morfax.tracer.tangles.solution import Approach
+    from morfax.tracer.tangles.tangle import Tangle
 
 # Chosen by trial on the test drawings.
 LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
@@ -63,6 +65,8 @@ class Tangles:
         It is the plan if that explains the ink as well as any other way, or if the tangle does not end in
         legs, or in too many, or if no redrawing explains its ink.
         """
+        from morfax.tracer.tangles.tangle import tangle_ahead
+
         incoming, plan = approach.incoming, approach.plan
         if len(incoming.seen) < LEAST_SEEN:
             return plan, False
@@ -83,6 +87,9 @@ class Tangles:
         self, view: View, tangle: Tangle, approach: Approach
     ) -> tuple[Plan | None, bool]:
         """The way out by the redrawing that explains the ink, which is remembered; and whether one does."""
+        from morfax.tracer.tangles.sketch import Sketch
+        from morfax.tracer.tangles.solution import unravelled
+
         found = unravelled(Sketch.of(view, tangle), approach)
         if found.redrawing is not None:
             self._known.append((tangle, found.redrawing))
@@ -108,6 +115,8 @@ class Tangles:
 
     def _strand_left(self, approach: Approach, width_mm: float) -> Plan | None:
         """The plan by the strand that a line leads into; None if it leads into no tangle that is known."""
+        from morfax.tracer.tangles.strands import same_line, stretches_over
+
         incoming, place = approach.incoming, approach.stands[0]
         for tangle, way in self._known:
             for a, b, vertices in _strands(way):
@@ -123,6 +132,8 @@ class Tangles:
 
 def _is_closed(tangle: Tangle) -> bool:
     """Whether a tangle ends in legs, and in no more than can be joined."""
+    from morfax.tracer.tangles.sketch import MOST_LEGS
+
     return tangle.whole and 2 <= len(tangle.legs) <= MOST_LEGS
 
 

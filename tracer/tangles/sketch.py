@@ -23,6 +23,7 @@ from itertools import product
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median, medians
 from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.photocell import darkness_along
 from morfax.tracer.sensing.probe import end_of
@@ -82,7 +83,7 @@ class Sketch:
             poses.append((*leg.end_mm, leg.heading_rad + (math.pi if k else 0.0)))
             _draw(tangle, leg.at(LEG_MM if k else -LEG_MM), known)
         # 2. the pen
-        width = float(np.median([leg.width_mm for leg in tangle.legs]))
+        width = median([leg.width_mm for leg in tangle.legs])
         softness = softness_of(view, tangle.legs[0])
         ink = pen.Ink(tangle.places_mm, tangle.darkness, known, 0.5 * width, softness)
         return cls(view, tangle, np.array(poses), ink, tangle.area_mm2 / len(known) / width**2)
@@ -249,7 +250,7 @@ def softness_of(view: View, leg: Leg) -> float:
     u = ACROSS * (leg.width_mm + PAPER_MM)
     places = stations[:, None] + u[:, None] * left[:, None]
     across = darkness_along(view.cells, places.reshape(-1, 2)).reshape(len(left), len(u))
-    seen = np.median(across, axis=0) / (2 * view.level)
+    seen = medians(across.T) / (2 * view.level)
     # 2. the pen that is most like it
     drawn, misfits = np.empty(len(u)), []
     softnesses_mm = SOFTNESSES_PX * view.pitch_mm

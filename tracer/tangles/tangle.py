@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.tracer.drawing.drawing import Darkness
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
 from morfax.tracer.sensing.view import View
@@ -147,7 +148,7 @@ def _leg_at(view: View, fronts: Fronts, k: int) -> Leg | None:
 
 def _tapers(seen: Array) -> bool:
     """Whether what was felt grows narrower: two lines that run to a tip."""
-    near, far = (float(np.median(part)) for part in np.array_split(seen[:, 2], 2))
+    near, far = (median(part) for part in np.array_split(seen[:, 2], 2))
     return len(seen) >= TAPERED_STATIONS and far < TAPERED * near
 
 

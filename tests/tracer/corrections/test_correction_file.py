@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.faults import CardFault
+from morfax.tracer.corrections import beside
 from morfax.tracer.corrections.correction_file import (
     as_toml,
-    beside,
     parse_corrections,
     with_added,
     without,

@@ -48,6 +48,16 @@ def test_paper_far_from_anything_dark_is_bare_and_all_else_is_the_contrast() -> 
     assert np.array_equal(darkness[near > 0], whole[near > 0])
 
 
+def test_the_contrast_of_a_whole_sheet_becomes_its_darkness_in_its_place() -> None:
+    grey = np.pad(page(True), ((0, 600), (0, 700)), mode="reflect")[:1000, :1300]
+    grey[300:, 650:] = 230
+    contrast = Contrast.of(grey, PITCH_MM)
+    whole, expected = contrast.everywhere(), contrast.darkness(160.0)
+    assert 0.1 < np.mean(expected == 0) < 0.9
+    assert contrast.in_parts_of(160.0, whole) is whole
+    assert np.array_equal(whole, expected)
+
+
 def test_blocks_that_are_left_out_are_nowhere_above_the_level() -> None:
     contrast = Contrast.of(page(True), PITCH_MM)
     dark = contrast.above(10.0)

@@ -38,6 +38,11 @@ class Ink:
     reaches_mm: list[float] = field(default_factory=list)
     asked_mm: list[Array] = field(default_factory=list)
 
+    @property
+    def cells(self) -> Ink:
+        """What the kernels look through."""
+        return self
+
     def edges(self, place: Array, heading: float, reach_mm: float) -> tuple[float, float]:
         """The edge to the left of a heading is that outward."""
         self.reaches_mm.append(reach_mm)
@@ -50,6 +55,22 @@ class Ink:
         """No ink is hidden behind a speck."""
         self.asked_mm.append(place)
         return math.nan
+
+
+@pytest.fixture(autouse=True)
+def plain(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rays see the stand-in, in plain Python."""
+    for name in ("_edge", "_edge_outward"):
+        monkeypatch.setattr(corners, name, getattr(corners, name).py_func)
+
+    def edges(seen: Ink, x: float, y: float, *rest: float) -> tuple[float, float]:
+        return seen.edges(np.array([x, y]), *rest)
+
+    def edge_along(seen: Ink, x: float, y: float, *rest: float) -> float:
+        return seen.ink_along(np.array([x, y]), *rest)
+
+    monkeypatch.setattr(corners, "edges", edges)
+    monkeypatch.setattr(corners, "edge_along", edge_along)
 
 
 def ink(turned_deg: float, outside: float, inside: float = math.nan) -> View:

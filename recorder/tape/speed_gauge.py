@@ -1,0 +1,65 @@
+"""The speed gauge: how fast each axis of a motion is at most, and whether its track stays in its band.
+
+Signals in: positions of the axes (n, axes) mm at the motion rate, block by block. Signals out: the largest
+speed of each axis, mm/s; a fault where one leaves the deviation.
+
+    speed = (place - place before) · motion rate          a track deviates by speed · cycles per mm
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
+from morfax.motion.faults import MotionFault
+from morfax.recorder.tape.format import TapeFormat
+
+ROUNDED = 1e-9  # of the limit: a motion at the very limit is let through
+
+
+class SpeedGauge:
+    """The largest speeds of one tape so far, `largest_mm_s`."""
+
+    def __init__(self, fmt: TapeFormat) -> None:
+        self._format = fmt
+        self.largest_mm_s = np.zeros(len(fmt.axes))
+
+    def feed(self, positions: Array, before: Array, done: int) -> None:
+        """Take positions that come after a place and after so many others; raises MotionFault."""
+        fmt = self._format
+        most = fmt.largest_speed_mm_s * (1 + ROUNDED)
+        rows = np.ascontiguousarray(positions)
+        at, axis, speed = _speeds(rows, before, fmt.motion_rate_hz, most, self.largest_mm_s)
+        if at >= 0:
+            raise _too_fast(fmt, axis, (done + at) / fmt.motion_rate_hz, speed)
+
+
+@njit(cache=True, nogil=True)
+def _speeds(positions, last_mm, rate_hz, most_mm_s, largest_mm_s):  # type: ignore[no-untyped-def]
+    """Make the largest speeds so far those of positions, too, which come after the last ones.
+
+    Returns row, axis and speed of the first that is above the limit; -1 without any.
+    """
+    before = last_mm
+    for k in range(len(positions)):
+        for axis in range(positions.shape[1]):
+            speed = (positions[k, axis] - before[axis]) * rate_hz
+            if abs(speed) > most_mm_s:
+                return k, axis, speed
+            largest_mm_s[axis] = max(largest_mm_s[axis], abs(speed))
+        before = positions[k]
+    return -1, -1, 0.0
+
+
+def _too_fast(fmt: TapeFormat, axis: int, time_s: float, speed_mm_s: float) -> MotionFault:
+    """The fault of a speed at which the track would leave its band."""
+    message = (
+        f"axis {fmt.axes[axis]} moves at {abs(speed_mm_s):.4g} mm/s at {time_s:.4f} s; this tape "
+        "takes at most "
+        f"{fmt.largest_speed_mm_s:.4g} mm/s ({fmt.largest_deviation_hz:.4g} Hz of deviation): move "
+        "slower there"
+    )
+    return MotionFault(message, axis=fmt.axes[axis], time_s=time_s, speed_mm_s=speed_mm_s)
