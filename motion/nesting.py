@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 
 
 def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np.bool_]:
@@ -24,13 +24,14 @@ def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np
         return inside
     # a line can only lie in one that reaches further, and whose box its first place is in
     firsts = np.array([line[0] for line in lines_mm], np.float32)
-    sizes_mm = np.array([np.ptp(line, axis=0) for line in lines_mm])
+    sizes_mm = np.array([size_mm(line) for line in lines_mm])
     outlines = [np.asarray(line, np.float32) for line in lines_mm]
     for j, outline in enumerate(outlines):
         if not round_about[j]:
             continue
         may = (sizes_mm < sizes_mm[j]).all(axis=1)
-        may &= ((firsts >= outline.min(axis=0)) & (firsts <= outline.max(axis=0))).all(axis=1)
+        low, high = bounds(outline)
+        may &= ((firsts >= low) & (firsts <= high)).all(axis=1)
         for i in np.flatnonzero(may):
             inside[i, j] = lies_inside(lines_mm[int(i)], lines_mm[j])
     return inside
@@ -40,6 +41,12 @@ def lies_inside(inner_mm: Array, outer_mm: Array) -> bool:
     """Whether a line begins inside another, taken for closed, and reaches less far than that one."""
     x, y = float(inner_mm[0, 0]), float(inner_mm[0, 1])
     # two lines cannot each lie in the other: otherwise no order of cutting would do
-    if not (np.ptp(inner_mm, axis=0) < np.ptp(outer_mm, axis=0)).all():
+    if not (size_mm(inner_mm) < size_mm(outer_mm)).all():
         return False
     return cv2.pointPolygonTest(np.asarray(outer_mm, np.float32), (x, y), False) > 0
+
+
+def size_mm(line_mm: Array) -> Array:
+    """How wide and how high a line (n, 2) mm is, (2,) mm."""
+    low, high = bounds(line_mm)
+    return high - low

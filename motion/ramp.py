@@ -31,6 +31,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -177,17 +178,24 @@ def _sample(profile: Profile, acceleration_s2: float, rate_hz: float) -> Array:
     """Increments travelled at each period of the motion rate, for an acceleration in increments/s²."""
     modes, halves = profile.pieces.T
     # squares of the speed, in half increments
-    squares = 2 * profile.moving + np.r_[0, np.cumsum(modes * halves)]
+    squares = 2 * profile.moving + _summed(modes * halves)
     speed = np.sqrt(acceleration_s2 * squares)  # increments/s
     # a piece's mean speed is the mean of the speeds at its ends, both exact
     took_s = halves / (speed[:-1] + speed[1:])
-    begins_s = np.r_[0.0, np.cumsum(took_s)]
+    begins_s = _summed(took_s)
     t_s = np.arange(math.ceil(begins_s[-1] * rate_hz - 1e-9) + 1) / rate_hz
     piece = np.clip(np.searchsorted(begins_s, t_s, "right") - 1, 0, len(modes) - 1)
     since_s = np.minimum(t_s - begins_s[piece], took_s[piece])
-    begins = np.r_[0, np.cumsum(halves)][piece] / 2
+    begins = _summed(halves)[piece] / 2
     gained = acceleration_s2 * modes[piece] / 2 * since_s
     return begins + (speed[piece] + gained) * since_s
+
+
+def _summed(steps: NDArray[Any]) -> NDArray[Any]:
+    """The sum of all steps before each, and of all."""
+    sums = np.zeros(len(steps) + 1, steps.dtype)
+    np.cumsum(steps, out=sums[1:])
+    return sums
 
 
 @njit(cache=True)

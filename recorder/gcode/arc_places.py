@@ -46,7 +46,14 @@ def place_at(begin_mm: Place, block: Block, share: float) -> tuple[float, float]
         dx = block.place_mm[0] - begin_mm[0]
         dy = block.place_mm[1] - begin_mm[1]
         return begin_mm[0] + share * dx, begin_mm[1] + share * dy
-    i, j = block.centre_mm
+    return _turned_to(begin_mm, block.centre_mm, turned)
+
+
+def _turned_to(
+    begin_mm: Place, centre_mm: tuple[float, float], turned: float
+) -> tuple[float, float]:
+    """The place of an arc that has turned so far, rad."""
+    i, j = centre_mm
     cos, sin = math.cos(turned), math.sin(turned)
     x_mm = begin_mm[0] + i - cos * i + sin * j
     y_mm = begin_mm[1] + j - sin * i - cos * j
@@ -60,10 +67,12 @@ def places_along(blocks: Sequence[Block]) -> Array:
     for block in blocks[1:]:
         if block.code == WORDS:
             continue
-        parts = 1
         if block.code in ARCS:
-            parts = max(8, math.ceil(length_mm(begin, block) / CHORD_MM))
-        places += [place_at(begin, block, k / parts) for k in range(1, parts)]
+            turned, centre_mm = turned_rad(begin, block), block.centre_mm
+            parts = max(8, math.ceil(abs(turned) * math.hypot(*centre_mm) / CHORD_MM))
+            places += [
+                _turned_to(begin, centre_mm, turned * (k / parts)) for k in range(1, parts)
+            ]
         places.append(block.place_mm[:2])
         begin = block.place_mm
     return np.array(places)

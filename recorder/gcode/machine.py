@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from importlib import resources
 from pathlib import Path as FilePath
 from typing import Any, Literal
@@ -114,7 +115,15 @@ def machine(name: str = DEFAULT, changed: Mapping[str, float] | None = None) -> 
     if name.lower().endswith(".toml"):
         file = FilePath(name)
         return _machine(file.stem, opened(file, CALLED, "--machine"), changed or {})
-    return _machine(name, parsed(as_toml(name), f"{name}.toml", CALLED), changed or {})
+    return _built_in(name, tuple((changed or {}).items()))
+
+
+@lru_cache(
+    maxsize=32
+)  # a program asks four times for its machine, and each page of a batch again
+def _built_in(name: str, changed: tuple[tuple[str, float], ...]) -> Machine:
+    """A built-in machine, with some of its [values] changed."""
+    return _machine(name, parsed(as_toml(name), f"{name}.toml", CALLED), dict(changed))
 
 
 def _machine(name: str, whole: Field, changed: Mapping[str, float]) -> Machine:

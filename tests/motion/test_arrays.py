@@ -5,13 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.motion.arrays import between, median, moved
+from morfax.motion.arrays import between, bounds, median, moved
 
 
 def test_rows_are_moved_as_numpy_moves_them() -> None:
     rows, by = np.random.default_rng(1).normal(size=(7, 3)), np.array([1.0, -2.0, 0.25])
     assert (moved(rows, by) == rows + by).all()
     assert (moved(rows[::2], by, 0.05) == rows[::2] * 0.05 + by).all()
+
+
+def test_bounds_are_those_of_numpy() -> None:
+    rows = np.random.default_rng(1).normal(size=(9, 3))
+    low, high = bounds(rows)
+    assert (low == rows.min(axis=0)).all() and (high == rows.max(axis=0)).all()
 
 
 @pytest.mark.parametrize(

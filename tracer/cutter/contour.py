@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from morfax.motion.curves import hermite
-from morfax.motion.long_array import LongArray
+from morfax.motion.long_array import LongArray, is_mapped
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
@@ -143,13 +143,16 @@ def _bridge(before: Array, after: Array) -> Array:
 
 def _closed(places_mm: Array) -> Array:
     """Places of a closed contour (n, 2) mm, brought together where it begins and ends some um apart."""
-    for _, _, lengths in lengths_by_blocks(places_mm):
+    in_memory = None if is_mapped(places_mm) else list(lengths_by_blocks(places_mm))
+    for _, _, lengths in in_memory or lengths_by_blocks(places_mm):
         whole_mm = lengths[-1]
     gap_mm, closed = 0.5 * (places_mm[-1] - places_mm[0]), LongArray()
-    for first, places, lengths in lengths_by_blocks(places_mm):
-        after = np.clip(1 - lengths / MET_MM, 0.0, 1.0)
-        before = np.clip(1 - (whole_mm - lengths) / MET_MM, 0.0, 1.0)
-        moved = places + (after - before)[:, None] * gap_mm
+    for first, places, lengths in in_memory or lengths_by_blocks(places_mm):
+        moved, left = places.copy(), whole_mm - lengths
+        near = np.flatnonzero((lengths < MET_MM) | (left < MET_MM))
+        after = np.clip(1 - lengths[near] / MET_MM, 0.0, 1.0)
+        before = np.clip(1 - left[near] / MET_MM, 0.0, 1.0)
+        moved[near] += (after - before)[:, None] * gap_mm
         closed.add(moved[1:] if first else moved)
     return closed.whole()
 

@@ -14,6 +14,7 @@ Source: our own; the patent's head has its cell alone.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -21,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.long_array import blocks, one_in
-from morfax.motion.polyline import steps_mm
 
 CELL, STATIONS, MEMORY, REDRAWN = range(4)
 LEADERS = ("swinging cell", "stations", "memory", "redrawn ink")
@@ -57,14 +58,11 @@ class Led:
 
     def lengths_mm(self, positions: Array) -> Array:
         """How far each of the `LEADERS` led along positions (n, 2) mm."""
-        led_mm, first = list[float]([0.0] * len(LEADERS)), 0
+        led_mm, first = np.zeros(len(LEADERS)), 0
         for block in blocks(positions, before=1):
-            leaders = self.of(len(block) - 1, first + 1)
-            steps = steps_mm(block)[: len(leaders)]
-            who = np.r_[np.arange(len(LEADERS)), leaders]
-            led_mm = np.bincount(who, np.r_[led_mm, steps], minlength=len(LEADERS)).tolist()
+            _add_lengths(block, self.of(len(block) - 1, first + 1), led_mm)
             first += len(block) - 1
-        return np.asarray(led_mm, float)
+        return led_mm
 
     def runs(self, positions: Array) -> Iterator[tuple[int, Array]]:
         """Each run's leader and its positions, with the one before them."""
@@ -72,6 +70,15 @@ class Led:
         for leader, first, end in zip(self.leaders, bounds, bounds[1:], strict=False):
             if first < len(positions):
                 yield leader, positions[max(0, first - 1) : end]
+
+
+@njit(cache=True, _nrt=False)
+def _add_lengths(positions, leaders, led_mm):  # type: ignore[no-untyped-def]
+    """Add to what each leader led, mm: the steps between positions (n, 2) mm to the leaders at their ends."""
+    for k in range(len(leaders)):
+        dx = positions[k + 1, 0] - positions[k, 0]
+        dy = positions[k + 1, 1] - positions[k, 1]
+        led_mm[leaders[k]] += math.hypot(dx, dy)
 
 
 @dataclass(slots=True)

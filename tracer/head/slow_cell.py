@@ -23,6 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.contour import distances_mm
 from morfax.motion.median import median
 from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
@@ -150,8 +151,8 @@ def follow(view: View, state: Any, t: Tuning, home: Home, stretch: Stretch) -> T
     """
     tight = slowly(t, view.width_mm, narrow_mm(t, stretch.way))
     tried = along(view.cells, state, tight, home, stretch)
-    half_mm = wide_mm(t, stretch.way)
-    if tried is not None or half_mm is None:
+    half_mm = wide_mm(t, stretch.way) if tried is None else None
+    if half_mm is None:
         return tried
     within_mm = max(stretch.within_mm, stretch.straight_mm)
     straight = stretch._replace(within_mm=within_mm)
@@ -174,7 +175,7 @@ def along(cells: Cells, state: Any, t: Tuning, home: Home, stretch: Stretch) -> 
             if come_mm < felt_mm + LEAST_MM:
                 continue
             tried = _for(cells, begun, t, home, come_mm)
-        if off_mm(tried, stretch.way) < stretch.within_mm:
+        if keeps_to(tried.positions, stretch):
             return tried._replace(felt_mm=felt_mm)
     return None
 
@@ -214,8 +215,40 @@ def _for(cells: Cells, begun: Any, t: Tuning, home: Home, length_mm: float) -> T
     return Tried(np.vstack(parts), state, int(why))
 
 
-def off_mm(tried: Tried, way: Array) -> float:
-    """The largest distance of the positions from a way (n, 2) mm."""
-    if not len(tried.positions):
-        return math.inf
-    return float(distances_mm(tried.positions[::CHECKED], [way]).max())
+def keeps_to(positions: Array, stretch: Stretch) -> bool:
+    """Whether positions (n, 2) mm stay nearer to the way of a stretch than it allows."""
+    if not len(positions):
+        return False
+    if _is_beside(positions, np.ascontiguousarray(stretch.way), float(stretch.within_mm)):
+        return True
+    return float(distances_mm(positions[::CHECKED], [stretch.way]).max()) < stretch.within_mm
+
+
+@njit(cache=True, _nrt=False)
+def _is_beside(positions, way, within_mm):  # type: ignore[no-untyped-def]
+    """Whether positions, which go along a way, are nearer than this to a piece of it that they come to.
+
+    The nearest piece of all may be another one, nearer still.
+    """
+    piece = 0
+    for k in range(0, len(positions), CHECKED):
+        away_mm = _from_piece(positions[k], way, piece)
+        while piece + 2 < len(way):
+            next_mm = _from_piece(positions[k], way, piece + 1)
+            if next_mm > away_mm:
+                break
+            away_mm, piece = next_mm, piece + 1
+        if not away_mm < within_mm:
+            return False
+    return True
+
+
+@njit(cache=True, _nrt=False)
+def _from_piece(place, way, piece):  # type: ignore[no-untyped-def]
+    """The distance of a place from a straight piece of a way, mm."""
+    x, y = place[0] - way[piece, 0], place[1] - way[piece, 1]
+    along_x, along_y = way[piece + 1, 0] - way[piece, 0], way[piece + 1, 1] - way[piece, 1]
+    squared = along_x * along_x + along_y * along_y
+    share = (x * along_x + y * along_y) / squared if squared > 0.0 else 0.0
+    share = min(max(share, 0.0), 1.0)
+    return math.hypot(x - share * along_x, y - share * along_y)

@@ -20,6 +20,7 @@ pen like the line's, and has paper to both sides.
 
 from __future__ import annotations
 
+from bisect import bisect, insort
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -163,7 +164,7 @@ def _of_side(
 ) -> list[SideStroke]:
     """The strokes of one side, from where the cells of its rows see ink."""
     least_mm, most_mm = sizes.SEEN[0] * view.width_mm, 2 * sizes.SEEN[1] * view.width_mm
-    found: list[SideStroke] = []
+    found, feet_mm = list[SideStroke](), list[float]()  # the feet in their order
     for away, ink in zip(rows, dark, strict=True):
         for begin, end in _pulses(ink):
             if not least_mm < (end - begin) * path.step_mm < most_mm:
@@ -171,15 +172,18 @@ def _of_side(
             i = (begin + end) // 2
             base = Base(path.places[i], path.along[i], side)
             stroke = felt(view, base, path.at_mm[i], away, longest_mm(view))
-            if stroke is not None and not _is_among(view, stroke, found):
+            if stroke is not None and not _is_among(view, stroke.foot_mm, feet_mm):
                 found.append(stroke)
+                insort(feet_mm, stroke.foot_mm)
     return found
 
 
-def _is_among(view: View, stroke: SideStroke, found: list[SideStroke]) -> bool:
-    """Whether a stroke has been found already, from another row of cells."""
-    within_mm = sizes.SAME_WIDTHS * view.width_mm
-    return any(abs(stroke.foot_mm - o.foot_mm) <= within_mm for o in found)
+def _is_among(view: View, foot_mm: float, feet_mm: list[float]) -> bool:
+    """Whether a stroke with this foot has been found already, from another row of cells."""
+    within_mm, at = sizes.SAME_WIDTHS * view.width_mm, bisect(feet_mm, foot_mm)
+    return any(
+        abs(foot_mm - other_mm) <= within_mm for other_mm in feet_mm[max(0, at - 1) : at + 1]
+    )
 
 
 def _pulses(dark: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:

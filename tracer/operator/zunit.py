@@ -29,7 +29,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -173,10 +174,7 @@ def coincidence(shown: NDArray[np.int64], counts: int) -> int | None:
 def _one(start_mm: float, move: QuillMove, acceleration_mm_s2: float, rate_hz: float) -> Array:
     """Z of one move and of the dwell after it, mm."""
     # 1. what the motor would run
-    how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
-    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)[
-        :, 0
-    ]
+    way = _motor_mm(start_mm, replace(move, dwell_s=0.0), acceleration_mm_s2, rate_hz)
     # 2. the counters, from the start of the move; the motor is off where they would pass the switches
     length_mm = abs(move.to_mm - start_mm)
     switches = round(length_mm / COUNT_MM)
@@ -192,3 +190,14 @@ def _one(start_mm: float, move: QuillMove, acceleration_mm_s2: float, rate_hz: f
         way = way[np.abs(shown) <= switches]
     # 3. the dwell, where it came to rest
     return np.concatenate([way, np.full(round(move.dwell_s * rate_hz), way[-1])])
+
+
+@lru_cache(maxsize=16)  # all holes of a plate have the same two moves
+def _motor_mm(
+    start_mm: float, move: QuillMove, acceleration_mm_s2: float, rate_hz: float
+) -> Array:
+    """Where the motor would run Z to in a move, mm."""
+    how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
+    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)
+    way.flags.writeable = False
+    return way[:, 0]

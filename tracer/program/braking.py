@@ -38,6 +38,7 @@ CORNER = np.radians(
     20
 )  # a sharper turn is a corner, at which the head stops to swivel; by trial
 RUN_MM = 0.1  # from node to node of a way that is run from memory
+BRAKED_ROWS = 600  # looked at first, back from a halt: from 10 mm/s the axis brakes in 120
 SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
 
 
@@ -175,8 +176,8 @@ class _Piece:
             return out.whole()
         arrives = self._arrives()
         for first, last in bounds:
-            numbers, places, was = self._was(first, last)
-            way_mm, steps_s = steps_mm(places), np.diff(numbers) / self.rate_hz
+            numbers, places, way_mm, was = self._was(first, last)
+            steps_s = np.diff(numbers) / self.rate_hz
             # 1. the speeds, and the time of each step, longer where the axis brakes
             bound = np.minimum(leaves(way_mm), arrives(first, last))
             speeds = np.minimum(was, np.sqrt(bound))
@@ -194,15 +195,19 @@ class _Piece:
             out.add(self._nodes(self._count - 1, self._count)[1])
         return out.whole()
 
-    def _was(self, first: int, last: int) -> tuple[Array, Array, Array]:
-        """Numbers, places and former speeds (mm/s) of the nodes from one to another."""
+    def _was(self, first: int, last: int) -> tuple[Array, Array, Array, Array]:
+        """Numbers and places of the nodes from one to another, the steps between them (mm), and the former
+        speeds there (mm/s).
+        """
         before, after = int(first > 0), int(last < self._count - 1)
         numbers, places = self._nodes(first - before, last + 1 + after)
         steps_s = np.maximum(np.diff(numbers) / self.rate_hz, _NOTHING_S)
-        was = np.r_[steps_mm(places) / steps_s, 0.0]
+        way_mm = steps_mm(places)
+        was = np.append(way_mm / steps_s, 0.0)
         was[1:-1] = 0.5 * (was[1:-1] + was[:-2])
         own = slice(before, len(was) - after)
-        return numbers[own], places[own], was[own]
+        between = slice(before, len(way_mm) - after)
+        return numbers[own], places[own], way_mm[between], was[own]
 
     def _fastest_mm2_s2(self) -> float:
         """No less than the square of the highest of the former speeds."""
@@ -231,9 +236,11 @@ class _Piece:
         if self.rests[1]:
             fastest_mm2_s2 = self._fastest_mm2_s2()
             # back from the end, as far as it matters
+            rows = BRAKED_ROWS
             while len(squares) < count and squares[-1] <= fastest_mm2_s2:
                 end = count - len(squares) + 1
-                _, places = self._nodes(max(0, end - long_array.BLOCK_ROWS), end)
+                _, places = self._nodes(max(0, end - rows), end)
+                rows = min(2 * rows, long_array.BLOCK_ROWS)
                 gains = self.gain_mm_s2 * steps_mm(places)[::-1]
                 squares = np.r_[squares, np.cumsum(np.r_[squares[-1], gains])[1:]]
         squares, begin = squares[::-1], count - len(squares)

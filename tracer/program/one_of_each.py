@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion import nesting
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
@@ -42,16 +42,20 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[
     """One line of each patch that is asked for, and how many patches are letters."""
     total_mm = sum(contour.stroke.length_mm for contour in asked)
     lines, boxes_mm, letters, come_mm = list[Line](), list[Array](), 0, 0.0
+    begins_mm = list[tuple[float, float]]()
     for contour in asked:
         near = [lines[k] for k in _near(contour, boxes_mm)]
-        if _is_done(contour, near, lines) or (which == "outer" and _is_inner(contour, lines)):
+        if _is_done(contour, near, begins_mm):
+            continue
+        if which == "outer" and _is_inner(contour, lines):
             continue
         line = _or_outline(
             setup, contour, _follow_in_window(setup.after(come_mm, total_mm), contour)
         )
         if line is not None:
             lines.append(line)
-            boxes_mm.append(np.array([line.places_mm.min(axis=0), line.places_mm.max(axis=0)]))
+            boxes_mm.append(np.array(bounds(line.places_mm)))
+            begins_mm += references_of([line])
             come_mm += line.length_mm
         elif isinstance(which, str) or contour.number not in which:
             letters += 1
@@ -79,10 +83,9 @@ def with_least_numbers(lines: list[Line], asked: list[Contour]) -> list[Line]:
     return numbered
 
 
-def are_of_reference(places: Array, lines: list[Line]) -> bool:
-    """Whether places (n, 2) mm are the reference point from which a line, or a lead line, begins."""
-    begins = [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
-    return selection.are_about(places, begins)
+def references_of(lines: list[Line]) -> list[tuple[float, float]]:
+    """The reference points from which lines, or lead lines, begin, mm."""
+    return [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
 
 
 def is_inside(line: Line, lines: list[Line]) -> bool:
@@ -96,15 +99,15 @@ def _near(contour: Contour, boxes_mm: list[Array]) -> NDArray[np.int64]:
     if not boxes_mm:
         return np.empty(0, np.int64)
     low_mm, high_mm = np.swapaxes(np.array(boxes_mm), 0, 1)
-    places_mm, beside_mm = contour.stroke.middles_mm, selection.BESIDE_MM
-    meets = places_mm.max(axis=0) > low_mm - beside_mm
-    meets &= places_mm.min(axis=0) < high_mm + beside_mm
+    beside_mm, (lowest_mm, highest_mm) = selection.BESIDE_MM, bounds(contour.stroke.middles_mm)
+    meets = highest_mm > low_mm - beside_mm
+    meets &= lowest_mm < high_mm + beside_mm
     return np.flatnonzero(meets.all(axis=1))
 
 
-def _is_done(contour: Contour, near: list[Line], lines: list[Line]) -> bool:
+def _is_done(contour: Contour, near: list[Line], begins_mm: list[tuple[float, float]]) -> bool:
     """Whether a patch is the reference point of a line, or one near to it was followed along it already."""
-    if are_of_reference(contour.stroke.middles_mm, lines):
+    if selection.are_about(contour.stroke.middles_mm, begins_mm):
         return True
     return any(contour.lies_on(line.places_mm) for line in near)
 
@@ -127,9 +130,11 @@ def _follow_in_window(setup: Setup, contour: Contour) -> Line | None:
         return _follow(setup, contour)
     line = _follow(replace(setup, sheet=near), contour)
     if line is not None and line.ending == "closed" and line.reference_mm is None:
-        own_mm = contour.stroke.middles_mm
-        low_mm, high_mm = own_mm.min(axis=0) - width_mm, own_mm.max(axis=0) + width_mm
-        if ((line.places_mm > low_mm) & (line.places_mm < high_mm)).all():
+        low_mm, high_mm = bounds(contour.stroke.middles_mm)
+        line_low_mm, line_high_mm = bounds(line.places_mm)
+        if (line_low_mm > low_mm - width_mm).all() and (
+            line_high_mm < high_mm + width_mm
+        ).all():
             return line
     return _follow(setup, contour)
 

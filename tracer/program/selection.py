@@ -25,9 +25,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
-from morfax.motion.nesting import lies_inside
+from morfax.motion.nesting import lies_inside, size_mm
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.line import Line
@@ -74,8 +74,8 @@ class Contour:
     def lies_on(self, line_mm: Array) -> bool:
         """Whether a followed line (n, 2) mm runs along most of this stroke, as along a line with gaps."""
         places = self.stroke.middles_mm[:: max(1, len(self.stroke.middles_mm) // COMPARED)]
-        low, high = line_mm.min(axis=0) - BESIDE_MM, line_mm.max(axis=0) + BESIDE_MM
-        within = (places > low) & (places < high)
+        low, high = bounds(line_mm)
+        within = (places > low - BESIDE_MM) & (places < high + BESIDE_MM)
         if within.all(axis=1).mean() < COVERED:
             return False
         return bool(np.mean(nearest_mm(places, line_mm) < self.stroke.width_mm) > COVERED)
@@ -98,7 +98,7 @@ def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
         patch = int(patches[number - 1])
         stroke = sheet.stroke(patch)
         contours.append(Contour(number, stroke, float(reach_mm[patch])))
-        sides_mm = np.ptp(stroke.middles_mm, axis=0) + stroke.width_mm
+        sides_mm = size_mm(stroke.middles_mm) + stroke.width_mm
         spread_mm2.append(float(np.prod(sides_mm)))
     widest_first = np.argsort(spread_mm2)[::-1]
     return [contours[i] for i in widest_first], sheet.patches.count - len(patches)

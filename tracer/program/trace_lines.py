@@ -35,9 +35,9 @@ from morfax.tracer.program.arrows import turned_round, with_arrows
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.marks_read import with_marks_read
 from morfax.tracer.program.one_of_each import (
-    are_of_reference,
     is_inside,
     one_of_each,
+    references_of,
     with_least_numbers,
 )
 from morfax.tracer.program.program import Trace
@@ -195,7 +195,8 @@ def _joined(
             others, more_mm = joined_to(line, contour, setup)
             joined += [(other, contour.number) for other in others]
             left_mm += more_mm
-    kept = [each for each in joined if not are_of_reference(each[0].places_mm, lines)]
+    begins_mm = references_of(lines)
+    kept = [each for each in joined if not selection.are_about(each[0].places_mm, begins_mm)]
     return kept, left_mm
 
 

@@ -294,3 +294,11 @@ def test_a_step_of_line_numbers_that_cannot_be_is_refused(tmp_path: Path) -> Non
         (tmp_path / "mine.toml").write_text(f'what = "mine"\n{said}\n')
         with pytest.raises(CardFault, match=mistake):
             machine(str(tmp_path / "mine.toml"))
+
+
+def test_a_built_in_machine_is_read_once_and_its_values_are_its_own() -> None:
+    usual = machine("grbl-router")
+    assert machine("grbl-router") is usual
+    other = machine("grbl-router", {"speed": 8000.0})
+    assert other.values["speed"] == 8000.0 != usual.values["speed"]
+    assert machine("grbl-router").values == usual.values

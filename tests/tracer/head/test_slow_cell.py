@@ -29,6 +29,7 @@ from morfax.tracer.head.slow_cell import (
     along,
     is_steady,
     keeps_mm,
+    keeps_to,
     largest_bend_rad,
     narrow_mm,
     slowly,
@@ -184,3 +185,34 @@ def test_the_window_is_as_wide_as_the_way_s_bend_allows(head: Follower) -> None:
     assert wide_mm(tuning, stairs) == pytest.approx(tuning.half_window_mm)
     assert wide_mm(tuning, arc((0, 0), 0.8)) is None
     assert wide_mm(tuning, stairs[:20]) is None
+
+
+@pytest.mark.parametrize("off_mm", [0.0, 0.004, 0.0099, 0.0101, 0.05])
+def test_positions_keep_to_a_way_by_their_distance_from_its_nearest_piece(
+    off_mm: float,
+) -> None:
+    """The way comes by at its beginning again at its end, as round a loop."""
+    angle = np.linspace(0.0, 2 * np.pi + 0.5, 700)
+    way = 3.0 * np.column_stack([np.cos(angle), np.sin(angle)])
+    there = np.linspace(0.0, 2 * np.pi + 0.5, 9000)
+    positions = (3.0 + off_mm) * np.column_stack([np.cos(there), np.sin(there)])
+    stretch = Stretch(way, within_mm=0.01)
+    expected = float(distances_mm(positions[:: slow_cell.CHECKED], [way]).max()) < 0.01
+    assert keeps_to(positions, stretch) == expected == (off_mm < 0.01)
+    assert (
+        keeps_to(positions[::-1].copy(), stretch) == expected
+    )  # which come along no piece in turn
+    assert not keeps_to(positions[:0], stretch)
+
+
+def test_the_wide_window_is_only_sought_where_the_cell_does_not_keep_to_the_way(
+    head: Follower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = list[Array]()
+    monkeypatch.setattr(slow_cell, "wide_mm", lambda t, way: asked.append(way))
+    view, carriage = head.view, head.carriage
+    way = ahead(head, RADIUS_MM)
+    stretch = Stretch(way, keeps_mm(view, np.column_stack([way, np.full(len(way), WIDTH_MM)])))
+    args = view, carriage.state, carriage.tuning, NEVER_HOME
+    assert slow_cell.follow(*args, stretch) is not None and not asked
+    assert slow_cell.follow(*args, stretch._replace(within_mm=0.0)) is None and len(asked) == 1

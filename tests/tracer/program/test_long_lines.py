@@ -89,7 +89,7 @@ def test_the_size_of_the_part_is_that_of_all_its_places(
     (places,) = _part_mm(trace(CIRCLE))
     expected = np.ptp(placement.places(places), axis=0)
     short(monkeypatch)
-    zero = ZeroOnSheet("lower-left", part_mm=_part_mm(trace(CIRCLE)))
+    zero = ZeroOnSheet("lower-left", followed=trace(CIRCLE))
     # as good as equal: a product may be rounded otherwise
     assert zero.part_size_mm(placement) == pytest.approx(expected.tolist(), abs=1e-12)
     low = placement.places(places).min(axis=0)
