@@ -31,6 +31,7 @@ from morfax.tracer.ink.run import Run
 # All limits below were chosen by trial on drawings of nets.
 ALONG_COS = 0.94  # 20 degrees: a stretch that goes another way is not this line's
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
+ABREAST = 0.25  # widths: a station further before or behind a place tells nothing of it
 AVERAGED, FADES = 2.0, 1.0  # widths of the line
 SLACK = 0.12  # of the line's width: where two lines cross, the rims of their ink are felt so much too near
 # widths: nearer to the middle of its ink a line crosses another, and its rim is none
@@ -112,6 +113,8 @@ def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array])
     normals = np.column_stack([-np.sin(headings), np.cos(headings)])
     is_its_own = _goes_along(some, np.arange(len(some)), normals) & (away < BESIDE * widths)
     aside = np.sum((some - middles) * normals, axis=1)
+    # beyond the ends of what was felt no rim is known
+    is_its_own &= np.sqrt(np.maximum(away**2 - aside**2, 0.0)) < ABREAST * width_mm
     limit = 0.5 * np.maximum(widths - width_mm, 0.0)
     within = wanted = np.clip(aside, -limit, limit)
     beside, is_crossed = np.zeros(len(some), int), np.zeros(len(some), bool)
