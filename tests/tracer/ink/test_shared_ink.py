@@ -111,3 +111,14 @@ def test_where_two_lines_part_neither_is_moved_by_the_rims_before(deg: float) ->
         for truth in (one, other):
             off = [distance(line.xy_mm[::4], truth).path_to_reference for line in run.lines]
             assert min(summary.max_mm for summary in off) < 15 * UM  # a sixth of a pixel
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_two_bows_that_touch_do_not_cross(seed: int) -> None:
+    """Where they are nearest their ink is more than one and a half widths broad. (They crossed there.)"""
+    outer = np.column_stack([20 + ACROSS, 10 + ACROSS**2 / 60])
+    inner = np.column_stack([20 + ACROSS, 10.3 + ACROSS**2 / 40])
+    run = trace_ink(inked(outer, inner, seed=seed), Settings())
+    for truth in (outer, inner):
+        off = [distance(line.xy_mm[::4], truth).path_to_reference for line in run.lines]
+        assert min(summary.max_mm for summary in off) < 15 * UM
