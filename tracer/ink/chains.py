@@ -20,14 +20,15 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.crossing import Crossing
+from morfax.tracer.ink.crossing import Crossing, are_side_by_side
 from morfax.tracer.ink.doubled import BROADER, TWO
-from morfax.tracer.ink.lifted import FARTHEST_WIDTHS, end_in_ink_mm
+from morfax.tracer.ink.lifted import FARTHEST_WIDTHS
 from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed, without_waist
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
+from morfax.tracer.sensing.view import View
 
 # Chosen by trial on drawings of nets.
 # widths: legs of a wider junction are taken from further off, by a share of its size, and longer
@@ -159,7 +160,8 @@ class Junctions:
                 there = found[number]
                 there.sides.append(Side(n, last))
                 there.crossing.legs.append(end_leg(line, last))
-                there.crossing.views.append(line.runs[0].view)
+                there.crossing.views.append(self._view(there.sides[-1]))
+                there.crossing.near.append(self._near(there.sides[-1]))
         for inner in self.net.inner:
             if inner.junction in found:
                 found[inner.junction].crossing.inked.append(inner)
@@ -181,13 +183,21 @@ class Junctions:
             ends[number] = [
                 (side, end_leg(self.net.lines[side.line], side.last)) for side in sides
             ]
-        for there in ends.values():
-            places = np.array([leg.end_mm for _, leg in there])
-            wide_mm = float(np.hypot(*np.ptp(places, axis=0))) if len(there) > 2 else 0.0
+        for number, there in ends.items():
+            wide_mm = self._wide_mm(number, [leg for _, leg in there])
             if wide_mm > WIDE_WIDTHS * there[0][1].width_mm:
                 for side, _ in there:
                     trim_mm, legs_mm = TRIM * wide_mm, LEGS * wide_mm
                     trimmed(self.net.lines[side.line], side.last, trim_mm, legs_mm)
+
+    def _wide_mm(self, number: int, legs: list[Leg]) -> float:
+        """How far the ink reaches in which lines meet, mm: the tip of two that run side by side too."""
+        if len(legs) > 2:
+            return float(np.hypot(*np.ptp([leg.end_mm for leg in legs], axis=0)))
+        if len(legs) < 2 or not are_side_by_side(*legs):
+            return 0.0
+        tips = [inner.run.length_mm for inner in self.net.inner if inner.junction == number]
+        return max(tips, default=0.0)
 
     def at(self, side: Side) -> Junction:
         """The junction at a side."""
@@ -222,9 +232,7 @@ class Junctions:
     def covers(self, inner: Inner) -> bool:
         """Whether ways through a junction go along a stretch within it."""
         there = self.by_number.get(inner.junction)
-        if there is None or not there.pairs:
-            return False
-        return there.crossing.covers(inner)
+        return there is not None and there.crossing.covers(inner)
 
     def single_mm(self, number: int, wide_mm: float) -> float | None:
         """The width of each of two lines that run together as one line, mm; None if that is one line.
@@ -251,21 +259,21 @@ class Junctions:
 
     def end_mm(self, side: Side) -> float:
         """How far beyond its leg's clean end a line ends that has no partner, mm."""
-        there, leg = self.at(side), self.at(side).leg(side)
-        view = self.net.lines[side.line].runs[-1 if side.last else 0].view
-        if there.pairs:
-            others = [self._near(other) for other in there.sides if other != side]
-            middles_mm = np.vstack([there.crossing.passing_mm, *others])
-            lifted = end_in_ink_mm(view, leg, middles_mm)
-            if lifted is not None:
-                return lifted
+        there = self.at(side)
+        end_mm = there.crossing.ends_mm.get(there.sides.index(side))
+        if end_mm is not None:
+            return end_mm
+        leg, view = there.leg(side), self._view(side)
         if there.is_free or len(there.sides) == 1:
-            lifted = end_of(view, leg)
-            return max(0.0, lifted or 0.0)
+            return max(0.0, end_of(view, leg) or 0.0)
         way = np.array([np.cos(leg.heading_rad), np.sin(leg.heading_rad)])
         on_mm = float((meeting_place(there.legs) - leg.end_mm) @ way)
         inked_mm = reach_of_ink(view, leg, max(on_mm, 0.0) + leg.width_mm)
         return max(0.0, on_mm if inked_mm is None else min(on_mm, inked_mm))
+
+    def _view(self, side: Side) -> View:
+        """How the head sees a line at one of its ends."""
+        return self.net.lines[side.line].runs[-1 if side.last else 0].view
 
     def _near(self, side: Side) -> Array:
         """Places that were felt along a line near one of its ends, (n, 2) mm."""

@@ -11,9 +11,11 @@ Source: our own.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+import math
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import combinations
 
 import numpy as np
 
@@ -23,25 +25,33 @@ from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.ink.lifted import WAY_MM, Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
-from morfax.tracer.ink.partners import Pair, partners, way_through
-from morfax.tracer.ink.shared_ink import SharedInk
+from morfax.tracer.ink.partners import CORNERED, Pair, partners, turnings, way_through
+from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
 from morfax.tracer.junctions.planner import Planner
-from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
 
 COVERED_SHARE = (
     0.7  # of a stretch within a crossing, along which ways go; by trial on drawings of nets
 )
+# two lines that come to a tip side by side are one, or two whose ends are so many widths apart
+TIP, APART = math.radians(60), 0.75
+NOWHERE = np.empty((0, 2))
 
 
 @dataclass
 class Crossing:
-    """Legs that meet, each with the view of its line, and the stretches of ink between them."""
+    """Legs that meet, each with the view of its line, and the stretches of ink between them.
+
+    `near` are places of each line as far from the junction as another's end may lie in its ink, (n, 2) mm.
+    """
 
     legs: list[Leg]
     views: list[View]
     settings: Settings
+    near: list[Array] = field(default_factory=list)
     inked: list[Inner] = field(default_factory=list)
     _covers: dict[int, bool] = field(default_factory=dict)
 
@@ -64,36 +74,99 @@ class Crossing:
     def pairs(self) -> list[Pair]:
         """The legs, by their numbers here, that are one line."""
         if len(self.legs) == 2:
-            return [(0, 1)]
-        return partners(self.legs, median([leg.width_mm for leg in self.legs]))
+            return [] if self._tips else [(0, 1)]
+        costs = turnings(self.legs, self._width_mm)
+        return self._by_rims(partners(costs), costs)
+
+    @property
+    def _width_mm(self) -> float:
+        """The usual width of its lines."""
+        return median([leg.width_mm for leg in self.legs])
+
+    def _by_rims(self, pairs: list[Pair], costs: Array) -> list[Pair]:
+        """Pairs of which two exchange their partners where their ways cross in ink too broad for that."""
+        now = list(pairs)
+        for one, other in combinations(range(len(now)) if self.inked else (), 2):
+            (a, b), (c, d) = now[one], now[other]
+            way, onto = self._hermites([now[one], now[other]])
+            tried = [
+                (max(costs[pair] for pair in two), two)
+                for two in (((a, c), (b, d)), ((a, d), (b, c)))
+            ]
+            turned, two = min(tried)
+            if turned < CORNERED and are_apart_where_they_cross(
+                way, onto, self._inked(), self._width_mm
+            ):
+                now[one], now[other] = two
+        return [(min(pair), max(pair)) for pair in now]
+
+    def _inked(self) -> SharedInk:
+        """What was felt within it."""
+        return SharedInk([inner.run for inner in self.inked])
+
+    def _hermites(self, pairs: Sequence[Pair]) -> list[Array]:
+        """Cubics from legs to their partners, (n, 2) mm."""
+        return [
+            hermite(one.end_mm, one.heading_rad, onto.end_mm, onto.heading_rad)
+            for one, onto in ((self.legs[a], self.legs[b].turned_round()) for a, b in pairs)
+        ]
 
     @cached_property
     def ink(self) -> SharedInk | None:
         """Its own ink and the ways through it; None if nothing was felt within it."""
         if not self.inked:
             return None
-        ways = [
-            hermite(one.end_mm, one.heading_rad, onto.end_mm, onto.heading_rad)
-            for one, onto in (
-                (self.legs[a], self.legs[b].turned_round()) for a, b in self.pairs
-            )
-        ]
-        return SharedInk([inner.run for inner in self.inked], ways)
-
-    @cached_property
-    def passing(self) -> Neighbours:
-        """Places of the lines that pass, from clean end to clean end."""
-        return Neighbours(self.passing_mm)
+        return self._inked()._replace(ways=self._hermites(self.pairs))
 
     @cached_property
     def passing_mm(self) -> Array:
-        """These places, (n, 2) mm."""
-        return np.vstack([self._way(pair) for pair in self.pairs])
+        """Places of the lines that pass, from clean end to clean end, (n, 2) mm."""
+        return np.vstack([NOWHERE, *(self._way(pair) for pair in self.pairs)])
+
+    @cached_property
+    def ends_mm(self) -> dict[int, float]:
+        """How far beyond their clean ends legs without a partner end that come onto others, mm."""
+        if self._tips:
+            return self._tips
+        paired = {leg for pair in self.pairs for leg in pair}
+        alone = [k for k in range(len(self.legs)) if k not in paired]
+        if not self.pairs and len(alone) < 2:
+            return {}
+        loose = [Loose(self.views[k], self.legs[k], self._beside(k)) for k in alone]
+        found = zip(alone, ends_in_ink_mm(loose), strict=True)
+        return {k: end_mm for k, end_mm in found if end_mm is not None}
+
+    @cached_property
+    def _tips(self) -> dict[int, float]:
+        """How far beyond their legs two lines end in each other's ink; none if they are one with a tip."""
+        if len(self.legs) != 2 or not self.inked or not are_side_by_side(*self.legs):
+            return {}
+        one, other = self.legs
+        two = zip(self.views, self.legs, strict=True)
+        ends_mm = ends_in_ink_mm([Loose(view, leg, NOWHERE) for view, leg in two])
+        if ends_mm[0] is None or ends_mm[1] is None:
+            return {}
+        apart_mm = math.dist(one.at(ends_mm[0]), other.at(ends_mm[1]))
+        is_one = apart_mm < APART * one.width_mm
+        return {} if is_one else {0: ends_mm[0], 1: ends_mm[1]}
+
+    def _beside(self, leg: int) -> Array:
+        """Places of the lines that pass, and of the others near the junction, (n, 2) mm."""
+        return np.vstack([self.passing_mm, *self.near[:leg], *self.near[leg + 1 :]])
+
+    @cached_property
+    def _ways(self) -> Neighbours | None:
+        """Places of all lines in it."""
+        ended = [self.legs[k].at(np.arange(0.0, mm, WAY_MM)) for k, mm in self.ends_mm.items()]
+        places = np.vstack([self.passing_mm, *ended])
+        return Neighbours(places) if len(places) else None
 
     def covers(self, inner: Inner) -> bool:
-        """Whether ways through it go along a stretch within it."""
+        """Whether lines in it go along a stretch within it."""
+        if self._ways is None:
+            return False
         if inner.stretch not in self._covers:
-            away_mm, _ = self.passing.nearest(inner.run.places_mm)
+            away_mm, _ = self._ways.nearest(inner.run.places_mm)
             share = float(np.mean(away_mm < COVERED * self.legs[0].width_mm))
             self._covers[inner.stretch] = share > COVERED_SHARE
         return self._covers[inner.stretch]
@@ -105,3 +178,8 @@ class Crossing:
         stands = one.end_mm, one.heading_rad
         planner = Planner(view, stands, Trail(one.end_mm, view.step_mm), self.settings)
         return np.vstack(way_through(planner, (one, other), None, self.ink))
+
+
+def are_side_by_side(one: Leg, other: Leg) -> bool:
+    """Whether two legs come in side by side, so that they may make a tip."""
+    return abs(turn(one.heading_rad, other.heading_rad)) < TIP

@@ -18,6 +18,8 @@ Source: our own; the pen is that of `tangles.pen`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,8 +27,9 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.neighbours import Neighbours
 from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.pen import ink_at
+from morfax.tracer.tangles.pen import INKED, ink_at
 from morfax.tracer.tangles.sketch import softness_of
 
 # All limits below were chosen by trial on drawings of two lines and of nets.
@@ -36,15 +39,54 @@ FARTHEST_WIDTHS = (
 )
 POKES_WIDTHS = 5.0  # the end of a line that pokes out further has a stretch of its own
 ON_IT = 0.5  # widths: its straight way on has come to the others
+TOUCHES = 1.0  # widths: or it ends beside them, in ink that runs together
+AHEAD = 12.0  # times its length a leg says where its line goes on
 BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
 STEP_MM = 0.01  # of ends that are tried
 ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
+ROUNDS = 3  # in which lines that end in each other's ink have their ends found
+WAY_MM = 0.05  # between places of a line that may be the others' ink
 FEWEST = 8  # stations of a leg tell how soft its edges are
 EVERY_PX = 0.7  # a place is looked at
 DARKEST = 1.05  # of the line's darkness: a place counts for no more
 # of the line's darkness: no pen leaves its ink more exactly; and deviations, for places share what they see
 INEXACT, DEVIATIONS = 0.05, 5.0
 PAPER = 1.0  # place that is paper, and inked by the line: it does not go on
+
+
+class Loose(NamedTuple):
+    """A line without a partner at a junction: its view, its leg, and places of the others, (n, 2) mm."""
+
+    view: View
+    leg: Leg
+    others_mm: Array
+
+
+def ends_in_ink_mm(loose: Sequence[Loose]) -> list[float | None]:
+    """How far beyond their legs' clean ends some lines of a junction end in its ink, mm.
+
+    Each is ink for the others, at first as far as ink lies ahead of it. None for one that comes onto none.
+    """
+    ends = [_inked_mm(line) for line in loose]
+    found = list[float | None]([None for _ in loose])
+    for _ in range(ROUNDS if len(loose) > 1 else 1):
+        for k, line in enumerate(loose):
+            ways = [
+                other.leg.at(np.arange(0.0, ends[m], WAY_MM))
+                for m, other in enumerate(loose)
+                if m != k
+            ]
+            end_mm = end_in_ink_mm(line.view, line.leg, np.vstack([line.others_mm, *ways]))
+            if end_mm is not None:
+                found[k] = ends[k] = end_mm
+    return found
+
+
+def _inked_mm(line: Loose) -> float:
+    """How far ink lies straight ahead of a line, mm."""
+    farthest_mm = FARTHEST_WIDTHS * line.leg.width_mm
+    ahead_mm = reach_of_ink(line.view, line.leg, farthest_mm)
+    return farthest_mm if ahead_mm is None else ahead_mm
 
 
 def end_in_ink_mm(view: View, leg: Leg, middles_mm: Array) -> float | None:
@@ -59,25 +101,27 @@ def end_in_ink_mm(view: View, leg: Leg, middles_mm: Array) -> float | None:
     away_mm, _ = Neighbours(middles_mm).nearest(leg.at(ahead_mm))
     come = np.flatnonzero(away_mm < ON_IT * width_mm)
     if not len(come):
+        come = np.flatnonzero(away_mm < TOUCHES * width_mm)
+    if not len(come):
         return None
     near_mm = away_mm[come[0] : come[0] + round(2 * width_mm / STEP_MM)]
     foot_mm = float(ahead_mm[come[0] + int(np.argmin(near_mm))])
-    # 2. up to where it may end
-    out = np.flatnonzero(away_mm[come[0] :] > ON_IT * width_mm)
-    beyond = come[0] + (int(out[0]) if len(out) else len(away_mm))
-    ends_mm = ahead_mm[: beyond + round(POKES_WIDTHS * width_mm / STEP_MM)]
-    is_bent = 0.5 * abs(leg.bend_per_mm) * ends_mm**2 > BENT_WIDTHS * width_mm
-    if is_bent.any():
-        ends_mm = ends_mm[: int(np.argmax(is_bent))]
-    if not len(ends_mm) or len(leg.seen) < FEWEST:
-        return foot_mm if foot_mm < FOOT_WIDTHS * width_mm + FOOT_MM else None
+    # 2. up to where it may end: beyond the last of the others, if no paper lies before
+    ends_mm = ahead_mm[: come[-1] + round(POKES_WIDTHS * width_mm / STEP_MM)]
+    seen_mm = math.dist(leg.seen[0, :2], leg.seen[-1, :2]) if len(leg.seen) else 0.0
+    is_unknown = 0.5 * abs(leg.bend_per_mm) * ends_mm**2 > BENT_WIDTHS * width_mm
+    is_unknown |= ends_mm > AHEAD * seen_mm
+    ends_mm = ends_mm[~is_unknown]
     # 3. the ends that explain the ink
-    low_mm, high_mm = _possible(view, leg, middles_mm, ends_mm)
-    return min(max(foot_mm, low_mm), high_mm)
+    if len(ends_mm) and len(leg.seen) >= FEWEST:
+        low, high = _possible(view, leg, middles_mm, ends_mm)
+        if high < len(ends_mm) - 1 or not is_unknown.any():
+            return float(ends_mm[low + int(np.argmin(away_mm[low : high + 1]))])
+    return foot_mm if foot_mm < FOOT_WIDTHS * width_mm + FOOT_MM else None
 
 
-def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[float, float]:
-    """The nearest and the farthest of some ends that explain the ink as well as the best, mm."""
+def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[int, int]:
+    """The numbers of the nearest and the farthest of some ends that explain the ink as well as the best."""
     # 1. places along the line, in its own directions
     every_mm, beside_mm = EVERY_PX * view.pitch_mm, ASIDE_WIDTHS * leg.width_mm
     s, u = (
@@ -85,6 +129,7 @@ def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[
         for grid in np.meshgrid(
             np.arange(0.0, ends_mm[-1] + leg.width_mm, every_mm),
             np.arange(-beside_mm, beside_mm + every_mm, every_mm),
+            indexing="ij",
         )
     )
     heading = leg.heading_rad + np.arctan(leg.bend_per_mm * s)
@@ -100,8 +145,8 @@ def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[
     pen = 0.5 * leg.width_mm, softness_mm
     _misfits(np.column_stack([s, u, away_mm, off_s, off_u, seen]), pen, ends_mm, misfits)
     # 3. those that differ from the best by no more than places do
-    good = ends_mm[misfits < misfits.min() + (INEXACT * DEVIATIONS) ** 2]
-    return float(good[0]), float(good[-1])
+    good = np.flatnonzero(misfits < misfits.min() + (INEXACT * DEVIATIONS) ** 2)
+    return int(good[0]), int(good[-1])
 
 
 @njit(cache=True)
@@ -109,24 +154,42 @@ def _misfits(places, pen, ends_mm, out):  # type: ignore[no-untyped-def]
     """The sums of the squares of what is drawn less what is seen, for each end up to where the line would
     cross paper.
 
-    Places: along the line, beside it, distance from the others, mm, the direction from them, in the line's
-    own, and what is seen; (n, 6). The pen: half its width, softness, mm.
+    Places, in order: along the line, beside it, distance from the others, mm, the direction from them, in the
+    line's own, and what is seen; (n, 6). The pen: half its width, softness, mm.
     """
-    half_mm, softness_mm = pen
-    least = math.inf
+    reach_mm, least = pen[0] + math.sqrt(2.0) * INKED * pen[1], math.inf
+    # 1. what all places come to that the line has passed, or has not come to
+    count = len(places)
+    passed, left = np.zeros(count + 1), np.zeros(count + 1)
+    for k in range(count):
+        passed[k + 1] = passed[k] + _misfit(places[k], pen, places[k, 0])
+        left[k + 1] = left[k] + _misfit(places[k], pen, places[k, 0] - reach_mm)
+    # 2. those about each end by themselves
+    first = last = 0
     for n in range(len(ends_mm)):
-        total = 0.0
-        for k in range(len(places)):
-            beyond, aside = max(places[k, 0] - ends_mm[n], 0.0), places[k, 1]
-            away = math.hypot(beyond, aside)
-            paper = 1.0 - ink_at(away, half_mm, softness_mm)
-            other = 1.0 - ink_at(places[k, 2], half_mm, softness_mm)
-            alike = (beyond * places[k, 3] + aside * places[k, 4]) / max(away, 1e-9)
-            total += (1.0 - _bare(paper, other, alike) - places[k, 5]) ** 2
+        while first < count and places[first, 0] <= ends_mm[n]:
+            first += 1
+        while last < count and places[last, 0] < ends_mm[n] + reach_mm:
+            last += 1
+        total = passed[first] + left[count] - left[last]
+        for k in range(first, last):
+            total += _misfit(places[k], pen, ends_mm[n])
         if total > least + PAPER:
             return
         least = min(least, total)
         out[n] = total
+
+
+@njit(cache=True)
+def _misfit(place, pen, end_mm):  # type: ignore[no-untyped-def]
+    """The square of what is drawn less what is seen at a place, if the line ends there."""
+    half_mm, softness_mm = pen
+    beyond, aside = max(place[0] - end_mm, 0.0), place[1]
+    away = math.hypot(beyond, aside)
+    paper = 1.0 - ink_at(away, half_mm, softness_mm)
+    other = 1.0 - ink_at(place[2], half_mm, softness_mm)
+    alike = (beyond * place[3] + aside * place[4]) / max(away, 1e-9)
+    return (1.0 - _bare(paper, other, alike) - place[5]) ** 2
 
 
 @njit(cache=True)

@@ -35,6 +35,9 @@ from morfax.tracer.sensing.leg import Leg, turn
 SMOOTHLY = math.radians(22)  # a way that turns by no more between two legs is smooth
 AT_VERTEX = 0.6  # widths from where all legs meet: two legs that meet there may be a corner
 CORNERED = math.radians(30)  # a corner counts as turning so much more: a smooth way is likelier
+NOT_BENT = (
+    0.25  # of the turn: straight legs do not account for half of it, legs of an arc for all
+)
 STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning so much more
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
@@ -46,14 +49,20 @@ NOBODY, ROUNDED = -1, 1e-9
 Pair = tuple[int, int]
 
 
-def partners(legs: Sequence[Leg], width_mm: float) -> list[Pair]:
-    """The pairs of legs that are one line; of an odd number one is left."""
+def turnings(legs: Sequence[Leg], width_mm: float) -> Array:
+    """By how much a way turns from each leg to each other, rad; infinite if they are no line."""
     count = len(legs)
     costs = np.full((count, count), math.inf)
     middle = meeting_place(legs)
     for a in range(count):
         for b in range(a + 1, count):
             costs[a, b] = costs[b, a] = _turning(legs[a], legs[b], middle, width_mm)
+    return costs
+
+
+def partners(costs: Array) -> list[Pair]:
+    """The pairs of legs that are one line, by their turnings; of an odd number one is left."""
+    count = len(costs)
     if count > MOST_LEGS:
         return _exchanged(_straightest_first(costs), costs)
     best = min(_pairings(tuple(range(count))), key=lambda pairs: _cost(pairs, costs))

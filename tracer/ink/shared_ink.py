@@ -31,6 +31,11 @@ from morfax.tracer.ink.run import Run
 # All limits below were chosen by trial on drawings of nets.
 ALONG_COS = 0.94  # 20 degrees: a stretch that goes another way is not this line's
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
+ABREAST = 0.25  # widths: a station further before or behind a place tells nothing of it
+APART, LONG = (
+    1.3,
+    6.0,
+)  # widths: ink as broad, for as long, is that of two lines beside each other
 AVERAGED, FADES = 2.0, 1.0  # widths of the line
 SLACK = 0.12  # of the line's width: where two lines cross, the rims of their ink are felt so much too near
 # widths: nearer to the middle of its ink a line crosses another, and its rim is none
@@ -95,6 +100,31 @@ def kept_in_ink(
     return np.asarray(way + np.column_stack([np.interp(come_mm, at_mm, m) for m in moves.T]))
 
 
+def are_apart_where_they_cross(
+    one: Array, other: Array, ink: SharedInk, width_mm: float
+) -> bool:
+    """Whether two ways cross in a long stretch of ink too broad for that all along: its lines only touch."""
+    away, near = Neighbours(other).nearest(one)
+    at = int(np.argmin(away))
+    if away[at] > EVERY_MM:
+        return False
+    for run in ink.runs:
+        known = np.isfinite(run.widths_mm)
+        low_mm = run.widths_mm[known].min() if known.any() else 0.0
+        if run.length_mm < LONG * width_mm or low_mm < APART * width_mm:
+            continue
+        far, station = Neighbours(run.places_mm).nearest(one[at : at + 1])
+        heading = run.headings_rad[station[0]]
+        normal = np.array([[-math.sin(heading), math.cos(heading)]])
+        if (
+            far[0] < ABREAST * width_mm
+            and _goes_along(one, np.array([at]), normal)[0]
+            and _goes_along(other, near[at : at + 1], normal)[0]
+        ):
+            return True
+    return False
+
+
 class _Off(NamedTuple):
     """How far each of some places is from where its line lies, to the left of the ink, mm; that direction,
     (n, 2); and how sure that is, 0 to 1.
@@ -112,6 +142,8 @@ def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array])
     normals = np.column_stack([-np.sin(headings), np.cos(headings)])
     is_its_own = _goes_along(some, np.arange(len(some)), normals) & (away < BESIDE * widths)
     aside = np.sum((some - middles) * normals, axis=1)
+    # beyond the ends of what was felt no rim is known
+    is_its_own &= np.sqrt(np.maximum(away**2 - aside**2, 0.0)) < ABREAST * width_mm
     limit = 0.5 * np.maximum(widths - width_mm, 0.0)
     within = wanted = np.clip(aside, -limit, limit)
     beside, is_crossed = np.zeros(len(some), int), np.zeros(len(some), bool)

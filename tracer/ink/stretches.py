@@ -22,12 +22,13 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import ONE_PEN
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import BROADER, SHARED, Doubled
+from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS, SHARED, Doubled
 from morfax.tracer.ink.felt import (
     Ends,
     Parted,
@@ -48,6 +49,8 @@ APERTURES_MM = 0.02  # apertures are whole steps of this
 PENS_SHARE = 0.1  # of the ink is drawn by a pen that is worth an aperture of its own
 # a short one, with those into which it goes straight on, is long enough to tell its width
 ENOUGH_WIDTHS = 6.0
+# two lines with a slit between are darker so far beside their middle, of their ink's width, by so much
+SLIT, LIGHTER = 0.25, 1.1
 HALF = 0.5  # of a stretch's stations
 
 
@@ -91,8 +94,20 @@ class FeltSheet:
         if key not in self._taken:
             stations = with_width(self.felt[number], key[1])
             clean, parted = judged(stations, key[1]).runs(self.ends[number])
-            self._taken[key] = Taken(stations, clean, parted)
+            self._taken[key] = Taken(stations, *self._of_one_line(number, clean, parted))
         return self._taken[key]
+
+    def _of_one_line(self, number: int, clean: list[Run], parted: list[Array]) -> Parted:
+        """Clean runs without those that two lines share of which one ends on the way."""
+        doubled = self.doubled
+        is_whole = number in doubled.throughout(self.felt)
+        if not doubled.is_sure or number not in doubled.stations or is_whole:
+            return clean, parted
+        shared_mm = SHARED * doubled.pen_mm
+        own = [n for n, run in enumerate(clean) if median(run.widths_mm) < shared_mm]
+        if not own:
+            return clean, parted
+        return clean[own[0] : own[-1] + 1], parted[own[0] : own[-1]]
 
     def is_shared(self, number: int) -> bool:
         """Whether the ink along a stretch is that of two lines, each as wide as its line is taken to be."""
@@ -142,6 +157,10 @@ class _Seen:
         view = View(self._cells[aperture_mm], width_mm, parted=self._parted)
         some = guide_mm[:: max(1, len(guide_mm) // 50)]
         dark = median(view.darkness_along(some))
+        if length_mm(guide_mm) > LEAST_WIDTHS * width_mm:
+            beside = _beside(some, SLIT * width_mm)
+            lines = min(median(view.darkness_along(places)) for places in beside)
+            dark = lines if lines > LIGHTER * dark else dark
         return view.at_level(LEVEL * max(dark, FAINTEST))
 
 
@@ -191,6 +210,16 @@ def _softened(places: Array, reach: int) -> Array:
     return np.asarray(
         (sums[at + reaches + 1] - sums[at - reaches]) / (2 * reaches + 1)[:, None]
     )
+
+
+def _beside(places: Array, aside_mm: float) -> tuple[Array, Array]:
+    """Places (n, 2) mm so far to the left and to the right of others along a line."""
+    if len(places) < 2:
+        return places, places
+    ways = np.gradient(places, axis=0)
+    normals = np.column_stack([-ways[:, 1], ways[:, 0]])
+    aside = aside_mm * normals / np.maximum(np.hypot(*normals.T), 1e-9)[:, None]
+    return places + aside, places - aside
 
 
 def with_width(run: Run, width_mm: float) -> Run:

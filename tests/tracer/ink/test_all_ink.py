@@ -116,6 +116,48 @@ def test_a_stroke_that_ends_in_the_ink_of_another_ends_where_its_pen_was_lifted(
     )
 
 
+def side_by_side(deg: float, first_mm: float, second_mm: float) -> list[Points]:
+    """Two lines that come to (22, 20) at an angle to each other, and end so far beyond."""
+    ends = ((0.5 * deg, first_mm), (-0.5 * deg, second_mm))
+    ways = [(np.array([np.cos(np.radians(at)), np.sin(np.radians(at))]), mm) for at, mm in ends]
+    return [np.array([(22, 20) - 15 * way, (22, 20) + mm * way]) for way, mm in ways]
+
+
+@pytest.mark.parametrize(
+    ("deg", "first_mm", "second_mm"), [(40, 1.0, 1.1), (30, 1.2, 1.0), (4, 0.0, -2.5)]
+)
+def test_two_lines_that_end_in_each_other_s_ink_are_no_tip(
+    deg: float, first_mm: float, second_mm: float
+) -> None:
+    """They cross just before they end, or one ends beside the other. (They were one stroke.)"""
+    lines = side_by_side(deg, first_mm, second_mm)
+    strokes = all_of(*lines)
+    assert len(strokes) == 2
+    for line in lines:
+        off = [np.hypot(*(stroke.xy_mm[[0, -1]] - line[0]).T).min() for stroke in strokes]
+        own = strokes[int(np.argmin(off))].xy_mm[[0, -1]]
+        assert np.hypot(*(own - line[1]).T).min() < 0.1
+
+
+@pytest.mark.parametrize("deg", [8.0, 15.0, 25.0, 40.0])
+def test_a_line_with_a_tip_stays_one_line(deg: float) -> None:
+    one, other = side_by_side(deg, 0.0, 0.0)
+    (stroke,) = all_of(np.vstack([one, other[0]]))
+    assert np.hypot(*(stroke.xy_mm - (22, 20)).T).min() < 0.2
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_line_that_ends_beside_another_ends_beyond_what_crosses_both(seed: int) -> None:
+    """The ink of both beyond the crossing was taken for a run of one, and 3.1 mm of the other were lost."""
+    end = np.array([26, 20.25])
+    ending = np.array([end - 20 * np.array([np.cos(0.052), -np.sin(0.052)]), end])
+    crossing = [polyline((20, 10), (20, 30)), polyline((14, 8), (24.5, 30))]
+    strokes = all_of(polyline((5, 20), (40, 20)), ending, *crossing, seed=seed)
+    ends = np.vstack([stroke.xy_mm[[0, -1]] for stroke in strokes])
+    assert len(strokes) == 4
+    assert np.hypot(*(ends - end).T).min() < 0.05
+
+
 def test_white_paper_is_not_crossed_for_struck_ink() -> None:
     """Two dashes 1.4 mm apart: nearer than a struck line may be wide, and wider than the allowed gap.
 

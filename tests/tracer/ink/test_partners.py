@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from morfax.tracer.ink.partners import meeting_place, partners
+from morfax.tracer.ink.partners import meeting_place, partners, turnings
 from morfax.tracer.sensing.leg import Leg
 
 WIDTH_MM = 0.5
@@ -28,7 +28,7 @@ def leg(
 
 
 def paired(legs: list[Leg]) -> set[frozenset[int]]:
-    return {frozenset(pair) for pair in partners(legs, WIDTH_MM)}
+    return {frozenset(pair) for pair in partners(turnings(legs, WIDTH_MM))}
 
 
 @pytest.mark.parametrize("apart_deg", [12.0, 25.0, 60.0])

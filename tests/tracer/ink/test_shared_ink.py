@@ -98,3 +98,27 @@ def test_two_bows_that_share_their_ink_are_two_strokes_each_near_its_own_line(
         )
         # moved place by place, 12 um; bent along its rim as a whole, 5 to 7
         assert off.rms_mm < 9 * UM and off.max_mm < 0.1 * WIDTH_MM
+
+
+@pytest.mark.parametrize("deg", [10.0, 18.0])
+def test_where_two_lines_part_neither_is_moved_by_the_rims_before(deg: float) -> None:
+    """Beyond the ink that they share no rim is known. (29 to 37 um without `ABREAST`.)"""
+    along = 15 * np.array([np.cos(np.radians(deg)), np.sin(np.radians(deg))])
+    one = polyline((5, 10), (35, 10))
+    other = np.array([20, 10]) + np.outer((-1, 1), along)
+    for seed in (1, 2):
+        run = trace_ink(inked(one, other, seed=seed), Settings())
+        for truth in (one, other):
+            off = [distance(line.xy_mm[::4], truth).path_to_reference for line in run.lines]
+            assert min(summary.max_mm for summary in off) < 15 * UM  # a sixth of a pixel
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_two_bows_that_touch_do_not_cross(seed: int) -> None:
+    """Where they are nearest their ink is more than one and a half widths broad. (They crossed there.)"""
+    outer = np.column_stack([20 + ACROSS, 10 + ACROSS**2 / 60])
+    inner = np.column_stack([20 + ACROSS, 10.3 + ACROSS**2 / 40])
+    run = trace_ink(inked(outer, inner, seed=seed), Settings())
+    for truth in (outer, inner):
+        off = [distance(line.xy_mm[::4], truth).path_to_reference for line in run.lines]
+        assert min(summary.max_mm for summary in off) < 15 * UM
