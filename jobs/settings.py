@@ -47,6 +47,7 @@ class DrawingFile:
     ink: str | None = None
     edge: bool = False
     both: bool = False  # of filled shapes among lines the edges, and of the lines their middle
+    all_ink: bool = False  # filled shapes among lines are ink, and no dark paper
     paper: PaperKind = "auto"  # printed lines of squared or ruled paper are left out
     page: int | None = None  # of a file of several; None: the first, and it is said
     known: Known | None = None  # two places and their distance, instead of dpi or width
@@ -58,7 +59,7 @@ class DrawingFile:
         for a bad file, CardFault for corrections that are not its own.
         """
         from morfax.tracer.drawing import inks
-        from morfax.tracer.drawing.drawing import Drawing
+        from morfax.tracer.drawing.drawing import Drawing, Reading
 
         self.check()
         ink = None if self.ink is None else inks.parsed(self.ink)
@@ -68,16 +69,22 @@ class DrawingFile:
                 from morfax.tracer.drawing.shapes_among_lines import drawing_of_both
 
                 drawing = drawing_of_both(scan, self.scale(), ink)
+            elif self.all_ink:
+                from morfax.tracer.drawing.shapes_among_lines import drawing_of_all_ink
+
+                drawing = drawing_of_all_ink(scan, self.scale(), ink, self.paper)
             else:
-                drawing = Drawing.of(scan, self.scale(), ink, self.edge, self.paper)
+                reading = Reading(self.edge, self.paper)
+                drawing = Drawing.of(scan, self.scale(), ink, reading)
         drawing = replace(drawing, flattening=made)
         for note in drawing.notes:
             listener.note(note)
         return self._corrected(drawing, scan, listener)
 
     def for_lines(self, line: LineSettings) -> DrawingFile:
-        """The same, read for both edges and lines where edges and all the ink are asked for."""
-        return replace(self, both=self.edge and line.lines == "all")
+        """The same, read for all the ink where that is asked for; with edges for both edges and lines."""
+        is_all = line.lines == "all"
+        return replace(self, both=self.edge and is_all, all_ink=is_all and not self.edge)
 
     def check(self) -> None:
         """Raise WrongUse for options that do not go together, before the file is read."""

@@ -74,6 +74,15 @@ def without_border(darkness: Picture) -> tuple[str, ...]:
     return tuple(band.edge for band in bands if band.edge in edges)
 
 
+def border_note(edges: tuple[str, ...]) -> str:
+    """What the operator should know of a border that was left out."""
+    which = f"{', '.join(edges)} edge" + ("s" if len(edges) > 1 else "")
+    return (
+        f"the ink along the {which} of the picture is its border, and is left out; if it is a line of the "
+        "drawing, give the picture a margin of paper"
+    )
+
+
 def _bands(shape: tuple[int, ...]) -> list[_Band]:
     """The pixels at the four edges of a picture."""
     height, width = shape

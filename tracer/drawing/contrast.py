@@ -20,7 +20,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -96,6 +96,10 @@ class Contrast:
         blocks = Blocks.of(grey, by)
         level = Paper.of_reduced(blocks.mean, by, grey.shape[1], pitch_mm)
         return cls(grey, level, blocks)
+
+    def with_shapes(self, ink: float) -> Contrast:
+        """The same with filled shapes as ink of a contrast, and no dark paper."""
+        return replace(self, paper=self.paper.beneath_shapes(self.blocks.mean, ink))
 
     def above(self, least: float) -> Near:
         """The blocks in which a pixel's contrast may be above a level, and those about them."""

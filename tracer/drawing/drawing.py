@@ -23,7 +23,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import cv2
 import numpy as np
@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from morfax.motion.median import median, percentile
 from morfax.tracer.drawing import coarse, grain, inks, large, noise, paper, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_behind_spot, runs_in
-from morfax.tracer.drawing.border import without_border
+from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
@@ -44,7 +44,7 @@ from morfax.tracer.drawing.contrast import (
 )
 from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
-from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Grey, Scan
 from morfax.tracer.drawing.tiles import Tiles
 
@@ -58,10 +58,22 @@ SURELY = 0.8  # of the least contrast: the noise of a sample tells that the nois
 EVERY = 4  # pixels of a noisy sheet that tell its noise
 FEWEST_SAMPLES = 1 << 22  # pixels that tell the darkness of the ink
 LEAST_RADIUS_MM, MOST_ENLARGED = 1.3, 4  # of an edge; by trial on round holes
-OBLONG = 1e-3  # sides of a pixel that differ by more than this share are made alike: a fax has such pixels
 
 Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
+
+
+class Reading(NamedTuple):
+    """How a scan is read: the edges of filled shapes alone; printed lines of what kind of paper are left out;
+    or filled shapes as ink, which is as dark as the lines that end at them.
+    """
+
+    edge: bool = False
+    printed: PaperKind = "auto"
+    shapes_are_ink: bool = False
+
+
+AS_LINES = Reading()
 
 
 @dataclass(frozen=True)
@@ -175,7 +187,7 @@ class Drawing:
         """
         wanted = None if ink is None else inks.parsed(ink)
         scan = raster.read(Path(file), coloured=wanted is not None, dpi=dpi)
-        return cls.of(scan, Scale(dpi, width_mm), wanted, edge)
+        return cls.of(scan, Scale(dpi, width_mm), wanted, Reading(edge))
 
     @classmethod
     def of(
@@ -183,24 +195,23 @@ class Drawing:
         scan: Scan,
         scale: Scale,
         ink: inks.Colour | None = None,
-        edge: bool = False,
-        printed: PaperKind = "auto",
+        reading: Reading = AS_LINES,
     ) -> Drawing:
         """Make a drawing of a scan that was opened; in colours where an ink is asked for.
 
-        `printed` is the paper's kind: its printed lines are left out. Raises DrawingFault for a missing
-        scale, for a scan that holds no line, and for printed lines that are not there.
+        Raises DrawingFault for a missing scale, for a scan that holds no line, and for printed lines that are
+        not there.
         """
         # 1. grey levels on square pixels
         pitch = scale.pitches_mm(scan)
         grey = scan.pixels
         if ink is not None:
             colours = np.asarray(scan.pixels, np.uint8)
-            grey = inks.covered(colours, ink, None if edge else pitch[0])
+            grey = inks.covered(colours, ink, None if reading.edge else pitch[0])
         grey = on_square_pixels(grey, pitch)
         # 2. darkness
         notes = (*scan.notes, *scale.notes(scan))
-        if edge:
+        if reading.edge:
             from morfax.tracer.drawing.shapes import outlined
 
             rims = outlined(np.asarray(grey), pitch[0])
@@ -214,10 +225,12 @@ class Drawing:
                 notes=(*notes, *rims.notes),
             )
         darkness: Any  # or tiles
-        is_large = grey.size >= large.LARGE_PX
-        made = (large.levelled if is_large else levelled)(grey, pitch[0])
+        if grey.size >= large.LARGE_PX:
+            made: Any = large.levelled(grey, pitch[0])
+        else:
+            made = levelled(grey, pitch[0], reading.shapes_are_ink)
         darkness, shapes, paper_noise = made
-        darkness, note = ruling.left_out(darkness, pitch[0], printed)
+        darkness, note = ruling.left_out(darkness, pitch[0], reading.printed)
         notes = notes if note is None else (*notes, note)
         edges = without_border(darkness)
         if edges:
@@ -245,23 +258,17 @@ class Drawing:
         )
 
 
-def on_square_pixels(grey: Grey, pitch_mm: tuple[float, float]) -> Grey:
-    """A picture whose pixels have a pitch across and down, on pixels of the pitch across."""
-    across_mm, down_mm = pitch_mm
-    if abs(across_mm / down_mm - 1) <= OBLONG:
-        return grey
-    size = grey.shape[1], round(grey.shape[0] * down_mm / across_mm)
-    square = cv2.resize(np.asarray(grey, np.float32), size, interpolation=cv2.INTER_LINEAR)
-    return np.asarray(square, np.float32)
-
-
-def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes, float]:
-    """Darkness of a grey picture (0..255): paper 0, the strokes 1; where filled shapes are, on a picture
-    reduced by a whole number; the noise of the paper. Raises DrawingFault if nothing is long and dark enough
-    to be a line.
+def levelled(
+    grey: Grey, pitch_mm: float, shapes_are_ink: bool = False
+) -> tuple[Darkness, Shapes, float]:
+    """Darkness of a grey picture (0..255): paper 0, the strokes 1; where filled shapes are that are no ink,
+    on a picture reduced by a whole number; the noise of the paper. Raises DrawingFault if nothing is long and
+    dark enough to be a line.
     """
     contrast = Contrast.of(grey, pitch_mm)
     ink, everywhere = _ink_contrast(contrast, pitch_mm)
+    if shapes_are_ink:  # another paper beneath them, and so another contrast
+        contrast, everywhere = contrast.with_shapes(ink), None
     every = noise.every_px(grey.size)
     sample = contrast.pixels(every) if everywhere is None else everywhere[::every, ::every]
     noise_of_paper = noise.paper_noise(sample / np.float32(ink))
@@ -269,15 +276,6 @@ def levelled(grey: Grey, pitch_mm: float) -> tuple[Darkness, Shapes, float]:
     if everywhere is None:
         return contrast.darkness(ink), shapes, noise_of_paper
     return contrast.in_parts_of(ink, everywhere), shapes, noise_of_paper
-
-
-def border_note(edges: tuple[str, ...]) -> str:
-    """What the operator should know of a border that was left out."""
-    which = f"{', '.join(edges)} edge" + ("s" if len(edges) > 1 else "")
-    return (
-        f"the ink along the {which} of the picture is its border, and is left out; if it is a line of the "
-        "drawing, give the picture a margin of paper"
-    )
 
 
 def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness | None]:

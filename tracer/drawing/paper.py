@@ -11,7 +11,7 @@ Source: our own; the patent takes the drawing for granted.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -25,6 +25,8 @@ SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shad
 # light falls off over a sheet, by ink's whole contrast beneath a lamp; behind a shape's edge, blurred by a
 # stroke's width, the paper is bright again within three of these
 BESIDE_SHAPE_MM = 18.0
+DARK = 0.5  # of the ink's contrast: what is darker than the paper by more is ink
+FEW = 0.01  # of a spot: so little bare paper in it tells no level
 REDUCED_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least
 
 Levels = NDArray[np.float32]
@@ -90,6 +92,48 @@ class Paper:
         dark = (level - brightest > SHAPE * contrast).view(np.uint8)
         grown = cv2.dilate(dark, _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
         return np.asarray(grown, bool)
+
+    def beneath_shapes(self, small: Levels, contrast: float) -> Paper:
+        """The same with filled shapes as ink of a contrast: beneath them it is as bright as about them.
+
+        `small` is the reduced picture. A shape is uncovered from its edges inwards, as far each time as
+        `shapes` sees.
+        """
+        paper, about = self, _disc(round(WIDEST_STROKE_MM / self.pitch_mm))
+        uncovered = np.zeros(self.reduced.shape, np.uint8)
+        while True:
+            uncovered |= paper.shapes(contrast).view(np.uint8)
+            hidden = np.asarray(cv2.dilate(uncovered, about), np.uint8)
+            if hidden.all():
+                return self
+            nearest = _from_beside(self.reduced, hidden)
+            level = np.where(hidden > 0, self._seen(small, nearest, contrast), self.reduced)
+            further = replace(self, reduced=np.asarray(level, np.float32))
+            if not (further.shapes(contrast) & (uncovered == 0)).any():
+                return further
+            paper = further
+
+    def _seen(self, small: Levels, about: Levels, contrast: float) -> Levels:
+        """The level of the paper that is to be seen near by: of what is not much darker than a level about
+        it; that level itself where there is none.
+        """
+        dark = np.abs(small - about) > DARK * contrast
+        bare = 1 - cv2.dilate(dark.view(np.uint8), np.ones((3, 3), np.uint8))
+        weights, spot = bare.astype(np.float32), WIDEST_STROKE_MM / 2 / self.pitch_mm
+        among = cv2.GaussianBlur(weights, (0, 0), spot)
+        level = cv2.GaussianBlur(weights * small, (0, 0), spot) / np.maximum(among, FEW)
+        return np.asarray(np.where(among > FEW, level, about), np.float32)
+
+
+def _from_beside(level: Levels, hidden: NDArray[np.uint8]) -> Levels:
+    """A level that is that of the nearest place beside what is hidden."""
+    _, nearest = cv2.distanceTransformWithLabels(
+        hidden, cv2.DIST_L2, cv2.DIST_MASK_PRECISE, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    seen = hidden == 0
+    at = np.zeros(int(nearest.max()) + 1, np.float32)
+    at[nearest[seen]] = level[seen]
+    return np.asarray(at[nearest], np.float32)
 
 
 def _disc(radius_px: int) -> NDArray[np.uint8]:

@@ -17,11 +17,15 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import cv2
+import numpy as np
+
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing.scan import MM_PER_INCH, Scan
+from morfax.tracer.drawing.scan import MM_PER_INCH, Grey, Scan
 
 # chosen far beyond any scan: a scale outside is a slip
 LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0
+OBLONG = 1e-3  # sides of a pixel that differ by more than this share are made alike: a fax has such pixels
 MOST_OBLONG = 4.0  # sides of a pixel; a fax has 204 x 98 dpi, at its coarsest 204 x 51
 LEAST_APART_PX = (
     100.0  # a pixel is then 1 % of the scale; a part is no use with a greater error
@@ -133,3 +137,13 @@ def _stated_mm(scan: Scan) -> tuple[float, float]:
             "give --dpi 300, or the sheet's width with --width 120mm"
         )
     return x_mm, y_mm
+
+
+def on_square_pixels(grey: Grey, pitch_mm: tuple[float, float]) -> Grey:
+    """A picture whose pixels have a pitch across and down, on pixels of the pitch across."""
+    across_mm, down_mm = pitch_mm
+    if abs(across_mm / down_mm - 1) <= OBLONG:
+        return grey
+    size = grey.shape[1], round(grey.shape[0] * down_mm / across_mm)
+    square = cv2.resize(np.asarray(grey, np.float32), size, interpolation=cv2.INTER_LINEAR)
+    return np.asarray(square, np.float32)

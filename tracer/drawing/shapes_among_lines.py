@@ -15,14 +15,17 @@ round on both sides.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 
-from morfax.tracer.drawing.border import without_border
+from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import Mask
-from morfax.tracer.drawing.drawing import Darkness, Drawing, border_note, on_square_pixels
+from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.inks import Colour, covered
-from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.ruling import PaperKind
+from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
 from morfax.tracer.drawing.shapes import SOFT_PX, outlined, shade_of
 from morfax.tracer.drawing.solids import FINEST_PX, usual_width_px
@@ -32,6 +35,10 @@ BROADEST_MM = 2.0  # of a line: the broadest of ISO 128-2
 ALIKE = 0.4  # share of the usual width by which a pen's lines differ; by trial
 MOST = 0.6  # of the middle line, which is in lines; by trial
 INK = 0.5
+MOSTLY_SHAPES = (
+    "most of the ink is filled shapes, broader than lines, and their insides are left out: --edge follows "
+    "their outlines"
+)
 RIM_PX = 4  # a soft edge is no broader: as far as a solid area's own paper goes; by trial
 
 
@@ -50,6 +57,22 @@ def drawing_of_both(scan: Scan, scale: Scale, ink: Colour | None = None) -> Draw
     if edges:
         notes = (*notes, border_note(edges))
     return Drawing(darkness, pitch_mm, scan.file, notes=notes, both=True)
+
+
+def drawing_of_all_ink(
+    scan: Scan, scale: Scale, ink: Colour | None, printed: PaperKind
+) -> Drawing:
+    """Read a scan of lines for all its ink; filled shapes among lines are ink, too, if there are lines.
+
+    Raises what `Drawing.of` raises.
+    """
+    drawing = Drawing.of(scan, scale, ink, Reading(printed=printed))
+    if drawing.shapes is None or not drawing.shapes.any():
+        return drawing
+    whole = Drawing.of(scan, scale, ink, Reading(printed=printed, shapes_are_ink=True))
+    return (
+        whole if has_lines(whole) else replace(drawing, notes=(*drawing.notes, MOSTLY_SHAPES))
+    )
 
 
 def has_lines(drawing: Drawing) -> bool:

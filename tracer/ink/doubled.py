@@ -251,6 +251,8 @@ def _without_flares(
     what crosses it, by more than a width over some stations; all that are known where it never lies still.
     """
     first, last = int(known[0]), int(known[-1]) + 1
+    if last - first <= reach:
+        return first, last
     steps = np.abs(widths[first + reach : last] - widths[first : last - reach])
     quiet = np.flatnonzero(steps < most_mm)
     if len(quiet) < FEWEST_STATIONS:

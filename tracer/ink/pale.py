@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import FEW_PX, Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
@@ -66,7 +67,13 @@ def _pale(drawing: Drawing) -> Mask:
         inked = cv2.dilate((soft > INK).view(np.uint8), rim)
         own = slice(top - rows.start, bottom - rows.start)
         pale[top:bottom] = ((soft > level) & (inked == 0))[own]
-    return pale
+    return pale if drawing.shapes is None else pale & (1 - _shaded(drawing.shapes, pale.shape))
+
+
+def _shaded(shapes: NDArray[np.bool_], shape: tuple[int, ...]) -> Mask:
+    """Where filled shapes were taken for dark paper: their shade is no line."""
+    large = cv2.resize(shapes.view(np.uint8), shape[::-1], interpolation=cv2.INTER_NEAREST)
+    return np.asarray(large, np.uint8)
 
 
 def _lines(mask: Mask, drawing: Drawing) -> Iterator[Pale]:

@@ -65,11 +65,14 @@ class StraightOn:
         return found
 
     def _onto(self, number: int, last: bool) -> tuple[int, bool] | None:
-        """The stretch straight on from an end of another, and its far end; None if none is straight on."""
+        """The stretch straight on from an end of another, and its far end; None if none is straight on.
+
+        A ring has no end.
+        """
         node = self.graph.stretches[number].nodes[last]
         way = -self._away(number, last)
         best, most = None, STRAIGHT_COS
-        for other in self.at[node]:
+        for other in self.at.get(node, ()):
             for other_last in (False, True):
                 if other == number or self.graph.stretches[other].nodes[other_last] != node:
                     continue

@@ -15,7 +15,7 @@ import pytest
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing import ruling
-from morfax.tracer.drawing.drawing import Darkness, Drawing
+from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.ruling import PaperKind, families
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
@@ -52,7 +52,9 @@ def opened(levels: Darkness, printed: PaperKind = "auto") -> Drawing:
     """The drawing of a picture of grey levels, as it is opened."""
     grey = np.clip(np.round(levels), 0, 255).astype(np.uint8)
     return Drawing.of(
-        Scan(Path("made.png"), grey, Stated((DPI, DPI))), Scale(), printed=printed
+        Scan(Path("made.png"), grey, Stated((DPI, DPI))),
+        Scale(),
+        reading=Reading(printed=printed),
     )
 
 

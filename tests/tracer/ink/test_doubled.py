@@ -13,11 +13,12 @@ from morfax.jobs.trace_figures import ink as figures_of
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import strands
+from morfax.tracer.ink.felt import FEWEST_STATIONS
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
-from tests.tracer.inked import WIDTH_MM, Points, inked, loops, polyline, together
+from tests.tracer.inked import WIDTH_MM, Points, arc, inked, loops, polyline, together
 
 LONG_MM = 40.0
 CLEAR = polyline((5, 40), (55, 40))  # a line by itself
@@ -192,3 +193,24 @@ def test_lines_that_share_their_ink_do_not_turn_off_into_what_crosses_it() -> No
         assert (
             turned.max() < 10.0
         )  # ink that becomes wider by 0.15 of its way is not yet a flare: 8.5
+
+
+def test_a_small_ring_of_a_broader_pen_is_one_line() -> None:
+    """It has no end at which anything could go on: on such a sheet all was given up."""
+    ring = arc((30, 20), 2.0), 1.6 * WIDTH_MM
+    thin = [(arc((30, 20), radius_mm), WIDTH_MM) for radius_mm in (9.0, 14.0)]
+    found = trace_ink(together(ring, *thin))
+    assert len(found.lines) == 3 and found.ink is not None
+    assert found.ink.followed_share > 0.999 and not found.ink.single
+
+
+def test_of_ink_that_is_felt_over_less_than_half_a_width_nothing_flares_out() -> None:
+    drawing = inked(CLEAR, seed=1)
+    left = ink_left(drawing.sheet)
+    run = FeltSheet.of(left.drawing, Settings(), left.ink).felt[0]
+    widths_mm = np.full(len(run), np.nan)
+    widths_mm[10 : 10 + FEWEST_STATIONS] = 1.3 * WIDTH_MM
+    scarcely = replace(run, widths_mm=widths_mm)
+    assert FEWEST_STATIONS * run.view.step_mm < 0.5 * 4 * WIDTH_MM
+    one, other = strands(scarcely, 4 * WIDTH_MM)
+    assert len(one) == len(other) == FEWEST_STATIONS
