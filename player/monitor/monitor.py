@@ -246,7 +246,7 @@ class Supervised:
         return self.monitor.largest_error_mm
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, inline="always", _nrt=False)
 def allowed_mm(speed_mm_s, table, beyond_s, tolerance_mm):  # type: ignore[no-untyped-def]
     """The limit at a speed of the demand, mm; for the kernels of all controls."""
     speed, row, last = abs(speed_mm_s), 0, len(table) - 1
@@ -258,7 +258,7 @@ def allowed_mm(speed_mm_s, table, beyond_s, tolerance_mm):  # type: ignore[no-un
     return table[row, 1] + (speed - table[row, 0]) * slope_s + tolerance_mm
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, _nrt=False)
 def _watch(demand_mm, actual_mm, first, settings, table, state, limits_mm):  # type: ignore[no-untyped-def]
     """Watch from a row on; the row and the axis of the next fault, or the number of rows and -1."""
     rate_hz, share, fade, beyond_s, tolerance_mm = settings

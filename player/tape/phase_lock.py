@@ -247,7 +247,7 @@ def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) ->
     return FollowingLimit.table(points, TOLERANCE_CYCLES * mm_per_cycle, hold_s=hold_s)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, _nrt=False)
 def _follow(cycles, reference, wheels, scale, network, drive, conditions, state, moved_mm):  # type: ignore[no-untyped-def]
     """Step all axes through a block; the rows done before an error was out of range.
 
