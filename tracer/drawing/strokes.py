@@ -164,7 +164,7 @@ class Sheet:
 
     def is_solid_at(self, place_mm: Array) -> bool:
         """Whether the ink nearest to a place is the rim of a filled shape."""
-        return bool(self.are_solid[self.patch_at(place_mm)])
+        return bool(self.are_solid.any() and self.are_solid[self.patch_at(place_mm)])
 
     def patch_at(self, place_mm: Array) -> int:
         """The number of the patch of a line whose ink is nearest to a place."""

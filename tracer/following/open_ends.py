@@ -62,7 +62,8 @@ def at_ends(
         if leading is not None:
             return [leading]
     # 2. from one that is drawn; one further away has neither a lead line here nor an end of this line near it
-    about_mm = view.leg_mm + 4 * view.width_mm  # to where its lead line is felt
+    # to where its lead line begins: three and a half widths off (`BEYOND`), and a third of what is felt of it
+    about_mm = 0.5 * view.leg_mm + 4 * view.width_mm
     about_mm += LEAD_MM + NAMED_MM if ends else 0.0
     drawn = references(sheet, view, stroke, about_mm)
     for place_mm, lead in _named_first(drawn, reference_mm):

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from morfax.jobs import zero
+from morfax.jobs.settings import DrawingFile
+from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.zero import ZeroOnSheet, _part_mm
 from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import is_mapped
 from morfax.motion.motion import join
 from morfax.motion.placement import Placement
+from morfax.motion.polyline import lengths_mm
+from morfax.tracer.cutter.contour import MET_MM, _closed
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head import loop
 from morfax.tracer.head.trail import Trail
@@ -22,6 +29,7 @@ from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import arc, dot, inked, polyline
 
+POSITIONS = np.array([[0.0, 0.0], [1.0, 2.0]])
 CIRCLE = inked(arc((14, 14), 8), seed=1)
 OPEN = inked(polyline((4, 4), (24, 4), (24, 12)), seed=1)  # ends at both ends
 STEM = inked(
@@ -89,11 +97,36 @@ def test_the_size_of_the_part_is_that_of_all_its_places(
     (places,) = _part_mm(trace(CIRCLE))
     expected = np.ptp(placement.places(places), axis=0)
     short(monkeypatch)
-    zero = ZeroOnSheet("lower-left", followed=trace(CIRCLE))
+    wanted = ZeroOnSheet("lower-left", followed=trace(CIRCLE))
     # as good as equal: a product may be rounded otherwise
-    assert zero.part_size_mm(placement) == pytest.approx(expected.tolist(), abs=1e-12)
+    assert wanted.part_size_mm(placement) == pytest.approx(expected.tolist(), abs=1e-12)
     low = placement.places(places).min(axis=0)
-    assert zero.origin_mm(placement) == pytest.approx(low.tolist(), abs=1e-12)
+    assert wanted.origin_mm(placement) == pytest.approx(low.tolist(), abs=1e-12)
+
+
+def test_the_size_of_the_part_is_made_out_for_programs_that_tell_it_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A path has no head; to bring its contours together took a tenth of a plate of holes."""
+    asked = list[Trace]()
+    monkeypatch.setattr(
+        zero, "_part_mm", lambda followed: asked.append(followed) or (POSITIONS,)
+    )
+    for name, times in (("a.csv", 0), ("a.wav", 0), ("a.ngc", 1)):
+        asked.clear()
+        outputs = TraceOutputs(tmp_path / name)
+        TraceJob(DrawingFile(Path("samples/cam.png")), outputs).run()
+        assert len(asked) == times, name
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_contour_is_brought_together_by_what_is_left_to_its_ends(seed: int) -> None:
+    places = way(seed) * 20
+    come_mm = lengths_mm(places)
+    after = np.clip(1 - come_mm / MET_MM, 0.0, 1.0)
+    before = np.clip(1 - (come_mm[-1] - come_mm) / MET_MM, 0.0, 1.0)
+    expected = places + (after - before)[:, None] * (0.5 * (places[-1] - places[0]))
+    assert come_mm[-1] > 2 * MET_MM and (_closed(places) == expected).all()
 
 
 def way(seed: int) -> Array:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
+from morfax.tracer.marks import reference
 from morfax.tracer.program import one_of_each, selection
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace import followed_from_an_end
 from tests.tracer.inked import arc, inked
 
 SHEET = Sheet.of(inked(arc((16, 16), 10)))
@@ -42,3 +46,21 @@ def test_a_line_from_an_end_that_leads_round_little_of_the_ink_gives_way(
     asked, _ = selection.plan(SHEET, (1,))
     (found,), letters = one_of_each.one_of_each(Setup(SHEET), asked, (1,))
     assert found is (from_end if taken == "end" else round_about) and letters == 0
+
+
+@pytest.mark.parametrize(("apart_mm", "felt"), [(9.2, 1), (8.0, 2)])
+def test_a_hole_s_neighbours_are_felt_as_reference_points_only_within_reach_of_a_lead_line(
+    monkeypatch: pytest.MonkeyPatch, apart_mm: float, felt: int
+) -> None:
+    """Holes of 6 mm: a lead line of a ring begins 1.8 mm off it at the most, and is felt for 1.2 mm."""
+    setup = Setup(Sheet.of(inked(arc((10, 10), 3), arc((10 + apart_mm, 10), 3))))
+    places = list[np.ndarray]()
+    monkeypatch.setattr(reference, "_ring", lambda view, place: places.append(place))
+    asked, _ = selection.plan(setup.sheet, "contours")
+    assert followed_from_an_end(setup, asked[0].stroke, asked[0].number) is None
+    assert len({tuple(np.round(place, 1)) for place in places}) == felt
+
+
+def test_reference_points_of_lines_are_those_that_they_or_their_leads_begin_at() -> None:
+    plain, led = line("closed", 40), replace(line("closed", 40), reference_mm=(1.0, 2.0))
+    assert one_of_each.references_of([plain, led]) == [led.begin_mm]
