@@ -2,12 +2,13 @@
 
     python -m benchmarks nets [COUNT [FIRST]]    COUNT drawings of each kind (2), their numbers from FIRST (0)
 
-Drawings are made with known truth: chords, circles laid over each other, Voronoi cells, grids, trees and
-Lissajous figures, as a pen of 0.4 mm draws them, scanned at 300 dpi with noise. For each kind: the share of
-the true lines that strokes run along (all, and the worst drawing), the length that is run more than once,
-strokes against the least that the net allows (half of its odd junctions), the distance of strokes from the
-true lines outside of junctions and at them, how often a true line that passes a junction is one stroke there,
-and processor time; at the end the worst drawing of each figure, by which it can be made again. Beside it the
+Drawings are made with known truth (`net_drawings`): chords, circles laid over each other, Voronoi cells,
+grids, trees, Lissajous figures and text in one-stroke letters, as a pen of 0.4 mm draws them, scanned at
+300 dpi with noise. For each kind: the share of the true lines that strokes run along (all, and the worst
+drawing), the length that is run more than once, strokes against the least that the net allows (half of its
+odd junctions), the distance of strokes from the true lines outside of junctions and at them, how often a
+true line that passes a junction is one stroke there, and processor time; at the end the worst drawing of
+each figure, by which it can be made again, and by how much the ledger told too much of one. Beside it the
 pieces into which scikit-image's skeleton falls at its junctions, and, where `pyautotrace` is installed, the
 paths that autotrace makes of the middle lines.
 """
@@ -17,27 +18,22 @@ from __future__ import annotations
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import cv2
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import convolve, label, minimum_filter1d
-from scipy.spatial import Voronoi, cKDTree
+from scipy.spatial import cKDTree
 from skimage.morphology import skeletonize
 
+from benchmarks.net_drawings import KINDS, SHEET_MM, Points, Strokes
 from morfax.motion.polyline import evenly, length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.trace_ink import trace_ink
 
-Points = NDArray[np.float64]
-Strokes = list[Points]
-
-SHEET_MM, MARGIN_MM = 100.0, 8.0
 PEN_MM, DPI, FINER, NOISE = 0.4, 300.0, 4, 4.0
 ON_IT_MM = 0.5 * PEN_MM  # a true place is followed if a stroke comes as near
 AT_JUNCTION_MM = 2.0  # places nearer to a junction are left out of the RMS
@@ -50,63 +46,8 @@ UM = 1000.0
 LOW_SHARE = 0.995  # asked of a net
 
 
-def chords(rng: np.random.Generator) -> Strokes:
-    """Straight lines across each other."""
-    ends = rng.uniform(MARGIN_MM, SHEET_MM - MARGIN_MM, (60, 2, 2))
-    return [e for e in ends if np.hypot(*(e[1] - e[0])) > 25][:20]
-
-
-def circles(rng: np.random.Generator) -> Strokes:
-    """Circles laid over each other."""
-    turns = np.linspace(0, 2 * np.pi, 1500)
-    round_one = np.column_stack([np.cos(turns), np.sin(turns)])
-    return [rng.uniform(32, 68, 2) + radius * round_one for radius in rng.uniform(8, 24, 8)]
-
-
-def cells(rng: np.random.Generator) -> Strokes:
-    """The walls of Voronoi cells."""
-    found = Voronoi(rng.uniform(MARGIN_MM, SHEET_MM - MARGIN_MM, (40, 2)))
-    walls = [found.vertices[[a, b]] for a, b in found.ridge_vertices if a >= 0 and b >= 0]
-    inside = [w for w in walls if (w > 5).all() and (w < SHEET_MM - 5).all()]
-    return [w for w in inside if np.hypot(*(w[1] - w[0])) > 1.5]
-
-
-def grid(rng: np.random.Generator) -> Strokes:
-    """Lines at right angles, at uneven distances."""
-    at = np.sort(10 + np.cumsum(rng.uniform(6, 12, 8)))
-    low, high = at[0], at[-1]
-    across = [np.array([[low, y], [high, y]]) for y in at]
-    return [*across, *(np.array([[x, low], [x, high]]) for x in at)]
-
-
-def tree(rng: np.random.Generator) -> Strokes:
-    """Branches that fork."""
-    out: Strokes = []
-
-    def grow(root: Points, heading: float, long_mm: float, forks: int) -> None:
-        tip = root + long_mm * np.array([np.cos(heading), np.sin(heading)])
-        out.append(np.array([root, tip]))
-        for turned in (-0.5, 0.45) if forks else ():
-            grow(tip, heading + turned + rng.normal(0, 0.1), 0.72 * long_mm, forks - 1)
-
-    grow(np.array([50.0, 6.0]), np.pi / 2, 24.0, 4)
-    return out
-
-
-def lissajous(rng: np.random.Generator) -> Strokes:
-    """One line that crosses itself."""
-    turns, phase = np.linspace(0, 2 * np.pi, 3000), rng.uniform(0.2, 0.5)
-    a, b = [(3, 4), (3, 5), (4, 5)][rng.integers(3)]
-    return [50 + 40 * np.column_stack([np.sin(a * turns + phase), np.sin(b * turns)])]
-
-
-KINDS: dict[str, Callable[[np.random.Generator], Strokes]] = {
-    kind.__name__: kind for kind in (chords, circles, cells, grid, tree, lissajous)
-}
-
-
 class Found(NamedTuple):
-    """What one drawing came to: mm, strokes, um, s; and the pieces of a skeleton."""
+    """What one drawing came to: mm, strokes, um, s; pieces of a skeleton; the share that the ledger told."""
 
     true_mm: float
     followed_mm: float
@@ -120,6 +61,7 @@ class Found(NamedTuple):
     took_s: float
     pieces: int
     autotraced: int | None
+    told: float
     name: str
 
 
@@ -152,7 +94,8 @@ def measured(strokes: Strokes, file: Path, seed: int, name: str = "net") -> Foun
     """Draw a net, follow it, and hold what was followed against what was drawn."""
     drawn(strokes, file, seed)
     drawing, begun = Drawing.open(file), time.process_time()
-    lines = [line.xy_mm for line in trace_ink(drawing).lines]
+    trace = trace_ink(drawing)
+    lines = [line.xy_mm for line in trace.lines]
     took_s = time.process_time() - begun
     # 1. the truth: each stretch once
     net = shapely.unary_union([shapely.LineString(stroke) for stroke in strokes])
@@ -183,6 +126,7 @@ def measured(strokes: Strokes, file: Path, seed: int, name: str = "net") -> Foun
         took_s,
         skeleton_pieces(drawing),
         autotrace_pieces(drawing),
+        trace.ink.followed_share if trace.ink is not None else 0.0,
         f"{name} {seed}",
     )
 
@@ -200,6 +144,8 @@ def partners(strokes: Strokes, junctions: Points, lines: Strokes) -> list[bool]:
     which = np.repeat(np.arange(len(placed)), [len(line) for line in placed])
     at = np.concatenate([np.arange(len(line)) for line in placed])
     reach = round(PASSED_MM / STEP_MM)
+    counts = np.array([len(line) for line in placed])
+    is_ring = np.array([np.hypot(*(line[0] - line[-1])) < PEN_MM for line in placed])
     for stroke in strokes if len(junctions) else ():
         truth = evenly(stroke, STEP_MM)
         away = cKDTree(junctions).query(truth)[0]
@@ -213,11 +159,9 @@ def partners(strokes: Strokes, junctions: Points, lines: Strokes) -> list[bool]:
             )
             a, b = np.array(np.meshgrid(before, behind), int)
             a, b = a[which[a] == which[b]], b[which[a] == which[b]]
-            counts, apart = (
-                np.array([len(line) for line in placed])[which[a]],
-                abs(at[a] - at[b]),
-            )
-            apart = np.minimum(apart, abs(counts - apart))
+            apart = abs(at[a] - at[b])
+            round_it = np.where(is_ring[which[a]], counts[which[a]] - apart, apart)
+            apart = np.minimum(apart, round_it)
             right.append(bool(np.any(abs(apart - 2 * reach) < 0.5 * reach)))
     return right
 
@@ -283,13 +227,14 @@ def _tell(name: str, found: list[Found]) -> None:
         float(np.sqrt(np.mean([um**2 for um in ums])))
         for ums in ([f.rms_um for f in found], [f.at_junctions_um for f in found])
     )
-    right = sum(f.right for f in found) / max(1, sum(f.passes for f in found))
+    passes = sum(f.passes for f in found)
+    right = f"{sum(f.right for f in found) / passes:18.2%}" if passes else f"{'–':>18s}"
     counts = [f.autotraced for f in found if f.autotraced is not None]
     autotraced = f"{sum(counts) / strokes:6.1f}" if counts else "     –"
     print(
         f"{name:10s} {followed_mm / true_mm:6.1%} {worst:6.1%} "
         f"{sum(f.twice_mm for f in found) / true_mm:6.1%} {strokes:5d}/{least:<5d} {strokes / least:5.2f}"
-        f"{outside_um:8.1f}{there_um:8.1f}{right:18.2%} {sum(f.pieces for f in found) / strokes:14.1f}"
+        f"{outside_um:8.1f}{there_um:8.1f}{right} {sum(f.pieces for f in found) / strokes:14.1f}"
         f"{autotraced}{1000 * sum(f.took_s for f in found) / true_mm:16.1f}",
         flush=True,
     )
@@ -302,6 +247,9 @@ def _tell_worst(found: list[Found]) -> None:
         "share": (min(shares), found[int(np.argmin(shares))].name, ".1%"),
         "RMS um": max((f.rms_um, f.name, ".1f") for f in found),
         "at junctions um": max((f.at_junctions_um, f.name, ".1f") for f in found),
+        "share told above the true one": max(
+            (f.told - f.followed_mm / f.true_mm, f.name, ".2%") for f in found
+        ),
         "wrong partners": max((f.passes - f.right, f.name, "d") for f in found),
     }
     for figure, (value, name, form) in worst.items():

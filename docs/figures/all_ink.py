@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from benchmarks.nets import cells, drawn
+from benchmarks.net_drawings import cells
+from benchmarks.nets import drawn
 from morfax.console.cli import main as morfax
 
 SEED = 12
