@@ -38,7 +38,6 @@ SHARED = 1.15  # times the line's width: ink that two lines share is wider
 BROADER = 1.05  # times the pen's width: of ink into which two lines run at both its ends
 TWO = 2.5  # times the pen's width: ink that is wider is no two lines of it
 EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is one line
-ABOUT = 3.0  # widths of a pen: two stretches whose ends are so near meet at one crossing
 # of its way: ink of two lines that becomes wider by more has come to others that cross it
 FLARE = 0.15
 TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
@@ -142,11 +141,12 @@ def _is_even(averaged: Array) -> bool:
 
 
 def _goes_on(felt: Sequence[Run], number: int, doubled: set[int], pen_mm: float) -> bool:
-    """Whether a doubled stretch begins or ends about where a stretch does."""
-    ends = felt[number].places_mm[[0, -1]]
-    others = np.array([felt[n].places_mm[[0, -1]] for n in doubled]).reshape(-1, 2)
-    apart = ends[:, None] - others[None]
-    return bool(np.any(np.hypot(apart[..., 0], apart[..., 1]) < ABOUT * pen_mm))
+    """Whether a doubled stretch, as broad there, goes straight on into a stretch.
+
+    A line of a broader pen that only comes by is one line.
+    """
+    ends = felt[number], felt[number].turned_round()
+    return any(_is_straight_on(run, felt[n], pen_mm) for run in ends for n in doubled)
 
 
 def _cut(
