@@ -21,7 +21,8 @@ def marks(areas: Sequence[Area]) -> list[plate.Area]:
     named, drawn = set[str](), list[plate.Area]()
     for area in (area for area in areas if area.what in COLOURS):
         left, bottom, right, top = area.box_mm
-        corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
+        box = (left, bottom), (right, bottom), (right, top), (left, top)
+        corners = np.array(area.outline_mm or box)
         label = "" if area.what in named else f"{area.what}, left out"
         named.add(area.what)
         drawn.append(plate.Area(corners, COLOURS[area.what], ALPHA, label=label))

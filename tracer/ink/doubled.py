@@ -8,8 +8,8 @@ rims of their ink.
     ══════──────────      between one and about two widths wide, which swells and shrinks slowly
 
 Only a clean sheet tells that: one whose lines have smooth edges and on which much of the ink is as narrow as
-the narrowest. A nib or a brush swells and shrinks, too (see `nib`). Ink of one even width is a line of a
-broader pen.
+the narrowest. Lettering has pens of its own, and the strokes of a printed letter swell. A nib or a brush
+swells and shrinks, too (see `nib`). Ink of one even width is a line of a broader pen.
 
 Source: our own.
 """
@@ -38,7 +38,6 @@ SHARED = 1.15  # times the line's width: ink that two lines share is wider
 BROADER = 1.05  # times the pen's width: of ink into which two lines run at both its ends
 TWO = 2.5  # times the pen's width: ink that is wider is no two lines of it
 EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is one line
-ABOUT = 3.0  # widths of a pen: two stretches whose ends are so near meet at one crossing
 # of its way: ink of two lines that becomes wider by more has come to others that cross it
 FLARE = 0.15
 TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
@@ -52,6 +51,8 @@ CUT_WIDTHS = 1.8  # of its own: a shorter piece is where others cross
 ALIKE = 0.15  # of its width: a piece of the same two lines is about as broad, and as broad all along
 STRAIGHT_COS = 0.98  # 11 degrees
 PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the same two lines
+# the width of a line as the head wants it: of a narrower one pixels make the width swell
+LEAST_PX = 3.0
 LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 
 
@@ -69,17 +70,19 @@ class Doubled(NamedTuple):
     is_sure: bool = True
 
     @classmethod
-    def of(cls, felt: Sequence[Run], ends: Sequence[Ends]) -> Doubled:
-        """Find the doubled stretches of a sheet, some of which end the ink; none of one that is not clean."""
+    def of(
+        cls, felt: Sequence[Run], ends: Sequence[Ends], some: Sequence[int], pixel_mm: float
+    ) -> Doubled:
+        """Find the doubled stretches among some of a sheet, some of which end the ink; none of a sheet that
+        is not clean, or whose lines are few pixels of the picture wide.
+        """
         # 1. how wide the ink is along each stretch, and whether one pen's line or two lines are
         found = {
-            n: swelling
-            for n, run in enumerate(felt)
-            if (swelling := Swelling.of(run, ends[n])) is not None
+            n: swelling for n in some if (swelling := Swelling.of(felt[n], ends[n])) is not None
         }
         every = list(found.values())
         pen_mm = pen_of(every)
-        if not math.isfinite(pen_mm) or (ink := _what_is(every, pen_mm)) == Ink.NIB:
+        if not pen_mm > LEAST_PX * pixel_mm or (ink := _what_is(every, pen_mm)) == Ink.NIB:
             return cls()
         # 2. those that swell and shrink, and even ones where these go on
         broad = {
@@ -93,7 +96,7 @@ class Doubled(NamedTuple):
         stations = {n: broad[n] for n in sorted(doubled)}
         if ink == Ink.EITHER:
             return cls(pen_mm, stations, is_sure=False)
-        return cls(pen_mm, stations, _cut(felt, doubled, pen_mm))
+        return cls(pen_mm, stations, _cut(felt, some, doubled, pen_mm))
 
     def length_mm(self, felt: Sequence[Run], number: int) -> float:
         """The length of the ink of a stretch that two lines share, mm."""
@@ -138,16 +141,19 @@ def _is_even(averaged: Array) -> bool:
 
 
 def _goes_on(felt: Sequence[Run], number: int, doubled: set[int], pen_mm: float) -> bool:
-    """Whether a doubled stretch begins or ends about where a stretch does."""
-    ends = felt[number].places_mm[[0, -1]]
-    others = np.array([felt[n].places_mm[[0, -1]] for n in doubled]).reshape(-1, 2)
-    apart = ends[:, None] - others[None]
-    return bool(np.any(np.hypot(apart[..., 0], apart[..., 1]) < ABOUT * pen_mm))
+    """Whether a doubled stretch, as broad there, goes straight on into a stretch.
+
+    A line of a broader pen that only comes by is one line.
+    """
+    ends = felt[number], felt[number].turned_round()
+    return any(_is_straight_on(run, felt[n], pen_mm) for run in ends for n in doubled)
 
 
-def _cut(felt: Sequence[Run], doubled: set[int], pen_mm: float) -> frozenset[int]:
+def _cut(
+    felt: Sequence[Run], some: Sequence[int], doubled: set[int], pen_mm: float
+) -> frozenset[int]:
     """Pieces that are too short to be told as doubled by themselves, between doubled ink straight on."""
-    kept = {n for n, run in enumerate(felt) if n not in doubled and _is_piece(run, pen_mm)}
+    kept = {n for n in some if n not in doubled and _is_piece(felt[n], pen_mm)}
     before = set[int]()
     while kept != before:
         before, both = kept, [*kept, *doubled]

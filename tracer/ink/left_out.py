@@ -30,6 +30,7 @@ from morfax.tracer.drawing.strokes import Sheet
 
 SOFTENED_PX = 0.7  # as patches are found (see `drawing.strokes`)
 HALO_PX = 8  # beside a strip: softening looks no further
+OUTLINE_PX = 0.5  # so near an outline is drawn, for the eye
 RIM_PX = 1  # of a solid area beyond the place where it is half as dark
 
 
@@ -37,11 +38,14 @@ Box = tuple[float, float, float, float]  # left, bottom, right, top, mm
 
 
 class Area(NamedTuple):
-    """Ink that no stroke runs along: what it is, how large it is (mm²), and the box about it."""
+    """Ink that no stroke runs along: what it is, how large it is (mm²), the box about it, and of a solid area
+    its outline: one line, to and fro along the same way where it comes to a hole.
+    """
 
     what: Literal["solid area", "letter", "outlined area"]
     area_mm2: float
     box_mm: Box
+    outline_mm: tuple[tuple[float, float], ...] = ()
 
     @property
     def place_mm(self) -> tuple[float, float]:
@@ -87,7 +91,12 @@ def ink_left(sheet: Sheet, letters_from_mm: float = 0.0) -> InkLeft:
         ink &= 1 - solids.mask
         drawing = _without(drawing, solids.mask)
     areas = [
-        Area("solid area", solid.pixels * pitch_mm**2, _box_mm(solid.box, rows, pitch_mm))
+        Area(
+            "solid area",
+            solid.pixels * pitch_mm**2,
+            _box_mm(solid.box, rows, pitch_mm),
+            _outline_mm(solids.mask, solid.box, pitch_mm),
+        )
         for solid in solids.each
     ]
     for patch in np.flatnonzero(letters):
@@ -109,6 +118,25 @@ def _box_mm(box: Sequence[int], rows: int, pitch_mm: float) -> Box:
     """A box (first row, last row + 1, first column, last column + 1) on the sheet."""
     top, bottom, left, right = (pitch_mm * side for side in box)
     return left, rows * pitch_mm - bottom, right, rows * pitch_mm - top
+
+
+def _outline_mm(
+    mask: Mask, box: tuple[int, int, int, int], pitch_mm: float
+) -> tuple[tuple[float, float], ...]:
+    """The outline of the largest solid area in a box with its holes, on the sheet."""
+    top, bottom, left, right = box
+    found, kin = cv2.findContours(
+        mask[top:bottom, left:right], cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE, offset=(left, top)
+    )
+    sides = [float(np.prod(np.ptp(line, axis=0))) for line in found]
+    outer = int(np.argmax(sides))
+    own = [outer, *np.flatnonzero(kin[0, :, 3] == outer).tolist()]
+    lines = [cv2.approxPolyDP(found[k], OUTLINE_PX, True)[:, 0] for k in own]
+    first = lines[0][:1]
+    holes = [np.vstack([line, line[:1], first]) for line in lines[1:]]
+    columns, down = np.vstack([lines[0], first, *holes]).T
+    places = np.column_stack([columns + 0.5, len(mask) - down - 0.5]) * pitch_mm
+    return tuple((float(x), float(y)) for x, y in places)
 
 
 def _without(drawing: Drawing, solid: Mask) -> Drawing:

@@ -122,19 +122,33 @@ class FeltSheet:
         return doubled.is_sure and self.measured[number].width_mm > BROADER * doubled.pen_mm
 
     @classmethod
-    def of(cls, drawing: Drawing, settings: Settings, ink: Mask) -> FeltSheet:
-        """Find and feel the stretches of some ink of a drawing."""
+    def of(
+        cls, drawing: Drawing, settings: Settings, ink: Mask, letters: Mask | None = None
+    ) -> FeltSheet:
+        """Find and feel the stretches of some ink of a drawing, of which some is letters."""
         graph = Graph.of(ink)
         felt = _felt(graph, drawing, settings)
         measured, at = [Measured.of(run) for run in felt], graph.at_nodes()
         straight = StraightOn(graph, felt, at)
         widths = _line_widths(straight, measured, settings)
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
-        doubled = Doubled() if settings.line_width_mm else Doubled.of(felt, ends)
+        doubled, some = Doubled(), _no_letters(graph, letters)
+        if not settings.line_width_mm:
+            doubled = Doubled.of(felt, ends, some, drawing.pitch_mm * drawing.finer)
         if doubled.is_sure and math.isfinite(doubled.pen_mm):
-            for n in of_two_lines(straight, measured, doubled.pen_mm):
+            for n in set(some).intersection(of_two_lines(straight, measured, doubled.pen_mm)):
                 widths[n] = doubled.pen_mm
         return cls(graph, felt, measured, widths, settings, ends, doubled)
+
+
+def _no_letters(graph: Graph, letters: Mask | None) -> list[int]:
+    """The stretches, by their numbers, that are no letters."""
+    every = range(len(graph.stretches))
+    if letters is None:
+        return list(every)
+    middles = np.array([s.pixels[len(s.pixels) // 2] for s in graph.stretches], int)
+    lettered = letters[graph.rows[middles], graph.columns[middles]]
+    return [n for n in every if not lettered[n]]
 
 
 def _is_end(node: int, at: dict[int, list[int]]) -> bool:

@@ -60,7 +60,11 @@ def _of_strokes(
 ) -> Trace:
     """Follow every stretch of the ink that is left for strokes."""
     # 1. the lines and their junctions, and the head along each
-    felt = FeltSheet.of(left.drawing, settings, left.ink)
+    letters = None
+    if left.lettering.any():
+        rows, columns = left.ink.shape
+        letters = sheet.patches.painted(left.lettering, 0, rows, 0, columns)
+    felt = FeltSheet.of(left.drawing, settings, left.ink, letters)
     junctions = solved(felt)
     strokes = _long_enough(_kept(_strokes(junctions, settings, progress)))
     if not strokes:

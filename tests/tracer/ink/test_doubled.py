@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 import shapely
@@ -11,6 +12,7 @@ import shapely
 from morfax.jobs.remarks_on_ink import of_ink
 from morfax.jobs.trace_figures import ink as figures_of
 from morfax.motion.polyline import length_mm, nearest_mm
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import strands
 from morfax.tracer.ink.felt import FEWEST_STATIONS
@@ -214,3 +216,52 @@ def test_of_ink_that_is_felt_over_less_than_half_a_width_nothing_flares_out() ->
     assert FEWEST_STATIONS * run.view.step_mm < 0.5 * 4 * WIDTH_MM
     one, other = strands(scarcely, 4 * WIDTH_MM)
     assert len(one) == len(other) == FEWEST_STATIONS
+
+
+def two_pens(thin_mm: float, thick_mm: float, seed: int | None) -> Drawing:
+    """Rings by a thin pen round arcs by a thicker one, which two straight lines of that pen cross."""
+    thin = [arc((30, 30), 20.0), arc((30, 30), 24.0), polyline((5, 56), (55, 58))]
+    thick = [arc((30, 30), radius_mm, 0.0, 300.0) for radius_mm in (5.0, 8.0, 11.0, 14.0, 17.0)]
+    thick += [polyline((12, 16), (20, 44)), polyline((40, 14), (33, 44))]
+    drawn = [(line, thin_mm) for line in thin] + [(line, thick_mm) for line in thick]
+    return together(*drawn, seed=seed)
+
+
+def doubled_mm(drawing: Drawing, *, tell_letters: bool = True) -> float:
+    """The length of the ink of a drawing that is taken for that of two lines."""
+    left = ink_left(drawing.sheet)
+    letters = drawing.sheet.patches.painted(
+        left.lettering, 0, len(left.ink), 0, left.ink.shape[1]
+    )
+    told = letters if tell_letters else None
+    sheet = FeltSheet.of(left.drawing, Settings(), left.ink, told)
+    return sum(sheet.doubled.length_mm(sheet.felt, n) for n in sheet.doubled.stations)
+
+
+def test_lines_of_few_pixels_do_not_tell() -> None:
+    assert doubled_mm(two_pens(0.2, 0.28, None)) == 0.0
+
+
+@pytest.mark.parametrize("seed", [None, 1, 2])
+def test_a_broader_pen_that_comes_by_two_lines_in_one_ink_draws_one_line(
+    seed: int | None,
+) -> None:
+    """Where an arc comes up to a straight line both are one ink; the other arcs of that pen are not."""
+    drawing = two_pens(0.25, 0.35, seed)
+    assert doubled_mm(drawing) < 5.0  # of 230 mm that the broader pen has drawn
+    found = trace_ink(drawing)
+    assert found.ink is not None and found.ink.followed_share > 0.99
+
+
+def test_printed_letters_do_not_tell() -> None:
+    lines = polyline((5, 30), (95, 33)), arc((50, 20), 8.0), arc((30, 18), 9.0)
+    drawing = together(*((line, 0.4) for line in lines), seed=1)
+    words = np.zeros(drawing.darkness.shape, np.uint8)
+    at = 60, len(words) - 60
+    cv2.putText(
+        words, "SECTION OF RODS", at, cv2.FONT_HERSHEY_TRIPLEX, 1.6, 255, 1, cv2.LINE_AA
+    )
+    printed = cv2.GaussianBlur(words.astype(np.float32) / 255, (0, 0), 0.6)
+    with_words = Drawing(np.maximum(drawing.darkness, printed), drawing.pitch_mm)
+    assert doubled_mm(with_words, tell_letters=False) > 20.0
+    assert doubled_mm(with_words) == 0.0

@@ -10,6 +10,7 @@ import pytest
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.ink.hatching import hatching
+from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import MM_PER_INCH, WIDTH_MM, Points, arc, inked, polyline
@@ -114,3 +115,17 @@ def test_letters_are_followed_or_left_out_by_their_height() -> None:
     assert lengths_mm[0][1] == pytest.approx(small_mm + large_mm, rel=0.08)
     assert lengths_mm[1][2] == pytest.approx(small_mm, rel=0.08)
     assert lengths_mm[2][2] == pytest.approx(small_mm + large_mm, rel=0.08)
+
+
+def test_the_outline_of_a_solid_area_goes_round_its_holes_too() -> None:
+    outer, hole = [(5, 5), (45, 5), (45, 35), (5, 35), (5, 5)], [(11, 11), (11, 29), (39, 29)]
+    frame = polyline(*outer, *hole, (39, 11), (11, 11))
+    blot = polyline((20, 15), (26, 15), (26, 21), (20, 21))  # within the frame, and none of it
+    lines = [polyline((60, y), (100, y + 2)) for y in np.arange(5.0, 36.0, 3.0)]
+    areas = ink_left(inked(*lines, specks=(frame, blot), seed=1).sheet).areas
+    assert [area.what for area in areas] == ["solid area"] * 2
+    for area in areas:
+        x, y = np.array(area.outline_mm).T
+        within_mm2 = 0.5 * abs(float(np.dot(x, np.roll(y, 1)) - np.dot(y, np.roll(x, 1))))
+        # an outline goes through the middles of pixels: half of one within the rim
+        assert within_mm2 == pytest.approx(area.area_mm2, rel=0.05)
