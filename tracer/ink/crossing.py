@@ -130,7 +130,7 @@ class Crossing:
             return self._tips
         paired = {leg for pair in self.pairs for leg in pair}
         alone = [k for k in range(len(self.legs)) if k not in paired]
-        if not self.pairs and len(alone) < 2:
+        if not self.pairs:
             return {}
         loose = [Loose(self.views[k], self.legs[k], self._beside(k)) for k in alone]
         found = zip(alone, ends_in_ink_mm(loose), strict=True)
@@ -143,7 +143,7 @@ class Crossing:
             return {}
         one, other = self.legs
         two = zip(self.views, self.legs, strict=True)
-        ends_mm = ends_in_ink_mm([Loose(view, leg, NOWHERE) for view, leg in two])
+        ends_mm = ends_in_ink_mm([Loose(*each, NOWHERE) for each in two], are_tips=True)
         if ends_mm[0] is None or ends_mm[1] is None:
             return {}
         apart_mm = math.dist(one.at(ends_mm[0]), other.at(ends_mm[1]))
