@@ -36,8 +36,9 @@ from morfax.tracer.sensing.view import View
 COVERED_SHARE = (
     0.7  # of a stretch within a crossing, along which ways go; by trial on drawings of nets
 )
-# two lines that come to a tip side by side are one, or two whose ends are so many widths apart
-TIP, APART = math.radians(60), 0.75
+# two lines that come to a tip side by side are one, or two whose ends are so many widths apart: within one
+# width their pens' rounds overlap, and legs that have felt each other tell ends 1.0 apart
+TIP, APART = math.radians(60), 1.2
 NOWHERE = np.empty((0, 2))
 
 
