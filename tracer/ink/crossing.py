@@ -1,7 +1,8 @@
 """Crossings: the legs of lines that meet, which of them are one line, and the ways that go through.
 
 Signals: legs as they come in, how the head sees each of their lines, and what was felt of the ink between
-them in; pairs of legs that are one line out, and places (n, 2) mm of the ways from one leg to its partner.
+them in; pairs of legs that are one line out, places (n, 2) mm of the ways from one leg to its partner, and
+how far beyond their legs lines end that have no partner, mm.
 
 The net of a sheet is made a few times, until no ink is left over; a crossing whose legs are still the same is
 solved once, and known again by its `key`.
@@ -129,10 +130,10 @@ class Crossing:
         """How far beyond their clean ends legs without a partner end that come onto others, mm."""
         if self._tips:
             return self._tips
-        paired = {leg for pair in self.pairs for leg in pair}
-        alone = [k for k in range(len(self.legs)) if k not in paired]
         if not self.pairs:
             return {}
+        paired = {leg for pair in self.pairs for leg in pair}
+        alone = [k for k in range(len(self.legs)) if k not in paired]
         loose = [Loose(self.views[k], self.legs[k], self._beside(k)) for k in alone]
         found = zip(alone, ends_in_ink_mm(loose), strict=True)
         return {k: end_mm for k, end_mm in found if end_mm is not None}

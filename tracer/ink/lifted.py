@@ -1,7 +1,7 @@
 """Where the pen was lifted in the ink of other lines: told by the ink that all the pens would have left.
 
-Signals: the leg of a line that ends at a junction, places of the others there (n, 2) mm, and the view of the
-line in; how far beyond the leg's clean end the line ends out, mm.
+Signals: the legs of lines that end at a junction, places of the others there (n, 2) mm, and the views of
+these lines in; how far beyond its leg's clean end each line ends out, mm.
 
     ══════════════════════      the other line; its rim bulges as far as the ending line stands out of its ink
       ╲╲▁▁
@@ -10,7 +10,8 @@ line in; how far beyond the leg's clean end the line ends out, mm.
 For each end that the line may have, the darkness of its pen and of the others' together is held against the
 sheet's: a place is as dark as the nearest of the pens leaves it. All ends that explain the ink about as well
 as the best are possible; within the other's ink an end leaves no mark. Of those the one nearest to the middle
-of the other line is taken.
+of the other line is taken. Lines that end in each other's ink have their ends found in turn, each as ink of
+the others up to where it was last found to end.
 
 Source: our own; the pen is that of `tangles.pen`.
 """
