@@ -1,7 +1,8 @@
 """Crossings: the legs of lines that meet, which of them are one line, and the ways that go through.
 
 Signals: legs as they come in, how the head sees each of their lines, and what was felt of the ink between
-them in; pairs of legs that are one line out, and places (n, 2) mm of the ways from one leg to its partner.
+them in; pairs of legs that are one line out, places (n, 2) mm of the ways from one leg to its partner, and
+how far beyond their legs lines end that have no partner, mm.
 
 The net of a sheet is made a few times, until no ink is left over; a crossing whose legs are still the same is
 solved once, and known again by its `key`.
@@ -36,8 +37,9 @@ from morfax.tracer.sensing.view import View
 COVERED_SHARE = (
     0.7  # of a stretch within a crossing, along which ways go; by trial on drawings of nets
 )
-# two lines that come to a tip side by side are one, or two whose ends are so many widths apart
-TIP, APART = math.radians(60), 0.75
+# two lines that come to a tip side by side are one, or two whose ends are so many widths apart: within one
+# width their pens' rounds overlap, and legs that have felt each other tell ends 1.0 apart
+TIP, APART = math.radians(60), 1.2
 NOWHERE = np.empty((0, 2))
 
 
@@ -128,10 +130,10 @@ class Crossing:
         """How far beyond their clean ends legs without a partner end that come onto others, mm."""
         if self._tips:
             return self._tips
+        if not self.pairs:
+            return {}
         paired = {leg for pair in self.pairs for leg in pair}
         alone = [k for k in range(len(self.legs)) if k not in paired]
-        if not self.pairs and len(alone) < 2:
-            return {}
         loose = [Loose(self.views[k], self.legs[k], self._beside(k)) for k in alone]
         found = zip(alone, ends_in_ink_mm(loose), strict=True)
         return {k: end_mm for k, end_mm in found if end_mm is not None}
@@ -143,7 +145,7 @@ class Crossing:
             return {}
         one, other = self.legs
         two = zip(self.views, self.legs, strict=True)
-        ends_mm = ends_in_ink_mm([Loose(view, leg, NOWHERE) for view, leg in two])
+        ends_mm = ends_in_ink_mm([Loose(*each, NOWHERE) for each in two], are_tips=True)
         if ends_mm[0] is None or ends_mm[1] is None:
             return {}
         apart_mm = math.dist(one.at(ends_mm[0]), other.at(ends_mm[1]))

@@ -128,30 +128,22 @@ def feel_along(view: View, guide_mm: Array) -> Run:
     return Run(places, headings, np.zeros(len(places)), widths, view)
 
 
-def judged(stations: Run, width_mm: float) -> Felt:
-    """Which stations are those of clean line, if a line is as wide as this."""
+def judged(stations: Run, width_mm: float, *, is_smooth: bool = False) -> Felt:
+    """Which stations are those of clean line, if a line is as wide as this; smooth ones all along."""
     view, widths = stations.view, stations.widths_mm
     off = np.abs(widths - width_mm)
     known = np.isfinite(widths)
     within_mm = CLEAN * width_mm + CLEAN_PX * view.pitch_mm
-    if stations.length_mm > MEANT * view.leg_mm and known.any():
+    if stations.length_mm > MEANT * view.leg_mm and known.any() and not is_smooth:
         usual_mm = median(widths[known])
+        spread_mm = ROBUST * median(np.abs(widths[known] - usual_mm))
         if abs(usual_mm - width_mm) < within_mm:
-            within_mm = max(within_mm, ROUGHER * _roughness_mm(stations, usual_mm))
+            within_mm = max(within_mm, ROUGHER * spread_mm)
     clean = known & (off < within_mm)
     steps = np.hypot(*np.diff(stations.places_mm, axis=0).T)
     leaps = np.abs(steps - view.step_mm) > LEAP * width_mm + LEAP_PX * view.pitch_mm
     clean[1:] &= ~leaps
     return Felt(stations, clean)
-
-
-def _roughness_mm(stations: Run, usual_mm: float) -> float:
-    """By how much a line's width differs from its neighbours', mm; ink that tapers is not rough."""
-    widths, apart = stations.widths_mm, max(1, round(usual_mm / stations.view.step_mm))
-    bent = widths[apart:-apart] - 0.5 * (widths[: -2 * apart] + widths[2 * apart :])
-    bent = bent[np.isfinite(bent)]
-    # of three widths, two of them halved
-    return ROBUST * median(np.abs(bent)) / math.sqrt(1.5) if len(bent) else 0.0
 
 
 def _is_felt(run: Run) -> bool:

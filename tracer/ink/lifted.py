@@ -1,7 +1,7 @@
 """Where the pen was lifted in the ink of other lines: told by the ink that all the pens would have left.
 
-Signals: the leg of a line that ends at a junction, places of the others there (n, 2) mm, and the view of the
-line in; how far beyond the leg's clean end the line ends out, mm.
+Signals: the legs of lines that end at a junction, places of the others there (n, 2) mm, and the views of
+these lines in; how far beyond its leg's clean end each line ends out, mm.
 
     ══════════════════════      the other line; its rim bulges as far as the ending line stands out of its ink
       ╲╲▁▁
@@ -10,7 +10,8 @@ line in; how far beyond the leg's clean end the line ends out, mm.
 For each end that the line may have, the darkness of its pen and of the others' together is held against the
 sheet's: a place is as dark as the nearest of the pens leaves it. All ends that explain the ink about as well
 as the best are possible; within the other's ink an end leaves no mark. Of those the one nearest to the middle
-of the other line is taken.
+of the other line is taken. Lines that end in each other's ink have their ends found in turn, each as ink of
+the others up to where it was last found to end.
 
 Source: our own; the pen is that of `tangles.pen`.
 """
@@ -39,7 +40,7 @@ FARTHEST_WIDTHS = (
 )
 POKES_WIDTHS = 5.0  # the end of a line that pokes out further has a stretch of its own
 ON_IT = 0.5  # widths: its straight way on has come to the others
-TOUCHES = 1.0  # widths: or it ends beside them, in ink that runs together
+TOUCHES = 1.0  # widths: two that both end here end beside each other, in ink that runs together
 AHEAD = 12.0  # times its length a leg says where its line goes on
 BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
 STEP_MM = 0.01  # of ends that are tried
@@ -62,10 +63,11 @@ class Loose(NamedTuple):
     others_mm: Array
 
 
-def ends_in_ink_mm(loose: Sequence[Loose]) -> list[float | None]:
+def ends_in_ink_mm(loose: Sequence[Loose], *, are_tips: bool = False) -> list[float | None]:
     """How far beyond their legs' clean ends some lines of a junction end in its ink, mm.
 
-    Each is ink for the others, at first as far as ink lies ahead of it. None for one that comes onto none.
+    Each is ink for the others, at first as far as ink lies ahead of it. None for one that comes onto none;
+    tips may also lie beside each other, and are None where no leg tells of them.
     """
     ends = [_inked_mm(line) for line in loose]
     found = list[float | None]([None for _ in loose])
@@ -76,7 +78,8 @@ def ends_in_ink_mm(loose: Sequence[Loose]) -> list[float | None]:
                 for m, other in enumerate(loose)
                 if m != k
             ]
-            end_mm = end_in_ink_mm(line.view, line.leg, np.vstack([line.others_mm, *ways]))
+            others_mm = np.vstack([line.others_mm, *ways])
+            end_mm = _end_in_ink_mm(line, others_mm, are_tips)
             if end_mm is not None:
                 found[k] = ends[k] = end_mm
     return found
@@ -89,18 +92,19 @@ def _inked_mm(line: Loose) -> float:
     return farthest_mm if ahead_mm is None else ahead_mm
 
 
-def end_in_ink_mm(view: View, leg: Leg, middles_mm: Array) -> float | None:
+def _end_in_ink_mm(line: Loose, middles_mm: Array, is_tip: bool) -> float | None:
     """How far beyond its leg's clean end a line ends in the ink of the others, mm.
 
     `middles_mm` are places of these, (n, 2), as far as `FARTHEST_WIDTHS` from the junction. None if the line
     does not come to them.
     """
+    view, leg = line.view, line.leg
     width_mm = leg.width_mm
     # 1. where the line comes onto the others
     ahead_mm = np.arange(0.0, FARTHEST_WIDTHS * width_mm, STEP_MM)
     away_mm, _ = Neighbours(middles_mm).nearest(leg.at(ahead_mm))
     come = np.flatnonzero(away_mm < ON_IT * width_mm)
-    if not len(come):
+    if not len(come) and is_tip:
         come = np.flatnonzero(away_mm < TOUCHES * width_mm)
     if not len(come):
         return None
@@ -115,7 +119,7 @@ def end_in_ink_mm(view: View, leg: Leg, middles_mm: Array) -> float | None:
     # 3. the ends that explain the ink
     if len(ends_mm) and len(leg.seen) >= FEWEST:
         low, high = _possible(view, leg, middles_mm, ends_mm)
-        if high < len(ends_mm) - 1 or not is_unknown.any():
+        if high < len(ends_mm) - 1 or not (is_tip and is_unknown.any()):
             return float(ends_mm[low + int(np.argmin(away_mm[low : high + 1]))])
     return foot_mm if foot_mm < FOOT_WIDTHS * width_mm + FOOT_MM else None
 

@@ -38,6 +38,7 @@ CORNERED = math.radians(30)  # a corner counts as turning so much more: a smooth
 NOT_BENT = (
     0.25  # of the turn: straight legs do not account for half of it, legs of an arc for all
 )
+HIDDEN_WIDTHS = 6.0  # a vertex further beyond both clean ends is told by neither leg
 STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning so much more
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
@@ -101,7 +102,7 @@ def way_through(
     ways = list[list[Array]]()
     if between is not None:
         ways.append(planner.through(incoming, outgoing, corner).stretches)
-    elif corner is not None and _is_corner(corner, planner.view.width_mm):
+    elif corner is not None and _is_corner(corner, planner.view.width_mm, ink is not None):
         end_mm = max(0.0, BEYOND_MM - corner.before_mm)
         ways.append(sharp_corner(planner.stands, corner, end_mm))
     ways.append(smooth)
@@ -111,9 +112,13 @@ def way_through(
     return next((way for way in ways if on_ink(planner.view, way)), smooth)
 
 
-def _is_corner(corner: Corner, width_mm: float) -> bool:
-    """Whether two legs of a junction turn at a vertex, and do not go on smoothly."""
-    return corner.deflection_rad > SMOOTH and corner.nearest_mm > -width_mm
+def _is_corner(corner: Corner, width_mm: float, is_felt: bool) -> bool:
+    """Whether two legs of a junction turn at a vertex, and do not go on smoothly.
+
+    Far from both their legs can not tell a vertex; if the ink there was felt its rims tell the way.
+    """
+    is_hidden = is_felt and corner.nearest_mm > HIDDEN_WIDTHS * width_mm
+    return corner.deflection_rad > SMOOTH and corner.nearest_mm > -width_mm and not is_hidden
 
 
 def _through_places(

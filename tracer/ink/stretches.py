@@ -93,7 +93,10 @@ class FeltSheet:
         key = number, self.widths_mm[number]
         if key not in self._taken:
             stations = with_width(self.felt[number], key[1])
-            clean, parted = judged(stations, key[1]).runs(self.ends[number])
+            # on a clean sheet ink that tapers is two lines', and no rough one's
+            is_smooth = self.doubled.is_sure and math.isfinite(self.doubled.pen_mm)
+            felt = judged(stations, key[1], is_smooth=is_smooth)
+            clean, parted = felt.runs(self.ends[number])
             self._taken[key] = Taken(stations, *self._of_one_line(number, clean, parted))
         return self._taken[key]
 

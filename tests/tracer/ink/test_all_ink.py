@@ -124,7 +124,7 @@ def side_by_side(deg: float, first_mm: float, second_mm: float) -> list[Points]:
 
 
 @pytest.mark.parametrize(
-    ("deg", "first_mm", "second_mm"), [(40, 1.0, 1.1), (30, 1.2, 1.0), (4, 0.0, -2.5)]
+    ("deg", "first_mm", "second_mm"), [(40, 1.0, 1.1), (30, 1.5, 1.3), (4, 0.0, -2.5)]
 )
 def test_two_lines_that_end_in_each_other_s_ink_are_no_tip(
     deg: float, first_mm: float, second_mm: float

@@ -34,7 +34,7 @@ def test_where_a_line_is_thinner_its_stations_lie_on_its_middle() -> None:
     assert off_mm[(x > 8.3) & (x < 8.7)].max() < 80 * UM
 
 
-def test_ink_that_tapers_is_no_rough_line() -> None:
+def test_ink_that_tapers_on_a_clean_sheet_is_no_rough_line() -> None:
     """Two lines come together, and one ends in the other: the ink is clean line where it is as narrow as one.
 
     (The taper was taken for roughness, and its last 3.6 mm for clean line.)
@@ -44,7 +44,7 @@ def test_ink_that_tapers_is_no_rough_line() -> None:
     drawing = together((polyline((4, Y_MM), (26, Y_MM)), WIDTH_MM), (other, WIDTH_MM), seed=1)
     view = View(photocell.behind_aperture(drawing, 0.1), WIDTH_MM)
     guide = np.array([(12, Y_MM + 0.145), (16, Y_MM + 0.025), (16.2, Y_MM), (19.5, Y_MM)])
-    felt = judged(feel_along(view, guide), WIDTH_MM)
+    felt = judged(feel_along(view, guide), WIDTH_MM, is_smooth=True)
     # a fifth of the width broader, and half a pixel, at 14.6 mm
     assert felt.stations.places_mm[felt.clean, 0].min() > 14.5
 

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from morfax.tracer.ink.partners import meeting_place, partners, turnings
+from morfax.tracer.ink.partners import _is_corner, meeting_place, partners, turnings
+from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.sensing.leg import Leg
 
 WIDTH_MM = 0.5
@@ -92,3 +93,13 @@ def test_of_many_lines_each_has_its_own_partner() -> None:
 
 def test_the_meeting_place_is_nearest_to_all_lines() -> None:
     assert meeting_place([leg(10), leg(100), leg(250)]) == pytest.approx([0, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize(("away_mm", "is_felt", "is_vertex"), [(1, 1, 1), (4, 1, 0), (4, 0, 1)])
+def test_a_vertex_far_within_shared_ink_is_told_by_no_leg(
+    away_mm: float, is_felt: bool, is_vertex: bool
+) -> None:
+    """Eight widths beyond both legs a bend of 17 degrees was laid as a vertex, 0.28 mm beside its line."""
+    corner = Corner.of(leg(180, away_mm), leg(24, away_mm).turned_round())
+    assert corner is not None
+    assert _is_corner(corner, WIDTH_MM, bool(is_felt)) == bool(is_vertex)
