@@ -26,6 +26,8 @@ SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shad
 # stroke's width, the paper is bright again within three of these
 BESIDE_SHAPE_MM = 18.0
 DARK = 0.5  # of the ink's contrast: what is darker than the paper by more is ink
+BLACK = 0.8  # of the ink's contrast: a paler area is a panel, or in shadow; by trial
+ALIKE = 0.02  # of the ink's contrast: levels that differ by less are one
 FEW = 0.01  # of a spot: so little bare paper in it tells no level
 REDUCED_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least
 
@@ -110,8 +112,18 @@ class Paper:
             level = np.where(hidden > 0, self._seen(small, nearest, contrast), self.reduced)
             further = replace(self, reduced=np.asarray(level, np.float32))
             if not (further.shapes(contrast) & (uncovered == 0)).any():
-                return further
+                return replace(self, reduced=self._black_only(small, further.reduced, contrast))
             paper = further
+
+    def _black_only(self, small: Levels, level: Levels, contrast: float) -> Levels:
+        """A level, but this one's own about areas that are paler than ink: lines may be drawn on them."""
+        depth = np.abs(level - small) / contrast
+        hidden = np.abs(level - self.reduced) > ALIKE * contrast
+        count, labels = cv2.connectedComponents(hidden.view(np.uint8), connectivity=8)
+        inked = hidden & (depth > DARK)
+        areas = np.maximum(np.bincount(labels[inked], minlength=count), 1)
+        depths = np.bincount(labels[inked], depth[inked], count) / areas
+        return np.where((depths < BLACK)[labels] & hidden, self.reduced, level)
 
     def _seen(self, small: Levels, about: Levels, contrast: float) -> Levels:
         """The level of the paper that is to be seen near by: of what is not much darker than a level about

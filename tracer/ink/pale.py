@@ -21,21 +21,28 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import Array
 from morfax.tracer.drawing.components import FEW_PX, Mask, strips
-from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.inked import INK
-from morfax.tracer.drawing.thinning import neighbours, thinned
+from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 
 SPOT_PX = 1.0  # standard deviation of the spot that averages the paper's noise
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
 ABOVE_NOISE = 6.0  # standard deviations of the paper, as for ink (see `drawing.drawing`)
 # of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
 LEAST = 0.15
+STRIPS, STRIP_PX, SPARSE = 64, 24, 5  # of the sheet, and pixels of these, that tell its noise
+# percentiles one standard deviation apart; ink and its rims are above the middle
+LOW_AND_MIDDLE = 15.87, 50.0
 RIM_PX, SPOTS = (
     3,
     3.0,
 )  # pixels, and spots of the picture's softness: so near to ink is its own rim
 LEAST_MM = 5.0  # a shorter pale line is a smudge
+# of the length of all its branches that the box about it measures: on a grained paper what is more branched
+# is grain, which thins to a web; by trial on photographs of paper and boards
+STRETCHED = 0.5
 LEAST_WIDTHS = 5.0  # of a line's length: less is a blot
 
 
@@ -50,14 +57,16 @@ class Pale(NamedTuple):
 def pale_lines(drawing: Drawing) -> list[Pale]:
     """The pale lines of a drawing, the longest first."""
     mask = _pale(drawing)
-    return sorted(_lines(mask, drawing), key=lambda line: -line.length_mm) if mask.any() else []
+    if not mask.any():
+        return []
+    return sorted(_lines(mask, drawing), key=lambda line: -line.length_mm)
 
 
 def _pale(drawing: Drawing) -> Mask:
     """Where a drawing is darker than its paper's noise, and is no ink, nor its rim."""
     noise = drawing.noise
-    level = max(LEAST, ABOVE_NOISE * LEFT_OF_NOISE * float(np.nan_to_num(noise.paper)))
     rim_px = RIM_PX + math.ceil(SPOTS * float(np.nan_to_num(noise.softness_px)))
+    level = max(LEAST, ABOVE_NOISE * LEFT_OF_NOISE * float(np.nan_to_num(noise.paper)))
     rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim_px + 1,) * 2)
     pale = np.zeros(drawing.darkness.shape, np.uint8)
     for top, bottom, rows in strips(
@@ -68,6 +77,35 @@ def _pale(drawing: Drawing) -> Mask:
         own = slice(top - rows.start, bottom - rows.start)
         pale[top:bottom] = ((soft > level) & (inked == 0))[own]
     return pale if drawing.shapes is None else pale & (1 - _shaded(drawing.shapes, pale.shape))
+
+
+def _sides(patch: Indices, rows: Indices, columns: Indices, count: int) -> tuple[Array, Array]:
+    """The height and the width of the box about the pixels of each patch."""
+    sides = list[Array]()
+    for places in (rows, columns):
+        low, high = np.full(count, np.inf), np.full(count, -np.inf)
+        np.minimum.at(low, patch, places)
+        np.maximum.at(high, patch, places)
+        sides.append(high - low)
+    return sides[0], sides[1]
+
+
+def _noise_of_spots(drawing: Drawing) -> float:
+    """The standard deviation of the paper behind a spot, as it is seen in some strips of the sheet.
+
+    Grain, stains and what a camera has made of noise are broader than pixels: a spot averages little of it.
+    """
+    every = max(1, drawing.darkness.shape[0] // (STRIPS * STRIP_PX))
+    seen = list[Darkness]()
+    for top in range(0, drawing.darkness.shape[0], every * STRIP_PX):
+        strip = drawing.darkness[top : top + STRIP_PX]
+        soft = cv2.GaussianBlur(strip, (0, 0), SPOT_PX)
+        seen.append(soft[(strip != 0) & (soft < INK)][::SPARSE])  # bare paper is made 0
+    paper = np.concatenate(seen)
+    if not len(paper):
+        return 0.0
+    low, middle = np.percentile(paper, LOW_AND_MIDDLE)
+    return float(middle - low)
 
 
 def _shaded(shapes: NDArray[np.bool_], shape: tuple[int, ...]) -> Mask:
@@ -95,7 +133,10 @@ def _lines(mask: Mask, drawing: Drawing) -> Iterator[Pale]:
     )  # each step was met from both its ends
     widths_px = 2 * np.bincount(patch, depth, count) / pixels
     least_px = np.maximum(LEAST_MM / drawing.pitch_mm, LEAST_WIDTHS * widths_px)
-    for k in np.flatnonzero(lengths_px > least_px):
+    are_lines = lengths_px > least_px
+    if ABOVE_NOISE * _noise_of_spots(drawing) > LEAST:
+        are_lines &= np.hypot(*_sides(patch, rows, columns, count)) > STRETCHED * lengths_px
+    for k in np.flatnonzero(are_lines):
         here = np.flatnonzero(patch == k)
         middle = here[len(here) // 2]
         x_px, y_px = columns[middle] + 0.5, len(mask) - rows[middle] - 0.5

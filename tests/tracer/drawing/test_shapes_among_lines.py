@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.shapes_among_lines import MOSTLY_SHAPES, drawing_of_all_ink
@@ -77,6 +78,19 @@ def test_a_line_that_ends_at_a_black_area_is_followed_up_to_it(
     (area,) = (area for area in found.ink.areas if area.what == "solid area")
     (left, bottom), (right, top) = shape_mm[0], shape_mm[2]
     assert area.area_mm2 == pytest.approx((right - left) * (top - bottom), rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("grey", "is_ink"), [(20.0, True), (90.0, False)], ids=["black", "grey"]
+)
+def test_a_panel_paler_than_ink_stays_paper_for_lines_may_be_drawn_on_it(
+    grey: float, is_ink: bool
+) -> None:
+    small = np.full((300, 300), 240.0, np.float32)
+    small[60:240, 60:240] = grey
+    paper = Paper.of_reduced(small, 4, 1200, 0.085)
+    level = paper.beneath_shapes(small, contrast=220.0).reduced
+    assert float(level[150, 150]) == pytest.approx(240.0 if is_ink else grey, abs=2.0)
 
 
 def test_of_filled_shapes_alone_it_is_said_what_follows_their_outlines() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -43,3 +44,19 @@ def test_the_share_that_was_followed_counts_pale_lines() -> None:
     assert ink is not None
     drawn_mm = 120 + 2 * np.pi * 3
     assert ink.followed_share == pytest.approx(drawn_mm / (drawn_mm + 30), abs=0.02)
+
+
+def test_a_smudge_on_grained_paper_is_no_pale_line_and_a_line_beside_it_is_one() -> None:
+    """As on a photograph of a board: grain of some pixels in a smudge that is a little darker than paper."""
+    bare = with_pale_bar(0.4, 0.02)
+    rows, columns = bare.darkness.shape
+    white = np.random.default_rng(3).normal(0, 1, (rows, columns))
+    grain = cv2.GaussianBlur(white, (0, 0), 1.5)
+    down, across = np.mgrid[:rows, :columns] * bare.pitch_mm
+    is_smudged = (np.abs(across - 21) < 11) & (np.abs(bare.height_mm - down - 29) < 5)
+    smudged = bare.darkness + 0.05 * grain / grain.std() + 0.14 * is_smudged
+    found = pale_lines(replace(bare, darkness=np.asarray(smudged, np.float32)))
+    on_bar_mm = sum(line.length_mm for line in found if abs(line.y_mm - 20) < 0.5)
+    assert on_bar_mm == pytest.approx(30 - 2 * 0.25, abs=RIM_MM)
+    # of 160 mm of web that the smudge thins to
+    assert sum(line.length_mm for line in found) - on_bar_mm < 25
