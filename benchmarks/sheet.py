@@ -18,7 +18,8 @@ import numpy as np
 from PIL import Image
 
 from morfax.tracer.drawing import raster
-from morfax.tracer.drawing.drawing import Drawing, levelled
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.levelling import levelled
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.program.trace import trace
 

@@ -20,7 +20,8 @@ from matplotlib.axes import Axes
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.tracer.drawing.drawing import Drawing, levelled
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.levelling import levelled
 from morfax.tracer.following import follower, ways_out
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head import kernel

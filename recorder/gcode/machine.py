@@ -118,11 +118,9 @@ def machine(name: str = DEFAULT, changed: Mapping[str, float] | None = None) -> 
     return _built_in(name, tuple((changed or {}).items()))
 
 
-@lru_cache(
-    maxsize=32
-)  # a program asks four times for its machine, and each page of a batch again
+@lru_cache(maxsize=32)
 def _built_in(name: str, changed: tuple[tuple[str, float], ...]) -> Machine:
-    """A built-in machine, with some of its [values] changed."""
+    """A built-in machine, with some of its [values] changed; read once for all programs of a batch."""
     return _machine(name, parsed(as_toml(name), f"{name}.toml", CALLED), dict(changed))
 
 

@@ -33,8 +33,8 @@ from morfax.tracer.drawing.contrast import (
     strokes_of,
 )
 from morfax.tracer.drawing.memory import make_sure_of_ink
-from morfax.tracer.drawing.noise import paper_noise
 from morfax.tracer.drawing.paper import Paper
+from morfax.tracer.drawing.paper_noise import paper_noise
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
 
 # pixels: A3 at 600 dpi is the first; smaller sheets are kept as a whole, in floats

@@ -34,11 +34,11 @@ from morfax.motion.median import median, percentile
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.paper import ROBUST
+from morfax.tracer.drawing.paper_noise import PAPER, of_sheet
 from morfax.tracer.drawing.tiles import Kept, Tiles
 
 INK = 0.5  # darker is ink
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
-PAPER_SAMPLES = 1 << 16  # pixels of paper: they give its standard deviation to 1/360
 MOST_PROFILES = 1000  # their median is 25 times as certain as one profile
 FEWEST_PROFILES = 20  # fewer tell nothing: there is hardly a line
 STEP_PX = 0.5  # between the samples of a profile: edges are no sharper than a pixel
@@ -51,9 +51,7 @@ FLAT, THIN_PX = 0.1, 0.75
 # way about (0.45 to 0.63 of all); on other scans 0.12 at most
 HARD_SHARE = 0.25
 OBLIQUE = 0.5  # cosine: a row or column that meets a line flatter than 60 degrees is left out
-PAPER = 0.25  # lighter is paper, and nothing else is drawn there
 GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
-DARKER = 84.13  # percentile one standard deviation above the median
 RIGHT_ON_IT = 25.0  # percentile of how wide lines look: there a pixel lies right on the line
 OUTLIERS = 3.0  # robust standard deviations
 # darkness, softness and width settle to 1 % where a line is three times as wide as soft
@@ -91,7 +89,7 @@ class _Profiles(NamedTuple):
 
 def measured(darkness: Kept, pitch_mm: float, paper: float | None = None) -> Noise:
     """The noise of a drawing of darkness 0..1 on pixels of a pitch; `paper` is its paper's, where known."""
-    paper = _paper(darkness) if paper is None else paper
+    paper = of_sheet(darkness) if paper is None else paper
     profiles = _profiles(darkness)
     if profiles is None:
         return Noise(paper, math.nan, math.nan, math.nan, math.nan, math.nan)
@@ -121,7 +119,7 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
     profiles = _profiles(darkness)
     if profiles is None:
         return Within(math.nan, math.nan, math.nan)
-    paper = _paper(darkness) if paper is None else paper
+    paper = of_sheet(darkness) if paper is None else paper
     middle = np.maximum(_middle(profiles), PAPER)
     looks_px = STEP_PX * profiles.seen.sum(axis=1) / middle
     seen_px = percentile(looks_px, RIGHT_ON_IT)
@@ -135,26 +133,6 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
     differ = _spread((there - here)[on_line]) / math.sqrt(2)
     grain = math.sqrt(max(differ**2 - INTERPOLATED_NOISE * paper**2, 0.0))
     return Within(grain, width_px, seen_px)
-
-
-def _paper(darkness: Any) -> float:
-    """The noise of the paper of a sheet that is nowhere made bare (see `contrast`)."""
-    every = every_px(darkness.size)
-    return paper_noise(darkness[::every, ::every])
-
-
-def paper_noise(sample: NDArray[np.float32]) -> float:
-    """Standard deviation of the paper's pixels, by the darker ones of a sample: scanners clip the white."""
-    paper = sample[sample < PAPER]
-    if not len(paper):
-        return math.nan
-    usual, darker = (percentile(paper, percent, np.float64) for percent in (50.0, DARKER))
-    return darker - usual
-
-
-def every_px(size: int) -> int:
-    """How far apart, across and down, those of so many pixels are that tell the paper's noise."""
-    return max(1, math.isqrt(size // PAPER_SAMPLES))
 
 
 def _spread(values: NDArray[Any]) -> float:

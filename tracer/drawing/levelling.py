@@ -1,0 +1,84 @@
+"""Levelling: the grey picture of a sheet becomes darkness, whatever its light and its ink.
+
+Signals: grey levels 0..255 (rows from the top, columns) on square pixels in; darkness out: float32, 0 =
+paper, 1 = the ink of the drawing's lines. Uneven paper is levelled (see `paper`), dark on light or light on
+dark. Ink is how dark the longer strokes are at their darkest.
+
+Source: our own. Questions: none; the patent takes ink that is black for granted.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.median import median, percentile
+from morfax.tracer.drawing.blocks import runs_behind_spot, runs_in
+from morfax.tracer.drawing.components import Patches
+from morfax.tracer.drawing.contrast import (
+    ABOVE_NOISE,
+    DARKER,
+    LEAST_CONTRAST,
+    SOFT_PX,
+    Contrast,
+    strokes_of,
+)
+from morfax.tracer.drawing.paper import ROBUST
+from morfax.tracer.drawing.paper_noise import every_px, paper_noise
+from morfax.tracer.drawing.scan import Grey
+
+SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
+EVERY = 4  # pixels of a noisy sheet that tell its noise
+FEWEST_SAMPLES = 1 << 22  # pixels that tell the darkness of the ink
+
+Darkness = NDArray[np.float32]
+Shapes = NDArray[np.bool_]
+
+
+def levelled(
+    grey: Grey, pitch_mm: float, shapes_are_ink: bool = False
+) -> tuple[Darkness, Shapes, float]:
+    """Darkness of a grey picture (0..255): paper 0, the strokes 1; where filled shapes are that are no ink,
+    on a picture reduced by a whole number; the noise of the paper. Raises DrawingFault if nothing is long and
+    dark enough to be a line.
+    """
+    contrast = Contrast.of(grey, pitch_mm)
+    ink, everywhere = _ink_contrast(contrast, pitch_mm)
+    if shapes_are_ink:  # another paper beneath them, and so another contrast
+        contrast, everywhere = contrast.with_shapes(ink), None
+    every = every_px(grey.size)
+    sample = contrast.pixels(every) if everywhere is None else everywhere[::every, ::every]
+    noise_of_paper = paper_noise(sample / np.float32(ink))
+    shapes = contrast.paper.shapes(ink)
+    if everywhere is None:
+        return contrast.darkness(ink), shapes, noise_of_paper
+    return contrast.in_parts_of(ink, everywhere), shapes, noise_of_paper
+
+
+def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness | None]:
+    """Contrast of the strokes against the paper, grey levels: that of the longer strokes' darker part; and
+    that of the whole sheet where its noise asked for it.
+    """
+    least = LEAST_CONTRAST
+    is_quiet = _above_noise(contrast.sample(SOFT_PX)) < SURELY * LEAST_CONTRAST
+    if is_quiet:
+        dark = contrast.above(least)
+        seen = contrast.within(dark)
+        runs = runs_behind_spot(seen, dark, contrast.blocks.by, SOFT_PX, least)
+    else:
+        seen = contrast.everywhere()
+        soft = np.asarray(cv2.GaussianBlur(seen, (0, 0), SOFT_PX), np.float32)
+        least = max(least, _above_noise(soft[::EVERY, ::EVERY].ravel()))
+        runs = runs_in(soft, least)
+    patches = Patches.of([runs])
+    strokes = strokes_of(patches, least, pitch_mm)
+    every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
+    ink = percentile(patches.pixels_of(strokes, seen)[::every], DARKER)
+    return ink, None if is_quiet else seen
+
+
+def _above_noise(sample: Darkness) -> float:
+    """What is above the noise of a sample."""
+    centre = median(sample)
+    return centre + ABOVE_NOISE * ROBUST * median(np.abs(sample - centre))
