@@ -13,6 +13,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from multiprocessing import get_context
 from pathlib import Path
 
 import cv2
@@ -40,7 +41,10 @@ def main(words: list[str]) -> None:
     with tempfile.TemporaryDirectory() as here:
         for mpx, metres, kind in sheets:
             file = Path(here, f"sheet.{kind}")
-            drawn(file, mpx, metres)
+            # drawn by another process: memory of this one would count as that of the trace it starts
+            drawing = get_context("spawn").Process(target=drawn, args=(file, mpx, metres))
+            drawing.start()
+            drawing.join()
             took_s, held_gb = used(file)
             asked = ASKED.get(metres) if mpx == A0_MPX else None
             told = "" if asked is None else f", {asked[0]} s and {asked[1]} GB asked"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from morfax.motion.arrays import bounds
+from morfax.motion.long_array import bounds_by_blocks
 from morfax.motion.polyline import steps_mm
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def of_picture_edge(trace: Trace, drawing: Drawing) -> Iterator[str]:
         if line.on_edge:
             continue
         xy_mm, cut_to_mm = line.xy_mm, 0.5 * line.width_mm - drawing.pitch_mm
-        low_mm, high_mm = bounds(xy_mm)
+        low_mm, high_mm = bounds_by_blocks(xy_mm)
         if min(*low_mm, *(sheet_mm - high_mm)) >= cut_to_mm:  # as nearly all lines
             continue
         is_cut = np.minimum(xy_mm, sheet_mm - xy_mm).min(axis=1) < cut_to_mm

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import FileFault
 
 IN_MEMORY_BYTES = (
@@ -211,6 +211,12 @@ def one_in(rows: Array, every: int) -> Array:
     if not is_mapped(rows) or not len(rows):
         return rows[::every]
     return np.vstack([block[::every].copy() for block in blocks(rows, every=every)])
+
+
+def bounds_by_blocks(rows: Array) -> tuple[Array, Array]:
+    """The lowest and the highest of each column of rows (n, columns), of which there is one at least."""
+    lows, highs = zip(*(bounds(block) for block in blocks(rows)), strict=True)
+    return np.min(lows, axis=0), np.max(highs, axis=0)
 
 
 def released(rows: Array) -> None:

@@ -7,6 +7,7 @@ import pickle
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,14 @@ from hypothesis import strategies as st
 
 from morfax.motion import long_array
 from morfax.motion.faults import FileFault
-from morfax.motion.long_array import LongArray, blocks, filed, is_mapped, one_in
+from morfax.motion.long_array import (
+    LongArray,
+    blocks,
+    bounds_by_blocks,
+    filed,
+    is_mapped,
+    one_in,
+)
 from morfax.motion.polyline import lengths_by_blocks, lengths_mm
 
 ROWS = np.random.default_rng(1).normal(size=(2000, 2))
@@ -97,6 +105,13 @@ def test_one_in_so_many_is_a_slice(every: int) -> None:
     assert np.array_equal(thinned, ROWS[5::every]) and not is_mapped(thinned)
 
 
+@pytest.mark.parametrize("rows", [1, 99, 2000])
+def test_bounds_by_blocks_are_the_lowest_and_the_highest(rows: int) -> None:
+    low, high = bounds_by_blocks(grown(rows).whole())
+    assert np.array_equal(low, ROWS[:rows].min(axis=0))
+    assert np.array_equal(high, ROWS[:rows].max(axis=0))
+
+
 def test_lengths_by_blocks_are_the_lengths_to_the_last_bit() -> None:
     found = list(lengths_by_blocks(grown().whole()))
     firsts = [first for first, _, _ in found]
@@ -127,9 +142,9 @@ def through_one_in(rows: np.ndarray) -> None:
     one_in(rows, 30)
 
 
-@pytest.mark.parametrize("through", [through_blocks, through_one_in])
+@pytest.mark.parametrize("through", [through_blocks, through_one_in, bounds_by_blocks])
 def test_memory_is_given_back(
-    through: Callable[[np.ndarray], None], monkeypatch: pytest.MonkeyPatch
+    through: Callable[[np.ndarray], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of 32 MB that were gone through no more is held than of two blocks of 3.2 MB."""
     monkeypatch.setattr(long_array, "BLOCK_ROWS", 200_000)
