@@ -22,16 +22,18 @@ class HeadPath:
 
     def __init__(self, positions: Array, step_mm: float) -> None:
         self.step_mm = step_mm
-        walked, at = LongArray(3), np.zeros(3)
+        places, position, at = LongArray(), LongArray(1), np.zeros(3)
         for block in blocks(positions, before=1):
-            walked.add(_walked(block, step_mm, len(walked), at))
+            walked = _walked(block, step_mm, len(places), at)
+            places.add(walked[:, :2])
+            position.add(walked[:, 2:])
             at[0] += len(block) - 1
-        there = walked.whole()
         count = math.ceil(at[1] / step_mm)
-        if len(there) < count:  # the last length is the end of the path, but for rounding
-            there = np.vstack([there, [*positions[-1, :2], at[2]]])
-        self.at_mm, self.position = step_mm * np.arange(count), there[:count, 2]
-        self.places = there[:count, :2].copy()
+        if len(places) < count:  # the last length is the end of the path, but for rounding
+            places.add(positions[-1:, :2])
+            position.add(at[None, 2:])
+        self.at_mm, self.position = step_mm * np.arange(count), position.whole()[:count, 0]
+        self.places = places.whole()[:count]
         self.along = _along(self.places)
 
     def place(self, mm: float) -> tuple[float, float]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.marks import head_path as organ
@@ -48,6 +49,15 @@ def test_a_path_in_blocks_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     places = positions(300)
     monkeypatch.setattr(organ, "blocks", in_parts)
     check(organ.HeadPath(places, STEP_MM), places)
+
+
+def test_a_long_path_is_kept_in_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hundred metres of line have 5 million places, each with a direction."""
+    monkeypatch.setattr(long_array, "IN_MEMORY_BYTES", 1000)
+    places = positions(3000)
+    path = organ.HeadPath(places, STEP_MM)
+    check(path, places)
+    assert all(map(long_array.is_mapped, (path.places, path.along, path.position)))
 
 
 def test_plain_python_walks_the_same_way(monkeypatch: pytest.MonkeyPatch) -> None:
