@@ -102,7 +102,7 @@ class Kernel:
     @property
     def _numba_type_(self) -> Any:
         """What numba takes a kernel for that another one calls: its dispatcher."""
-        return self.dispatcher("part" if object_code.is_made() else "run")._numba_type_
+        return self.dispatcher("part" if object_code.is_making() else "run")._numba_type_
 
     def dispatcher(self, role: Role) -> Any:
         """numba's dispatcher of the function, for what it is to do."""

@@ -35,7 +35,7 @@ OPTIONS: dict[Role, dict[str, bool]] = {
 _NOW = threading.local()
 
 
-def is_made() -> bool:
+def is_making() -> bool:
     """Whether this thread makes object code now, so that kernels that are asked for are parts."""
     return getattr(_NOW, "making", False)
 

@@ -15,15 +15,14 @@ from __future__ import annotations
 
 import shutil
 import sys
-from pathlib import Path
 
 from morfax.motion import compile_ahead, machine_code
 from morfax.motion.kernel_folder import kernel_folder, wheel_folder
 from morfax.motion.kernel_linker import linker
 
 
-def gather(folder: Path) -> int:
-    """Put the machine code of all listed kernels into a folder; give the number of this Python's files.
+def gather() -> int:
+    """Put the machine code of all listed kernels into the wheel's folder; give how many files that makes.
 
     Raises OSError where machine code cannot be kept (`machine_code.can_be_kept`).
     """
@@ -31,6 +30,7 @@ def gather(folder: Path) -> int:
         raise OSError(
             "numba runs the kernels here, and keeps no machine code that a wheel could bring"
         )
+    folder = wheel_folder()
     folder.mkdir(parents=True, exist_ok=True)
     of_this_python = f"*.{sys.implementation.cache_tag}.*.kernel"
     for old in folder.glob(of_this_python):
@@ -43,14 +43,10 @@ def gather(folder: Path) -> int:
     return len(list(folder.glob(of_this_python)))
 
 
-def main(words: list[str]) -> None:
-    """Fill the folder that is named, or the one that a wheel takes kernels from."""
-    folder = Path(words[0]) if words else wheel_folder()
-    count = gather(folder)
-    print(
-        f"{count} kernels for {sys.implementation.cache_tag}, {linker().target.name}: {folder}"
-    )
+def main() -> None:
+    """Fill the folder that a wheel takes kernels from, and say with what."""
+    print(f"{gather()} kernels for {sys.implementation.cache_tag}, {linker().target.name}")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()
