@@ -51,7 +51,8 @@ ABOUT_MM = (3.0, 2.0, 1.0)
 STRAIGHT_MM = 0.015  # ... within this: about a tick the head wavers by some um
 MET_MM = 1.0  # over this a contour's beginning and end are brought together
 LEFT_OUT_MM = 0.5  # left out beside the junction of a guide line: the head swivelled there
-FELT = 200  # positions, a third of a millimetre, show the heading there
+# the heading there is that of a parabola over so much of the contour; of a chord where half of it is missing
+FELT_MM = 1.0
 CORNER = math.radians(20)  # the contour turns by more where a guide line leaves at a corner
 NEAR = 0.05  # of the radius: a path that the arm meets further from its end is another path
 
@@ -97,8 +98,8 @@ class Cut:
 
 def _first_cut(line: Line, down_at: float | None) -> int:
     """The first position of a line that is cut: where the tool goes down, or the end of the lead line."""
-    if line.is_guide:
-        return math.ceil(down_at or 0)
+    if line.is_guide and down_at is not None:
+        return math.ceil(down_at)
     return (line.loop_from or 0) if line.is_lead else 0
 
 
@@ -127,18 +128,30 @@ def _places(line: Line, first: int) -> Array:
         low = LEFT_OUT_MM if k > 0 else 0.0
         high = lengths[-1] - (LEFT_OUT_MM if k < len(guides) else 0.0)
         part = part[(lengths >= low) & (lengths <= high)]
-        whole = np.vstack([whole, _bridge(whole, part), part]) if k else part
+        if len(part) < 2:
+            continue  # two guide lines leave at about one place: one bridge over both
+        whole = np.vstack([whole, _bridge(whole, part), part]) if len(whole) else part
     return whole
 
 
 def _bridge(before: Array, after: Array) -> Array:
     """A cubic from the end of some places (n, 2) mm to the beginning of others; nothing at a corner."""
-    arrives = before[-1] - before[max(0, len(before) - FELT)]
-    leaves = after[min(FELT, len(after)) - 1] - after[0]
-    headings = [math.atan2(way[1], way[0]) for way in (arrives, leaves)]
-    if abs(turn(*headings)) > CORNER:
+    arrives, leaves = _end_heading(before), _end_heading(after[::-1]) + math.pi
+    if abs(turn(arrives, leaves)) > CORNER:
         return np.empty((0, 2))
-    return hermite(before[-1], headings[0], after[0], headings[1])[1:-1]
+    return hermite(before[-1], arrives, after[0], leaves)[1:-1]
+
+
+def _end_heading(places_mm: Array) -> float:
+    """The heading at the last of some places (n, 2) mm, rad."""
+    from numpy.polynomial import polynomial
+
+    lengths = lengths_mm(places_mm)
+    away_mm = lengths - lengths[-1]
+    near = away_mm >= -FELT_MM
+    degree = 2 if away_mm[near][0] < -FELT_MM / 2 else 1
+    slope = polynomial.polyfit(away_mm[near], places_mm[near], degree)[1]
+    return math.atan2(slope[1], slope[0])
 
 
 def _closed(places_mm: Array) -> Array:

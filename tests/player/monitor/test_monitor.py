@@ -106,6 +106,13 @@ def test_a_warning_does_not_stop_and_comes_again_after_it_was_over() -> None:
     assert [fault.time_s for fault in watch.warnings] == [1.0, 5.0]
 
 
+def test_the_largest_share_of_a_limit_is_the_largest_error_over_the_limit() -> None:
+    """0.1 mm is allowed at rest: 0.02, 0.07 and 0.05 mm off are at most 70 % of it."""
+    watch = Monitor("x", 1.0, FollowingLimit.linear(tolerance_mm=0.1))
+    watch.watch(np.zeros((3, 1)), np.array([[0.02], [-0.07], [0.05]]))
+    assert watch.largest_share == pytest.approx([0.7])
+
+
 def test_two_axes_that_fail_at_once_are_both_told() -> None:
     watch = Monitor("xy", 1.0, stop=False)
     watch.watch(np.zeros((4, 2)), np.full((4, 2), 9.0))

@@ -73,7 +73,7 @@ def test_the_tool_goes_down_and_up(tmp_path: FilePath) -> None:
     assert played.positions_mm[:, 2].min() == pytest.approx(-1, abs=1 * UM)
 
 
-@given(SAMPLES, st.sampled_from([(16, 1), (32, 1), (64, 4), (16, 4), (256, 2)]))
+@given(SAMPLES, st.sampled_from([(2, 1), (16, 1), (32, 1), (64, 4), (16, 4), (256, 2)]))
 def test_ends_and_slopes_meet_to_the_digit(rows: list, steps: tuple[int, int]) -> None:  # type: ignore[type-arg]
     """Path continuous in slope across intervals, whatever the samples; and each sample met exactly."""
     from morfax.player.cubics.interpolator import ends, slopes
@@ -123,8 +123,9 @@ def test_what_cannot_be_recorded_is_refused(tmp_path: FilePath) -> None:
         record_cubics([], tmp_path / "a.cubic")
     with pytest.raises(ValueError, match="above zero"):
         record_cubics(SQUARE, tmp_path / "a.cubic", tolerance_mm=0)
-    with pytest.raises(ValueError, match="powers of two"):
-        differences(np.zeros((2, 3, 2), np.int64), 12)
+    for points, linear in [(12, 1), (1, 1), (0, 1), (16, 3)]:
+        with pytest.raises(ValueError, match="powers of two"):
+            differences(np.zeros((2, 3, 2), np.int64), points, linear)
     assert not list(tmp_path.iterdir())
 
 

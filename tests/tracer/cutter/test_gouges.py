@@ -24,5 +24,6 @@ def test_a_cutter_nearer_than_its_radius_is_refused(too_near_mm: float) -> None:
     near = Nearest([LINE], 3.0)
     refuse_gouges(iter(beside(3.0, -1.0)), near, 6.0)
     refuse_gouges(iter(beside(3.0 - too_near_mm, 2.0)), near, 6.0)  # above the work
+    refuse_gouges(iter(beside(3.0 - too_near_mm, 0.01)), near, 6.0)  # and hardly above it
     with pytest.raises(MotionFault, match="would cut into the part at"):
         refuse_gouges(iter(beside(3.0 - too_near_mm, -1.0)), near, 6.0)

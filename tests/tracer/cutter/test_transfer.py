@@ -142,6 +142,17 @@ def test_the_tool_goes_down_at_the_tick_if_it_is_clear_there_and_else_on_the_way
     assert in_work(positions)[0] == pytest.approx((down, 4), abs=2 * SAMPLE_MM)
 
 
+def test_a_hole_on_the_lead_line_beyond_the_way_is_drilled_where_it_was_drawn() -> None:
+    """The lead line crosses the way at 8 mm, 1 mm before the hole: the tool goes on to the contour first."""
+    line = marked()
+    hole = Mark("dot", (9.0, 4.0), float(at(WAY[:FROM], (9, 4))))
+    positions, stops, _ = beside(replace(line, marks=(hole, *line.marks[1:])), "outside")
+    assert stops[1].kind == "dot"
+    assert stops[1].place_mm == pytest.approx((9, 4), abs=2 * SAMPLE_MM)
+    beyond = (np.abs(positions[:, 1] - 4) < UM) & (positions[:, 0] > 9.9)
+    assert np.any(beyond & (positions[:, 0] < 10.1))
+
+
 @pytest.mark.parametrize("side", ["outside", "inside"])
 def test_a_guide_line_is_run_raised_as_drawn_and_its_hole_is_where_it_was_drawn(
     side: CutterSide,
