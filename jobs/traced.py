@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
 from morfax.jobs import trace_figures, zero
+from morfax.jobs.hollow_lines import HollowLines
 from morfax.jobs.zero import ZeroOnSheet
 from morfax.motion.faults import MotionFault
 
@@ -31,6 +32,7 @@ MARKED = 30  # of the places that the head left out, the longest are marked in t
 PALE_MARKED = 10  # of the pale lines: a plan has many
 REACHED_MM = 0.0125  # half a step of a plotter: so far below 0 a place is written as 0
 SHEET = ZeroOnSheet("sheet")
+NOT_HOLLOW = HollowLines()
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,7 @@ class Traced:
     cutter: Cutter | None = None
     left: Left | None = None  # by the cutter
     led: WhoLed | None = None  # who led the head along the lines
+    hollow: HollowLines = NOT_HOLLOW  # lines that may be two
     on_edges: bool = False  # of filled shapes, which have no line's width
 
     @property
@@ -82,6 +85,7 @@ class Traced:
             stops_mm |= {f"pale {k}": (x, y) for k, (x, y, _) in enumerate(pale, 1)}
         beside = enumerate(self.trace.unexplained[:MARKED], 1)
         stops_mm |= {f"unexplained {k}": place.place_mm for k, place in beside}
+        stops_mm |= self.hollow.marked_mm
         if self.left is None:
             return stops_mm
         lines_mm = {
@@ -133,6 +137,7 @@ class Traced:
             "reference_place_mm": trace.reference_mm,
             **self._figures_of_lines(),
             "unexplained": trace_figures.unexplained(trace) or None,
+            **self.hollow.figures(),
             "leads": trace_figures.leads(trace) or None,
             "stops": trace_figures.stops(trace) or None,
             "tabs": trace_figures.tabs(trace) or None,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from morfax.jobs import correction_settings
 from morfax.jobs.contour_remarks import of_around, of_contouring, of_order
 from morfax.jobs.depths import of_tabs
+from morfax.jobs.hollow_lines import HollowLines
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.remarks_on_edges import of_picture_edge
 from morfax.jobs.skips import gap_across_skips
@@ -75,8 +76,8 @@ class Tracing:
         # 1. the head follows
         listener.compiling("the head", ("motion", "tracer", "recorder"))
         followed = self._followed(drawing, listener)
-        led = WhoLed.along(followed)
-        for text in self._remarks(drawing, followed, led):
+        led, hollow = WhoLed.along(followed), HollowLines.along(drawing, followed)
+        for text in (*self._remarks(drawing, followed, led), *hollow.remarks()):
             listener.warning(text)
         # 2. the zero of the program
         zero = ZeroOnSheet.of(self.settings, drawing, followed)
@@ -90,7 +91,7 @@ class Tracing:
             listener.warning(text)
         several = self.settings.line.are_several
         on_edges = bool(drawing.edges_mm) or (drawing.both and followed.ink is None)
-        return Traced(beside, thin(beside), several, zero, cutter, left, led, on_edges)
+        return Traced(beside, thin(beside), several, zero, cutter, left, led, hollow, on_edges)
 
     def _remarks(self, drawing: Drawing, followed: Trace, led: WhoLed | None) -> Iterator[str]:
         """What is to be said of the way that the head has gone."""

@@ -132,7 +132,7 @@ def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
         points, headings = _places(run, TOUCH_MM)
         if not len(points):
             continue  # a hole
-        both = _profile(drawing, points, headings, np.array([radius_mm, -radius_mm]))
+        both = darkness_across(drawing, points, headings, np.array([radius_mm, -radius_mm]))
         left, right = both.mean(axis=0)
         arm_mm = radius_mm if left >= right else -radius_mm
         edge = points + arm_mm * np.column_stack([-np.sin(headings), np.cos(headings)])
@@ -158,7 +158,7 @@ def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
     return points, np.arctan2(way[:, 1], way[:, 0])
 
 
-def _profile(drawing: Drawing, points: Array, headings: Array, across: Array) -> Array:
+def darkness_across(drawing: Drawing, points: Array, headings: Array, across: Array) -> Array:
     """Darkness (places, across) at distances to the left of a path."""
     x = points[:, :1] - np.sin(headings)[:, None] * across
     y = points[:, 1:] + np.cos(headings)[:, None] * across
@@ -194,7 +194,7 @@ def _edges(
     step = 0.25 * drawing.pitch_mm
     count = int(np.ceil(reach_mm / step))
     across = np.arange(-count, count + 1, dtype=float) * step
-    seen = _profile(drawing, points, headings, across)
+    seen = darkness_across(drawing, points, headings, across)
     near = np.abs(across) <= 0.5 * reach_mm
     peak_at = np.argmax(np.where(near, seen - 1e-3 * np.abs(across), -1.0), axis=1)
     level = 0.5 * np.take_along_axis(seen, peak_at[:, None], 1)

@@ -3,9 +3,8 @@
 Signals: darkness (0 paper, 1 ink) on pixels in; standard deviations of darkness, softness and width (pixels,
 mm) out.
 
-Some rows and columns of the sheet are searched for ink. Profiles are taken across the ink, square to its
-edges; those with paper on both sides count. A pen of width w and darkness a, seen through a lens of softness
-s (standard deviation of its spot), leaves a profile D(u) with
+Profiles are taken across single lines (see `profiles`). A pen of width w and darkness a, seen through a lens
+of softness s (standard deviation of its spot), leaves a profile D(u) with
 
     ∫ D du  = a · w                                                      whatever the softness
     D(0)    = a · erf(w / (√8 s))
@@ -29,30 +28,26 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
 from morfax.motion.median import median, percentile
-from morfax.tracer.drawing.between import between
-from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.paper import ROBUST
 from morfax.tracer.drawing.paper_noise import PAPER, of_sheet
-from morfax.tracer.drawing.tiles import Kept, Tiles
+from morfax.tracer.drawing.profiles import (
+    FEWEST_PROFILES,
+    INK,
+    STEP_PX,
+    Profiles,
+    middle_of,
+    profiles_of,
+    seen_at,
+)
+from morfax.tracer.drawing.tiles import Kept
 
-INK = 0.5  # darker is ink
-SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
-MOST_PROFILES = 1000  # their median is 25 times as certain as one profile
-FEWEST_PROFILES = 20  # fewer tell nothing: there is hardly a line
-STEP_PX = 0.5  # between the samples of a profile: edges are no sharper than a pixel
-BESIDE_PX = 6.0  # of paper to each side of a profile, and half a width of the line
-SLOPE_PX = 1.5  # to both sides of an edge, for its direction
-# darkness per pixel: where many are flatter at both edges, they are lines of a pixel that no lens has
-# softened, beyond which both places lie on paper; they are nearer there. A soft line of that width has 0.3
-FLAT, THIN_PX = 0.1, 0.75
-# of all places: the rows that meet a sloping line of hard pixels are so and the columns are not, or the other
-# way about (0.45 to 0.63 of all); on other scans 0.12 at most
-HARD_SHARE = 0.25
-OBLIQUE = 0.5  # cosine: a row or column that meets a line flatter than 60 degrees is left out
-GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
 RIGHT_ON_IT = 25.0  # percentile of how wide lines look: there a pixel lies right on the line
+# of the grain is left in profiles that are put over each other, or more: pencils of 10 to 45 % grain have 0.6
+# to 1.1 of it, two lines beside each other 0.15 to 0.3
+LEFT_OF_GRAIN = 0.5
+ASIDE_PX = 1.5  # to both sides profiles are put, as a line bends and its pixels lie
+LEAST_AHEAD_PX = 4.0  # a lens leaves nothing alike of two places so far apart
 OUTLIERS = 3.0  # robust standard deviations
 # darkness, softness and width settle to 1 % where a line is three times as wide as soft
 ROUNDS = 20
@@ -77,20 +72,10 @@ class Noise:
     width_mm: float
 
 
-class _Profiles(NamedTuple):
-    """Profiles across lines: darkness (n, k) at distances (k,) px from their middles, the middles (n, 2) row
-    and column, and the unit vectors (n, 2) across."""
-
-    seen: Array
-    at_px: Array
-    middles: Array
-    across: Array
-
-
 def measured(darkness: Kept, pitch_mm: float, paper: float | None = None) -> Noise:
     """The noise of a drawing of darkness 0..1 on pixels of a pitch; `paper` is its paper's, where known."""
     paper = of_sheet(darkness) if paper is None else paper
-    profiles = _profiles(darkness)
+    profiles = profiles_of(darkness)
     if profiles is None:
         return Noise(paper, math.nan, math.nan, math.nan, math.nan, math.nan)
     ink, grain = _ink(darkness, profiles)
@@ -114,25 +99,50 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
     """How even the ink of single lines is, and how wide they are; `paper` as `measured` has it.
 
     Other than `Noise.grain` it does not grow where lines of several pens differ: the ink is held against the
-    ink of the same line a width farther on. NaN without any line.
+    ink of the same line a width farther on. Nor does it grow where two lines run beside each other, though a
+    place is pale between them and dark on one of them: whole profiles are held against each other, too. NaN
+    without any line.
     """
-    profiles = _profiles(darkness)
+    profiles = profiles_of(darkness)
     if profiles is None:
         return Within(math.nan, math.nan, math.nan)
     paper = of_sheet(darkness) if paper is None else paper
-    middle = np.maximum(_middle(profiles), PAPER)
+    middle = np.maximum(middle_of(profiles), PAPER)
     looks_px = STEP_PX * profiles.seen.sum(axis=1) / middle
     seen_px = percentile(looks_px, RIGHT_ON_IT)
     width_px = _pen(profiles, paper, _ink(darkness, profiles)[0])[1]
     along = profiles.across[:, ::-1] * [1, -1]
-    here = _seen(darkness, profiles.middles.T)
-    there = _seen(darkness, (profiles.middles + width_px * along).T)
+    here = seen_at(darkness, profiles.middles.T)
+    there = seen_at(darkness, (profiles.middles + width_px * along).T)
     on_line = there > PAPER * median(here)
     if np.count_nonzero(on_line) < FEWEST_PROFILES:
         return Within(math.nan, width_px, seen_px)
     differ = _spread((there - here)[on_line]) / math.sqrt(2)
-    grain = math.sqrt(max(differ**2 - INTERPOLATED_NOISE * paper**2, 0.0))
-    return Within(grain, width_px, seen_px)
+    profiles_differ = _along(darkness, profiles)
+    grain, of_profiles = (
+        math.sqrt(max(some**2 - INTERPOLATED_NOISE * paper**2, 0.0))
+        for some in (differ, profiles_differ)
+    )
+    return Within(min(grain, of_profiles / LEFT_OF_GRAIN), width_px, seen_px)
+
+
+def _along(darkness: Kept, profiles: Profiles) -> float:
+    """By how much a profile differs from that of its line a width farther on, put over it: RMS, median."""
+    # 1. the profile's ink, and a wider stretch farther on
+    ahead_px = max(profiles.width_px, LEAST_AHEAD_PX)
+    along = ahead_px * profiles.across[:, ::-1] * [1, -1]
+    reach = round(ASIDE_PX / STEP_PX)
+    count = 2 * math.ceil(0.5 * profiles.width_px / STEP_PX) + 1
+    at_px = STEP_PX * (np.arange(count + 2 * reach) - (count + 2 * reach - 1) / 2)
+    across = profiles.across[:, :, None] * at_px
+    here = seen_at(darkness, profiles.middles[:, :, None] + across)[:, reach : reach + count]
+    there = seen_at(darkness, (profiles.middles + along)[:, :, None] + across)
+    # 2. put over each other as they fit best, where the line goes on
+    apart = np.array(
+        [np.mean((there[:, k : k + count] - here) ** 2, axis=1) for k in range(2 * reach + 1)]
+    )
+    on_line = there.max(axis=1) > INK * median(here.max(axis=1))
+    return math.sqrt(median(apart.min(axis=0)[on_line]) / 2) if on_line.any() else 0.0
 
 
 def _spread(values: NDArray[Any]) -> float:
@@ -142,106 +152,7 @@ def _spread(values: NDArray[Any]) -> float:
     return float(np.std(near, dtype=float))
 
 
-# the profiles
-
-
-def _profiles(darkness: Kept) -> _Profiles | None:
-    """Profiles across the lines; None if there are too few."""
-    crossings = [_runs(darkness, across) for across in (False, True)]
-    places = np.vstack(
-        [crossings[0], crossings[1][:, ::-1, :]]
-    )  # (n, row or column, begin or end)
-    places = places[_even(len(places))]
-    if len(places) < FEWEST_PROFILES:
-        return None
-    # 1. square to the edges that the row or column has met
-    ends = [_slope(darkness, places[:, :, k]) for k in (0, 1)]
-    thin = np.hypot(*(ends[0] - ends[1]).T) < FLAT
-    if np.mean(thin) > HARD_SHARE:
-        for k in (0, 1):
-            ends[k][thin] = _slope(darkness, places[thin, :, k], THIN_PX)
-    across = ends[0] - ends[1]
-    across /= np.maximum(np.hypot(*across.T), 1e-9)[:, None]
-    met = places[:, :, 1] - places[:, :, 0]
-    length_px = np.hypot(*met.T)
-    facing = np.abs(np.sum(met * across, axis=1)) / length_px
-    # 2. as long as the usual width asks for
-    widths_px = length_px * facing
-    steep = facing > OBLIQUE
-    if np.count_nonzero(steep) < FEWEST_PROFILES:
-        return None
-    half_px = median(widths_px[steep]) + BESIDE_PX
-    at_px = np.arange(-half_px, half_px, STEP_PX)
-    # a place anywhere between two pixels of the line, not always on a row: so noise is averaged alike
-    share = np.arange(len(places)) * GOLDEN % 1.0 - 0.5
-    middles = places.mean(axis=2) + share[:, None] * across[:, ::-1] * [1, -1]
-    seen = _seen(darkness, middles[:, :, None] + across[:, :, None] * at_px)
-    # 3. with one line in the middle and paper beside it
-    outside = np.abs(at_px) > 0.75 * half_px
-    alone = np.all(_smooth(seen)[:, outside] < PAPER, axis=1) & (seen[:, len(at_px) // 2] > INK)
-    good = steep & alone
-    if np.count_nonzero(good) < FEWEST_PROFILES:
-        return None
-    found = _Profiles(seen[good], at_px, middles[good], across[good])
-    # of a pattern or a damaged picture: what is dark in them is not in their middle
-    is_line = median(_middle(found)) > 0 and median(seen[good].sum(axis=1)) > 0
-    return found if is_line else None
-
-
-def _runs(darkness: Kept, across: bool) -> Array:
-    """Runs of ink in some of the rows, (n, 2, 2): row and column of their first and last edges; or in some of
-    the columns, which then stand for rows.
-    """
-    every = max(1, darkness.size // SEARCHED)
-    long, wide = darkness.shape[::-1] if across else darkness.shape
-    some, inner = slice(every // 2, long, every), slice(1, wide - 1)
-    lines = _part(darkness, inner, some).T if across else _part(darkness, some, inner)
-    row, begin, end = runs_in(lines, INK)
-    rows = np.arange(every // 2, long, every)
-    edges = [np.column_stack([rows[row], at + 0.5]) for at in (begin, end)]
-    return np.stack(edges, axis=2)
-
-
-def _part(darkness: Kept, rows: slice, columns: slice) -> Any:
-    """Some rows and columns of the sheet, a step apart."""
-    if not isinstance(darkness, Tiles):
-        return darkness[rows, columns]
-    down, along = (
-        np.arange(*part.indices(side))
-        for part, side in zip((rows, columns), darkness.shape, strict=True)
-    )
-    return darkness.at(*np.ix_(down, along))
-
-
-def _even(count: int) -> NDArray[np.int64]:
-    """Numbers of at most `MOST_PROFILES` of so many, all over them."""
-    numbers = np.linspace(0, max(count - 1, 0), min(count, MOST_PROFILES)).astype(int)
-    return numbers[np.diff(numbers, prepend=-1) > 0]
-
-
-def _slope(darkness: Kept, places: Array, reach_px: float = SLOPE_PX) -> Array:
-    """How much darker it gets per pixel down and to the right at places (n, 2), felt so far to both sides."""
-    sides = reach_px * np.eye(2)
-    steps = [_seen(darkness, (places + d).T) - _seen(darkness, (places - d).T) for d in sides]
-    return np.column_stack(steps) / (2 * reach_px)
-
-
-def _seen(darkness: Kept, places: Array) -> Array:
-    """Darkness between pixels: places (2, n) or (n, 2, k), rows and columns."""
-    return between(darkness, *np.moveaxis(places, -2, 0), edge_goes_on=True)
-
-
-def _smooth(seen: Array) -> Array:
-    """Profiles averaged over two pixels: noise is no ink beside the line."""
-    kernel = round(2 / STEP_PX)
-    sums = np.cumsum(np.pad(seen, ((0, 0), (kernel, 0)), mode="edge"), axis=1)
-    return (sums[:, kernel:] - sums[:, :-kernel]) / kernel
-
-
-# what they say
-
-
-def _ink(darkness: Kept, profiles: _Profiles) -> tuple[float, float]:
+def _ink(darkness: Kept, profiles: Profiles) -> tuple[float, float]:
     """Standard deviations of the ink: from pixel to pixel, and along the lines beyond that."""
     # 1. neighbouring pixels along the line differ by the noise of two
     pixel = np.round(profiles.middles).astype(int)
@@ -250,24 +161,16 @@ def _ink(darkness: Kept, profiles: _Profiles) -> tuple[float, float]:
     here, there = darkness[tuple(pixel.T)], darkness[tuple(neighbour.T)]
     ink = _spread((here - there).astype(float)) / math.sqrt(2)
     # 2. the middles of the lines, all over the sheet, differ by the grain and by what interpolation leaves
-    middle = _middle(profiles)
+    middle = middle_of(profiles)
     grain = math.sqrt(max(_spread(middle) ** 2 - INTERPOLATED_NOISE * ink**2, 0.0))
     return ink, grain
 
 
-def _middle(profiles: _Profiles) -> Array:
-    """Darkness in the middle of each profile's own ink, (n,)."""
-    dark = np.maximum(profiles.seen, 0.0)
-    middle_px = dark @ profiles.at_px / dark.sum(axis=1)
-    index = np.round((middle_px - profiles.at_px[0]) / STEP_PX).astype(int)
-    return np.asarray(profiles.seen[np.arange(len(index)), index])
-
-
-def _pen(profiles: _Profiles, paper: float, ink: float) -> tuple[float, float]:
+def _pen(profiles: Profiles, paper: float, ink: float) -> tuple[float, float]:
     """Softness and width, pixels."""
     seen, span_px = profiles.seen, STEP_PX * len(profiles.at_px)
     area, square = STEP_PX * seen.sum(axis=1), STEP_PX * (seen**2).sum(axis=1)
-    peak = median(_middle(profiles))
+    peak = median(middle_of(profiles))
     area_px, darkness = median(area), peak
     softness_px = width_px = 0.0
     for _ in range(ROUNDS):

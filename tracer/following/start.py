@@ -190,6 +190,6 @@ def _nowhere_clean(width_mm: float, is_solid: bool, told_width_mm: float | None)
     edge = "follow the edges of a filled shape with --edge, " if is_solid else ""
     give = "give" if told_width_mm is None else "give another"
     return LineFault(
-        f"no clean stretch of line {width_mm:.2f} mm wide to start on; {edge}{give} --line-width,"
-        " or --start X,Y at a plain stretch"
+        f"no clean stretch of line {width_mm:.2f} mm wide to start on; {edge}follow all the ink with --lines "
+        f"all, {give} --line-width, or --start X,Y at a plain stretch"
     )

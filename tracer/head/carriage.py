@@ -25,7 +25,7 @@ from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tune, tuned_along
 from morfax.tracer.head.slow_cell import Stretch
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import Home, Mark, at_rest
+from morfax.tracer.head.state import Home, Mark, at_rest, put_on_drum
 from morfax.tracer.head.trail import Marks, Trail
 from morfax.tracer.sensing.leg import Leg, heading_of, turn
 from morfax.tracer.sensing.view import View
@@ -272,8 +272,7 @@ class Carriage:
         s.guard_left = s.guard_right = 0.0
         s.guard_ahead = s.ink = s.swept_ink = 1.0
         mount.begin_sweep(s)
-        s.drum_mm[: len(felt)] = felt
-        s.places = len(felt)
+        put_on_drum(s, felt)
 
     def retune(self, view: View) -> None:
         """Tune the moving head to the line as it is seen now."""

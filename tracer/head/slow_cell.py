@@ -29,7 +29,7 @@ from morfax.motion.median import median
 from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
 from morfax.tracer.head.settings import LEAD_SWEEPS, TIGHTEST_RAD
-from morfax.tracer.head.state import HOME, MORE, Home, Tuning
+from morfax.tracer.head.state import HOME, MORE, Home, Tuning, put_on_drum
 from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.parabola import ROBUST
 from morfax.tracer.sensing.photocell import Cells
@@ -196,8 +196,7 @@ def _on_felt(state: Any, t: Tuning, way: Array) -> Any:
     c, s = math.cos(state.heading_rad), math.sin(state.heading_rad)
     x, y = felt[-1] - (state.x_mm, state.y_mm)
     state.lead_mm, state.middle_mm = t.lead_mm, y * c - x * s
-    state.drum_mm[: len(felt)] = felt
-    state.places = len(felt)
+    put_on_drum(state, felt)
     mount.begin_sweep(state)
     return state
 

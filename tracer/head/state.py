@@ -122,3 +122,12 @@ def at_rest(place_mm: Array, lead_mm: float) -> Any:
     state.lead_mm = lead_mm
     state.ink = state.swept_ink = 1.0
     return state
+
+
+def put_on_drum(state: Any, places_mm: Array) -> None:
+    """Fill the drum with places of the line (n, 2) mm, in their order; with the last of them, if it remembers
+    fewer.
+    """
+    kept = places_mm[-DRUM:]
+    state.drum_mm[: len(kept)] = kept
+    state.places = len(kept)

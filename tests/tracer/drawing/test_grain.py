@@ -19,6 +19,7 @@ from morfax.tracer.drawing.noise import within
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
 from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import DPI, UM, Points, arc, inked, polyline, together
 
 PITCH_MM = MM_PER_INCH / DPI
@@ -79,6 +80,25 @@ def test_the_slit_takes_grain_away_and_leaves_the_paper() -> None:
     assert within(seen).grain < 0.5 * before
     assert np.abs(seen[150:220, 150:220]).max() < 0.3  # paper inside of the circle
     assert darkness[150:220, 150:220].max() > 0.3
+
+
+@pytest.mark.parametrize(("dpi", "apart"), [(120.0, 2.0), (150.0, 1.75), (200.0, 2.0)])
+def test_two_clean_lines_beside_each_other_have_no_grain(dpi: float, apart: float) -> None:
+    """A place between them is pale, and one farther on dark, where pixels lie otherwise on them: they would
+    be averaged into one line. Both are followed, within a tenth of a pixel (RMS).
+    """
+    radii_mm = 20.0, 20.0 - apart * 0.5
+    rings = [arc((26.0, 26.0), radius_mm) for radius_mm in radii_mm]
+    levels = 235 - BLACK_LEVELS * inked(*rings, dpi=dpi, seed=1).darkness
+    grey = np.clip(np.round(levels), 0, 255).astype(np.uint8)
+    drawing = Drawing.of(Scan(Path("made.png"), grey, Stated((dpi, dpi))), Scale())
+    assert not any("grain" in note for note in drawing.notes)
+    lines = trace_ink(drawing).lines
+    assert sorted(line.ending for line in lines) == ["closed", "closed"]
+    for line in lines:
+        out_mm = np.hypot(*(line.xy_mm - 26.0).T)
+        off_mm = out_mm - min(radii_mm, key=lambda r, out=out_mm: abs(out[0] - r))
+        assert np.sqrt(np.mean(off_mm**2)) < 0.1 * MM_PER_INCH / dpi
 
 
 def test_clean_ink_and_lines_of_several_pens_have_no_grain() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -16,6 +17,7 @@ from morfax.tracer.following.start import put_down
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.sensing.leg import Leg
 from tests.tracer.inked import UM, WIDTH_MM, arc, corner, dot, inked, polyline
 
@@ -184,3 +186,15 @@ def test_the_trail_knows_what_has_been_followed_in_either_sense_but_not_the_newe
     assert trail.holds(leg((3, 0.05), (2.9, 0.05), (2.8, 0.05), (2.7, 0.05)), WIDTH_MM)
     assert not trail.holds(leg((2, 0.4), (2.1, 0.4), (2.2, 0.4), (2.3, 0.4)), WIDTH_MM)
     assert not trail.holds(leg((9, 0), (9.1, 0), (9.2, 0), (9.3, 0)), WIDTH_MM)
+
+
+def test_where_nothing_is_clean_the_way_that_the_message_advises_follows_the_lines() -> None:
+    """Two lines whose ink the scan joins here and there: alone neither shows a clean stretch."""
+    across_mm = np.array([-12.0, 54.0]) / math.hypot(12, 54)
+    way = polyline((8, 20), (62, 32))
+    drawing = inked(way, way + 0.88 * across_mm, dpi=150, seed=1)
+    drawing = Drawing(cv2.GaussianBlur(drawing.darkness, (0, 0), 0.7), drawing.pitch_mm)
+    with pytest.raises(LineFault, match=r"no clean stretch .* with --lines all, give --line"):
+        next(put_down(drawing))
+    ends = sorted(len(line.xy_mm) > 1 and line.length_mm for line in trace_ink(drawing).lines)
+    assert ends == pytest.approx([math.hypot(12, 54)] * 2, abs=0.5)

@@ -35,7 +35,7 @@ from morfax.tracer.head.slow_cell import (
     slowly,
     wide_mm,
 )
-from morfax.tracer.head.state import Home
+from morfax.tracer.head.state import DRUM, Home, put_on_drum
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked
 
@@ -100,6 +100,16 @@ def test_a_cell_that_has_lost_the_line_begins_on_what_was_felt(head: Follower) -
     tuning = slowly(carriage.tuning, WIDTH_MM, narrow_mm(carriage.tuning, way.way))
     went = along(head.view.cells, state, tuning, NEVER_HOME, way)
     assert went is not None and went.felt_mm == pytest.approx(tuning.lead_mm - tuning.point_mm)
+
+
+def test_a_drum_that_is_filled_with_too_much_remembers_the_last_of_it(head: Follower) -> None:
+    """A broad line is felt for more places than the drum has: 5 mm broad it was a traceback."""
+    state = head.carriage.state.copy()
+    places = np.column_stack([np.arange(DRUM + 31.0), np.zeros(DRUM + 31)])
+    put_on_drum(state, places[:9])
+    assert state.places == 9 and np.array_equal(state.drum_mm[:9], places[:9])
+    put_on_drum(state, places)
+    assert state.places == DRUM and np.array_equal(state.drum_mm, places[31:])
 
 
 def test_the_mount_slides_out_again_without_a_gap_in_the_drum(head: Follower) -> None:

@@ -1,0 +1,74 @@
+"""Hollow lines: traced lines that may be two, since their ink is paler in its middle than at its sides.
+
+Signals in: the drawing, and the lines as the head followed them. Signals out: figures, a remark, and the
+places that a picture marks.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from morfax.tracer.drawing.drawing import Drawing
+    from morfax.tracer.drawing.hollow import Hollow
+    from morfax.tracer.program.program import Trace
+
+MM_PER_INCH, DPI_STEP = 25.4, 50
+FINER = 2  # times the resolution shows a gap that this one hardly shows
+
+
+@dataclass(frozen=True, slots=True)
+class HollowLines:
+    """The hollow stretches of lines by the lines' numbers, and a resolution that may part them, dpi."""
+
+    of_lines: tuple[tuple[int, Hollow], ...] = ()
+    wants_dpi: int = 0
+
+    @classmethod
+    def along(cls, drawing: Drawing, trace: Trace) -> HollowLines:
+        """The hollow lines among those that the head followed; edges are none."""
+        from morfax.tracer.drawing.hollow import hollow
+
+        found = [
+            (line.number, there)
+            for line in trace.lines
+            if not line.on_edge and not drawing.edges_mm and not line.is_dot
+            if (there := hollow(drawing, line.xy_mm, line.width_mm)) is not None
+        ]
+        scanned_dpi = MM_PER_INCH / (drawing.pitch_mm * drawing.finer)
+        return cls(tuple(found), DPI_STEP * math.ceil(FINER * scanned_dpi / DPI_STEP))
+
+    def figures(self) -> dict[str, Any]:
+        """Each line's hollow length, where the longest stretch is, and how far its dark rows are apart."""
+        rows = [
+            {
+                "of_line": number,
+                "hollow_place_mm": there.place_mm,
+                "hollow_mm": there.length_mm,
+                "dark_rows_apart_mm": there.apart_mm,
+            }
+            for number, there in self.of_lines
+        ]
+        return {"hollow_lines": rows or None}
+
+    def remarks(self) -> Iterator[str]:
+        """That lines may be two, of which the path follows neither."""
+        if not self.of_lines:
+            return
+        number, worst = max(self.of_lines, key=lambda row: row[1].length_mm)
+        (x, y), others = worst.place_mm, len(self.of_lines) - 1
+        more = f", and so {'is' if others == 1 else 'are'} {others} more" if others else ""
+        yield (
+            f"line {number} is paler in its middle than at its sides along {worst.length_mm:.0f} mm, about "
+            f"{x:.1f},{y:.1f} mm{more}: if two lines {worst.apart_mm:.2g} mm apart are drawn there, the path "
+            f"runs between them; scan at {self.wants_dpi} dpi or more to part them; if the pen has left the "
+            "middle paler, the path is right"
+        )
+
+    @property
+    def marked_mm(self) -> dict[str, tuple[float, float]]:
+        """The places that a picture marks, by name."""
+        return {f"pale middle {k}": row[1].place_mm for k, row in enumerate(self.of_lines, 1)}
