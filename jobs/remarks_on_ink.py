@@ -205,9 +205,13 @@ def _of_others(trace: Trace) -> Iterator[str]:
     """Further lines of the sheet, where one was traced and nobody said which."""
     others = trace.others
     if others.lines:
-        lines = "1 other line" if others.lines == 1 else f"{others.lines} other lines"
-        inside = f", {others.inside} of them inside it" if others.inside else ""
+        one = others.lines == 1
+        lines = "1 other line" if one else f"{others.lines} other lines, the longest"
+        longer = ", longer than this one" if others.longest_mm > trace.length_mm else ""
+        are = "inside it" if one else f"{others.inside} of them inside it"
+        inside = f", {are}" if others.inside else ""
         yield (
-            f"one line is traced; the sheet has {lines}{inside}: --lines contours cuts a part with its holes,"
-            " holes first, --lines all traces every stretch of line, and `morfax lines` lists them"
+            f"one line of {trace.length_mm:.0f} mm is traced; the sheet has {lines} of "
+            f"{others.longest_mm:.0f} mm{longer}{inside}: --lines contours cuts a part with its holes, "
+            "holes first, --lines all traces every stretch of line, and `morfax lines` lists them"
         )

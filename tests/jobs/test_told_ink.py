@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.listener import Silent
+from morfax.jobs.remarks_on_ink import of_ink
 from morfax.jobs.settings import TraceSettings
 from morfax.jobs.tracing import Tracing
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.program.selection import Others
+from morfax.tracer.program.trace import trace
 from tests.tracer.drawing.test_skips import ring
 from tests.tracer.ink.test_pale import with_pale_bar
 from tests.tracer.inked import Points, inked, polyline
@@ -72,3 +78,23 @@ def test_a_line_without_one_of_its_corners_is_told() -> None:
     (said,), endings = open_where(LineSettings(), cornerless)
     assert endings == ["ended"] and "morfax correct --bridge" in said
     assert open_where(LineSettings(), cornerless[:-1]) == ([], ["ended"])
+
+
+@pytest.mark.parametrize(
+    ("others", "said"),
+    [
+        (Others(1, 0, 30.4), "the sheet has 1 other line of 30 mm: --lines"),
+        (Others(1, 0, 277.0), "1 other line of 277 mm, longer than this one: --lines"),
+        (
+            Others(3, 2, 277.0),
+            "3 other lines, the longest of 277 mm, longer than this one, 2 of them",
+        ),
+    ],
+)
+def test_a_plain_trace_tells_how_long_the_longest_other_line_is(
+    others: Others, said: str
+) -> None:
+    """A signature's underline was taken, 98 mm, and its strokes of 277 mm, which cross, were not."""
+    traced = trace(inked(polyline((5, 5), (55, 9)), seed=1))
+    (told,) = of_ink(replace(traced, others=others), several=False)
+    assert told.startswith("one line of 50 mm is traced; ") and said in told

@@ -105,10 +105,13 @@ def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
 
 
 class Others(NamedTuple):
-    """Further lines of a sheet beside the one that was followed, and how many of them lie inside that."""
+    """Further lines of a sheet beside the one that was followed, how many of them lie inside that, and how
+    long the longest is, mm.
+    """
 
     lines: int = 0
     inside: int = 0
+    longest_mm: float = 0.0
 
 
 NO_OTHERS = Others()
@@ -135,7 +138,9 @@ def others_than(sheet: Sheet, line: Line) -> Others:
     if line.reference_mm is not None:
         for number in np.flatnonzero(others):
             others[number] = not are_about(middles_mm[patch == number], [line.reference_mm])
-    return Others(int(np.count_nonzero(others)), _inside(sheet, np.flatnonzero(others), line))
+    patches = np.flatnonzero(others)
+    longest_mm = float(sheet.lengths_mm[patches].max(initial=0.0))
+    return Others(len(patches), _inside(sheet, patches, line), longest_mm)
 
 
 def _inside(sheet: Sheet, patches: NDArray[np.int64], line: Line) -> int:
