@@ -211,7 +211,7 @@ def _of_others(trace: Trace) -> Iterator[str]:
         are = "inside it" if one else f"{others.inside} of them inside it"
         inside = f", {are}" if others.inside else ""
         yield (
-            f"one line of {trace.length_mm:.0f} mm is traced; the sheet has {lines} of "
+            f"one line of {trace.length_mm:.0f} mm is traced; the sheet has {lines} of about "
             f"{others.longest_mm:.0f} mm{longer}{inside}: --lines contours cuts a part with its holes, "
             "holes first, --lines all traces every stretch of line, and `morfax lines` lists them"
         )
