@@ -35,6 +35,7 @@ from morfax.tracer.drawing.sharpening import APART_PX, Edge, sharpened
 from morfax.tracer.drawing.spacing import finer, too_near
 
 CLOSINGS = 4  # times that edges are looked for: what was closed may leave others too near
+EDGE_PX = 2.0  # of a pen that leaves one line at any angle
 EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close
 SOFT_PX = 0.7  # standard deviation: against the noise of the paper
 LEAST_MM = 2.0  # a shorter outline is a speck's
@@ -99,7 +100,7 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     times = finer(sharp, share.shape, pitch_mm)
     fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
     rows, columns = share.shape
-    darkness = pen_along(fine, (rows * times, columns * times), EDGE_MM / pitch_mm)
+    darkness = pen_along(fine, (rows * times, columns * times), max(EDGE_MM / pitch_mm, EDGE_PX))
     edges_mm = tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
     return Outlined(darkness, shade, times, edges_mm, notes)
 
