@@ -30,13 +30,13 @@ STEP_PER_MM = 10  # a gap is suggested in whole tenths of a mm
 
 
 def remarks(
-    trace: Trace, settings: TraceSettings, gap_mm: float, enlarged: int
+    trace: Trace, settings: TraceSettings, gap_mm: float, enlarged: float
 ) -> Iterator[str]:
     """Remarks on a trace, of a head that crossed gaps of up to `gap_mm`; some lines were `enlarged`."""
     if enlarged > 1:
         yield (
-            f"small outlines are traced at {enlarged} times the scale, so there the machine goes {enlarged} "
-            "times slower than the head"
+            f"small outlines are traced at {enlarged:g} times the scale, so there the machine goes "
+            f"{enlarged:g} times slower than the head"
         )
     yield from _of_stops(trace)
     yield from _of_turns(trace)

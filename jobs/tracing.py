@@ -99,7 +99,7 @@ class Tracing:
             is_all = self.settings.line.lines == "all"
             lines = None if is_all else followed.lines
             yield from correction_settings.not_served(drawing.corrected, lines)
-        times = max((drawing.times_at(line.xy_mm[0]) for line in followed.lines), default=1)
+        times = max((drawing.times_at(line.xy_mm[0]) for line in followed.lines), default=1.0)
         times = max(times, followed.enlarged)
         yield from followed.notes
         yield from remarks(followed, self.settings, self.of_head.gap_mm, times)

@@ -43,6 +43,9 @@ if TYPE_CHECKING:
     from morfax.tracer.flatten.flat import Flattening
 
 HALF = 0.5  # darkness from which a pixel is ink
+# of a scan of 300 dpi, for which the head's legs are made; a head that is slowed down more
+# than five times loses edges; by trial
+EDGE_PITCH_MM, SMALLEST = 0.0847, 0.2
 LEAST_RADIUS_MM, MOST_ENLARGED = 1.3, 4  # of an edge; by trial on round holes
 
 Darkness = NDArray[np.float32]
@@ -93,17 +96,21 @@ class Drawing:
     seen_px: float = math.inf
     paper_noise: float | None = None
 
-    def times_at(self, place_mm: NDArray[np.float64]) -> int:
+    def times_at(self, place_mm: NDArray[np.float64]) -> float:
         """How many times enlarged the head follows the edge nearest to a place; 1 on a drawing of lines.
 
-        A short edge bends more than the head can follow as it is.
+        A short edge bends more than the head can follow as it is. Where pixels are large, edges are followed
+        on a smaller scale: there the head's legs are as many pixels long as corners and tips ask for.
         """
         if not self.edges_mm:
-            return 1
+            return 1.0
         away_mm = [np.hypot(*(edge - place_mm).T).min() for edge in self.edges_mm]
         edge = self.edges_mm[int(np.argmin(away_mm))]
         radius_mm = float(np.hypot(*np.diff(edge, axis=0).T).sum()) / math.tau
-        return min(MOST_ENLARGED, max(1, math.ceil(LEAST_RADIUS_MM / radius_mm)))
+        if radius_mm < LEAST_RADIUS_MM:
+            return float(min(MOST_ENLARGED, math.ceil(LEAST_RADIUS_MM / radius_mm)))
+        as_fine = EDGE_PITCH_MM / (self.pitch_mm * self.finer)
+        return min(1.0, max(as_fine, LEAST_RADIUS_MM / radius_mm, SMALLEST))
 
     @property
     def told_turns(self) -> tuple[TurnAt, ...]:

@@ -100,7 +100,9 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     times = finer(sharp, share.shape, pitch_mm)
     fine = [(edge.outline + 0.5) * times - 0.5 for edge in sharp]
     rows, columns = share.shape
-    darkness = pen_along(fine, (rows * times, columns * times), max(EDGE_MM / pitch_mm, EDGE_PX))
+    darkness = pen_along(
+        fine, (rows * times, columns * times), max(EDGE_MM / pitch_mm, EDGE_PX)
+    )
     edges_mm = tuple(_mm(edge.outline, share.shape, pitch_mm) for edge in sharp)
     return Outlined(darkness, shade, times, edges_mm, notes)
 

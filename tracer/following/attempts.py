@@ -82,8 +82,9 @@ class Attempts:
         branch, before = self.branches.head(stance, wanted)
         follower = follower or branch
         if follower is None:
-            put_down = enlarged(stance, times)
-            follower = _kind(put_down)(put_down, self.settings, MOTION_RATE_HZ, wanted)
+            put_down, slower = enlarged(stance, times), min(times, 1.0)
+            head = replace(self.settings, speed_mm_s=slower * self.settings.speed_mm_s)
+            follower = _kind(put_down)(put_down, head, MOTION_RATE_HZ, wanted)
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
         run = follower.follow(times * self.longest_mm, reduced_told, keep, before)
         self.branches.ended(follower, run)

@@ -61,7 +61,7 @@ class Trace:
     ink: Balance | None = None
     unread: int = 0
     unexplained: tuple[Unexplained, ...] = ()
-    enlarged: int = 1
+    enlarged: float = 1.0
     notes: tuple[str, ...] = ()
     letters: tuple[int, ...] = ()
     letters_out: tuple[int, ...] = ()

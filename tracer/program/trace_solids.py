@@ -64,9 +64,9 @@ def with_outlines(trace: Trace, drawing: Drawing, left: InkLeft, settings: Setti
     )
 
 
-def _enlarged(edges: Drawing, outlines: Sequence[Line]) -> int:
+def _enlarged(edges: Drawing, outlines: Sequence[Line]) -> float:
     """How many times enlarged, at most, the head follows some outlines."""
-    return max((edges.times_at(line.xy_mm[0]) for line in outlines), default=1)
+    return max((edges.times_at(line.xy_mm[0]) for line in outlines), default=1.0)
 
 
 def _told(area: Area, outlines: Sequence[Line], beside_mm: float) -> Area:

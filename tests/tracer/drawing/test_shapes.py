@@ -122,6 +122,19 @@ def test_tips_of_36_degrees_are_sharp(tmp_path: Path, turned_deg: float) -> None
     assert nearest_um(run.xy_mm, star(turned_deg)).max() < 50  # asked: 80
 
 
+@pytest.mark.parametrize("times", [2, 6, 10])
+def test_the_same_pixels_of_a_larger_print_are_followed_as_well(
+    tmp_path: Path, times: int
+) -> None:
+    """At 150, 50 and 30 dpi the head follows on a smaller scale, and no faster on the sheet."""
+    file = filled(tmp_path / "stepped.png", STEPPED)
+    run = trace(Drawing.open(file, edge=True, dpi=DPI / times))
+    found = distance(thin(run), times * STEPPED)
+    assert run.ending == "closed" and found.path_to_reference.rms_mm < times * 5 * UM, found
+    assert found.hausdorff_mm < times * 30 * UM, found  # a third of a pixel, as at 300 dpi
+    assert run.length_mm / run.duration_s < 10
+
+
 def test_a_round_corner_stays_round(tmp_path: Path) -> None:
     """A round of 0.5 mm is six times as soft as the lens."""
     slot = shapely.box(10, 10, 26, 22).buffer(0.5, quad_segs=64)
