@@ -109,7 +109,7 @@ class Drawing:
         radius_mm = float(np.hypot(*np.diff(edge, axis=0).T).sum()) / math.tau
         if radius_mm < LEAST_RADIUS_MM:
             return float(min(MOST_ENLARGED, math.ceil(LEAST_RADIUS_MM / radius_mm)))
-        as_fine = EDGE_PITCH_MM / (self.pitch_mm * self.finer)
+        as_fine = EDGE_PITCH_MM / (self.pitch_mm * self.enlarged)
         return min(1.0, max(as_fine, LEAST_RADIUS_MM / radius_mm, SMALLEST))
 
     @property

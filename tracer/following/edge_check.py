@@ -22,11 +22,16 @@ from morfax.motion.polyline import lengths_mm, with_places
 from morfax.tracer.following.followed import Followed
 
 # a tip of 15 degrees that one of both has put back, and the other has left round, is as far off: six standard
-# deviations of a lens (see `drawing.lens`)
-OFF_MM = 0.5
+# deviations of a lens (see `drawing.lens`); of a lens as soft as a pixel, where pixels are large
+OFF_MM, OFF_PX = 0.5, 6.0
 LEFT_MM = 0.15  # where the run was so far off it had left the edge; further than the head cuts a corner
 EVERY_MM = 0.02  # between the places of an edge
 CHECKED = 8  # one position in 8 is checked: every 13 um at 10 mm/s
+
+
+def most_off_mm(pitch_mm: float) -> float:
+    """How far from the edges a run may be on pixels of a size, mm; beyond `OFF_MM` it is told."""
+    return max(OFF_MM, OFF_PX * pitch_mm)
 
 
 def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
@@ -35,10 +40,10 @@ def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
         return run
     lines = [with_places(edge, EVERY_MM) for edge in edges_mm]
     owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
-    positions = run.positions_mm[::CHECKED]
+    positions, most_mm = run.positions_mm[::CHECKED], most_off_mm(run.view.pitch_mm)
     # 1. every position lies on an edge
     away_mm, nearest = Neighbours(np.vstack(lines)).nearest(positions)
-    off = np.flatnonzero(away_mm > OFF_MM)
+    off = np.flatnonzero(away_mm > most_mm)
     if len(off):
         why = f"it goes {away_mm.max():.2f} mm away from the edge"
         left = np.flatnonzero(away_mm[: off[0]] < LEFT_MM)
@@ -48,7 +53,7 @@ def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
         own = lines[int(np.bincount(owner[nearest]).argmax())]
         missed_mm, passed = Neighbours(positions).nearest(own)
         worst = int(np.argmax(missed_mm))
-        if missed_mm[worst] > OFF_MM:
+        if missed_mm[worst] > most_mm:
             why = f"it passes some of the edge {missed_mm[worst]:.2f} mm away"
             return _lost(run, CHECKED * int(passed[worst]), why)
     return run

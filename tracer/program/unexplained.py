@@ -27,12 +27,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import lengths_mm, nearest_mm
+from morfax.motion.polyline import lengths_mm, nearest_mm, with_places
 from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import joined
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.sharpening import turned_at
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.edge_check import OFF_MM
+from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
@@ -45,6 +46,7 @@ BARE = 0.25  # darkness: paler places are paper
 PALE = 0.6
 TIP = np.radians(120.0)  # a corner that turns by more is a tip
 CUT_MM = 0.1  # ten times a corner's error
+EVERY_MM = 0.05  # between the places of an edge, as between those of a way
 # darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
 # less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
 ASTRAY = 0.2
@@ -78,6 +80,7 @@ def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
     sheet, gap_mm = setup.sheet, setup.settings.gap_mm
     found = [*_ink_beside(sheet, come_round, lines), *_bare_ways(sheet, closed, gap_mm)]
     found += _tips_cut(sheet.drawing.edges_mm, closed)
+    found += _off_edges(sheet.drawing, closed)
     found = found or list(_astray(sheet, closed))
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
@@ -138,6 +141,27 @@ def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Une
     for k in np.flatnonzero((away_mm > CUT_MM) & (away_mm < OFF_MM)):
         x, y = places[k]
         yield Unexplained((float(x), float(y)), float(away_mm[k]), True, is_tip=True)
+
+
+def _off_edges(drawing: Drawing, closed: Sequence[Line]) -> Iterator[Unexplained]:
+    """Where the ways and the edges of filled shapes are further apart than a fine scan allows."""
+    most_mm = most_off_mm(drawing.pitch_mm * drawing.enlarged)
+    if not drawing.edges_mm or most_mm <= OFF_MM:
+        return
+    ways = [line.places_mm for line in closed]
+    edges = [with_places(edge, EVERY_MM) for edge in drawing.edges_mm]
+    for lines, others in ((edges, ways), (ways, edges)):
+        for line in lines:
+            away_mm = nearest_mm(line, np.vstack(others))
+            if np.median(away_mm) > OFF_MM:
+                continue  # an edge that was not followed
+            off = np.diff(np.r_[False, away_mm > OFF_MM, False].astype(np.int8))
+            for begin, end in np.flatnonzero(off).reshape(-1, 2):
+                worst = int(begin + np.argmax(away_mm[begin:end]))
+                x, y = line[worst]
+                yield Unexplained(
+                    (float(x), float(y)), float(away_mm[worst]), True, is_tip=True
+                )
 
 
 def _stretches(

@@ -7,8 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.edge_check import OFF_MM, kept_to
 from morfax.tracer.following.followed import Followed
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.unexplained import _off_edges
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import Points, arc, polyline
@@ -55,22 +58,17 @@ def test_a_run_that_leaves_the_edge_is_lost_where_it_does() -> None:
     assert "edge lost at 20" in str(kept.fault) and "it goes 0.89 mm away" in str(kept.fault)
 
 
+def toothed(high_mm: float) -> Points:
+    """The square with a tooth 0.3 mm wide on its lower side, inwards."""
+    tooth = [(20, 10), (20, 10 + high_mm), (20.3, 10 + high_mm), (20.3, 10)]
+    return polyline((10, 10), *tooth, (30, 10), (30, 30), (10, 30), (10, 10))
+
+
 def test_a_closed_run_that_leaves_some_of_its_edge_out_is_lost() -> None:
     """A tooth 0.3 mm wide and 2 mm high is cut across: no place of the run is off the edge, but the tooth is
     missed.
     """
-    tooth = polyline(
-        (10, 10),
-        (20, 10),
-        (20, 12),
-        (20.3, 12),
-        (20.3, 10),
-        (30, 10),
-        (30, 30),
-        (10, 30),
-        (10, 10),
-    )
-    kept = kept_to((tooth, HOLE), along(SQUARE))
+    kept = kept_to((toothed(2.0), HOLE), along(SQUARE))
     assert kept.ending == "lost" and "it passes some of the edge 2.0" in str(kept.fault)
     assert 9.5 < kept.travel_mm < 10.8
 
@@ -79,3 +77,23 @@ def test_what_an_open_run_has_not_come_to_is_no_fault() -> None:
     run = along(SQUARE[:3], "ended")
     assert kept_to(EDGES, run) is run
     assert kept_to(EDGES, replace(run, ending="closed")).ending == "lost"
+
+
+@pytest.mark.parametrize("high_mm", [0.4, 1.2, 3.5])
+def test_where_pixels_are_large_a_tooth_that_is_passed_by_is_told_and_not_lost(
+    high_mm: float,
+) -> None:
+    """At 50 dpi six pixels are 3 mm: a lens that is as soft as a pixel may show that little of a tip."""
+    coarse = replace(VIEW, cells=VIEW.cells._replace(pitch_mm=0.5))
+    for edge, way in ((toothed(high_mm), SQUARE), (SQUARE, toothed(high_mm))):
+        run = replace(along(way), view=coarse)
+        kept = kept_to((edge,), run)
+        assert (kept is run) == (high_mm < 3)
+        drawing = Drawing(np.zeros((8, 8), np.float32), 0.5, edges_mm=(edge,))
+        told = list(_off_edges(drawing, [Line(run.positions_mm, "closed", 0.4, 80.0)]))
+        if high_mm < 0.5:
+            assert told == []
+        else:
+            (place,) = told
+            assert place.is_tip and place.length_mm == pytest.approx(high_mm, abs=0.05)
+            assert place.place_mm == pytest.approx((20.15, 10 + high_mm), abs=0.2)
