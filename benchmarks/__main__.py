@@ -3,8 +3,9 @@
 `folder DIR` measures drawings, `flatten [N]` simulated photographs, `linuxcnc` the times of programs,
 `dropouts [N]` dropouts of each kind, `batch [N]` many drawings, `panel [DIR]` how its page pans,
 `pencil [N]` lines with grain, `coarse [N]` lines of few pixels, `rough [N]` rough pens, shadows
-and folds, `nets [N]` all the ink of nets, `large [MPX METRES]` large sheets, `holes [N …]` plates of
-many holes, `first [--write]` the first run on a machine; these take a while and run only if named.
+and folds, `nets [N]` all the ink of nets, `choice [N]` the same sheet in other scans,
+`large [MPX METRES]` large sheets, `holes [N …]` plates of many holes, `first [--write]` the first
+run on a machine; these take a while and run only if named.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ WITH_WORDS = (
     "coarse",
     "rough",
     "nets",
+    "choice",
     "large",
     "holes",
     "first",
