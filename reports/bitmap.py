@@ -169,7 +169,8 @@ class _Field:
 
     def _legend(self) -> None:
         """The legend's box, with a sample of each mark in it."""
-        box = lettering.legend(self.plate, self.canvas.shape[1] / FINER)
+        rows, columns = self.canvas.shape[:2]
+        box = lettering.legend(self.plate, columns / FINER, rows / FINER)
         if box is None:
             return
         left, top, right, bottom = (FINER * side for side in box.sides_px)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import importlib.util
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path as FilePath
 from typing import Any
@@ -26,7 +26,7 @@ from morfax.motion.files import printable
 from morfax.reports.axis_numbers import numbers, steps_in
 from morfax.reports.canvas import DPI
 from morfax.reports.page import Box, Page
-from morfax.reports.plate import BLACK, Colours, Place, Plate, View, Words, fitted
+from morfax.reports.plate import BLACK, Colours, Place, Plate, View, Words, fitted, free_corner
 
 PX_PER_PT = DPI / 72
 PT_PER_IN = 72
@@ -68,21 +68,27 @@ def ring(words: Words) -> tuple[Place, float]:
     return (x + (left + right) / 2, y + (top + bottom) / 2), radius
 
 
-def legend(plate: Plate, wide_px: float) -> Legend | None:
-    """The legend of a plate, in the upper right corner of axes of a width; None without any."""
+def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
+    """The legend of a plate, in the freest corner of axes of a size; None without any."""
     if not plate.legend:
         return None
     em = LEGEND_PT * PX_PER_PT
     font = _font(LEGEND_PT)
     longest = max(font.getlength(_plain(mark.label)) for mark in plate.legend)
     rows = len(plate.legend)
-    right, top = wide_px - OUTSIDE * em, OUTSIDE * em
-    left = right - (2 * PAD + SAMPLE + GAP) * em - longest
-    bottom = top + (2 * PAD + rows + (rows - 1) * BETWEEN) * em
+    wide, high = (
+        (2 * PAD + SAMPLE + GAP) * em + longest,
+        (2 * PAD + rows + (rows - 1) * BETWEEN) * em,
+    )
+    shown = replace(plate, view=fitted(plate.view, high_px / wide_px))
+    shares = (wide + OUTSIDE * em) / wide_px, (high + OUTSIDE * em) / high_px
+    is_upper, is_right = free_corner(shown, shares)
+    left = wide_px - OUTSIDE * em - wide if is_right else OUTSIDE * em
+    top = OUTSIDE * em if is_upper else high_px - OUTSIDE * em - high
     begin, end = left + PAD * em, left + (PAD + SAMPLE) * em
     middles = [top + (PAD + 0.5 + row * (1 + BETWEEN)) * em for row in range(rows)]
     samples = [(begin, end, middle) for middle in middles]
-    return Legend((left, top, right, bottom), samples, HALF_HIGH * em)
+    return Legend((left, top, left + wide, top + high), samples, HALF_HIGH * em)
 
 
 def written(
@@ -132,8 +138,8 @@ class _Pen:
 
     def legend(self, box: Box, plate: Plate) -> None:
         """The labels of a plate's legend."""
-        left, top, right, _ = self._sides(box)
-        found = legend(plate, right - left)
+        left, top, right, bottom = self._sides(box)
+        found = legend(plate, right - left, bottom - top)
         if found is None:
             return
         for mark, (_, end, row) in zip(plate.legend, found.samples_px, strict=True):

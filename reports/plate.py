@@ -149,3 +149,19 @@ def with_gaps(runs: Sequence[Array]) -> Array:
     """Several polylines as one, with gaps between them."""
     gap = np.full((1, 2), np.nan)
     return np.vstack([part for run in runs for part in (gap, run)][1:])
+
+
+def free_corner(plate: Plate, share: tuple[float, float]) -> tuple[bool, bool]:
+    """The corner of a plate, of so much of its width and height, in which the fewest places lie: whether it
+    is an upper one, and a right one. Of equal ones the upper right is the first.
+    """
+    left, right, low, high = plate.view
+    marked = [line.places_mm for line in plate.marks if isinstance(line, Line)]
+    marked += [np.array([spot.place_mm]) for spot in plate.marks if isinstance(spot, Spot)]
+    places = np.vstack([np.empty((0, 2)), *marked])
+    x = (places[:, 0] - left) / (right - left)
+    y = (places[:, 1] - low) / (high - low)
+    aside = {True: x > 1 - share[0], False: x < share[0]}
+    level = {True: y > 1 - share[1], False: y < share[1]}
+    corners = [(is_upper, is_right) for is_upper in (True, False) for is_right in (True, False)]
+    return min(corners, key=lambda corner: int(np.sum(level[corner[0]] & aside[corner[1]])))

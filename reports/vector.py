@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Any
 from morfax.reports.axis_numbers import numbers
 from morfax.reports.canvas import new_figure
 from morfax.reports.page import Box, Page
-from morfax.reports.plate import Area, Colours, Line, Mark, Plate, Spot, Words
+from morfax.reports.plate import Area, Colours, Line, Mark, Plate, Spot, Words, free_corner
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+LEGEND_SHARE = 0.25, 0.2  # of the axes' width and height: about what a legend takes up
 
 
 def figure_of(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | None) -> Figure:
@@ -92,7 +94,9 @@ def _fill(axes: Axes, plate: Plate) -> None:
     if plate.names is not None:
         axes.set(xlabel=plate.names[0], ylabel=plate.names[1])
     if plate.legend:
-        axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
+        is_upper, is_right = free_corner(plate, LEGEND_SHARE)
+        corner: Any = f"{'upper' if is_upper else 'lower'} {'right' if is_right else 'left'}"
+        axes.legend(loc=corner, fontsize=8, framealpha=0.8)
 
 
 def _line(axes: Axes, line: Line) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import subprocess
 import sys
 from pathlib import Path as FilePath
@@ -15,7 +16,17 @@ from morfax.reports.axis_numbers import numbers
 from morfax.reports.canvas import DPI, save
 from morfax.reports.overlay import Picture, draw
 from morfax.reports.page import Box, Page
-from morfax.reports.plate import Area, Ground, Line, Plate, Spot, Words, with_gaps
+from morfax.reports.plate import (
+    BLACK,
+    Area,
+    Ground,
+    Line,
+    Plate,
+    Spot,
+    Words,
+    free_corner,
+    with_gaps,
+)
 
 PAGE = Page(4.0, 4.0, Box(0.5, 0.5, 3.0, 3.0), [], None)  # 300 x 300 mm at 100 mm an inch
 VIEW = (0.0, 300.0, 0.0, 300.0)
@@ -90,6 +101,26 @@ def test_words_stand_beside_their_place_and_a_legend_in_its_corner() -> None:
     plate = Plate(VIEW, marks=[Line(np.zeros((0, 2)), RED, 3.0, label="a line")])
     found = places_mm(is_red(page_of(plate)))
     assert len(found) and (found > 200).all()
+
+
+@pytest.mark.parametrize("taken", list(itertools.product((True, False), repeat=2)))
+def test_a_legend_stands_in_the_corner_in_which_the_fewest_places_lie(
+    taken: tuple[bool, bool],
+) -> None:
+    """All corners but one are full of a line; then the words of the legend stand in that one."""
+    corners = {
+        (is_upper, is_right): np.array([240.0 if is_right else 10, 240.0 if is_upper else 10])
+        for is_upper in (True, False)
+        for is_right in (True, False)
+    }
+    full = np.vstack([np.linspace(at, at + 50, 99) for c, at in corners.items() if c != taken])
+    assert free_corner(Plate(VIEW, marks=[Line(full, BLACK, 1.0)]), (0.3, 0.3)) == taken
+    plate = Plate(
+        VIEW, marks=[Line(full, BLACK, 0.1), Line(full[:0], RED, 3.0, label="a line")]
+    )
+    found = places_mm(is_red(page_of(plate)))
+    assert len(found)
+    assert (found[:, 0] > 150).all() == taken[1] and (found[:, 1] > 150).all() == taken[0]
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,8 @@ beside a line belongs to it, or is another line that touches it, the pen cannot 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -46,6 +47,7 @@ BARE = 0.25  # darkness: paler places are paper
 PALE = 0.6
 TIP = np.radians(120.0)  # a corner that turns by more is a tip
 CUT_MM = 0.1  # ten times a corner's error
+BESIDE = 2.0  # times as far apart as both are off: it is the same tip
 EVERY_MM = 0.05  # between the places of an edge, as between those of a way
 # darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
 # less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
@@ -80,7 +82,7 @@ def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
     sheet, gap_mm = setup.sheet, setup.settings.gap_mm
     found = [*_ink_beside(sheet, come_round, lines), *_bare_ways(sheet, closed, gap_mm)]
     found += _tips_cut(sheet.drawing.edges_mm, closed)
-    found += _off_edges(sheet.drawing, closed)
+    found += _once(_off_edges(sheet.drawing, closed))
     found = found or list(_astray(sheet, closed))
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
@@ -162,6 +164,16 @@ def _off_edges(drawing: Drawing, closed: Sequence[Line]) -> Iterator[Unexplained
                 yield Unexplained(
                     (float(x), float(y)), float(away_mm[worst]), True, is_tip=True
                 )
+
+
+def _once(places: Iterable[Unexplained]) -> list[Unexplained]:
+    """The places without those beside a worse one: there the edge and the way are both off."""
+    kept = list[Unexplained]()
+    for place in sorted(places, key=lambda place: -place.length_mm):
+        beside_mm = (math.dist(place.place_mm, other.place_mm) for other in kept)
+        if min(beside_mm, default=math.inf) > BESIDE * place.length_mm:
+            kept.append(place)
+    return kept
 
 
 def _stretches(

@@ -11,7 +11,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.edge_check import OFF_MM, kept_to
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.unexplained import _off_edges
+from morfax.tracer.program.unexplained import Unexplained, _off_edges, _once
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import Points, arc, polyline
@@ -97,3 +97,11 @@ def test_where_pixels_are_large_a_tooth_that_is_passed_by_is_told_and_not_lost(
             (place,) = told
             assert place.is_tip and place.length_mm == pytest.approx(high_mm, abs=0.05)
             assert place.place_mm == pytest.approx((20.15, 10 + high_mm), abs=0.2)
+
+
+def test_a_tip_at_which_edge_and_way_are_off_is_told_once() -> None:
+    places = [((5.0, 5.0), 0.6), ((0.5, 0.0), 0.9), ((0.0, 0.0), 1.0)]
+    told = _once(
+        [Unexplained(place_mm, off_mm, True, is_tip=True) for place_mm, off_mm in places]
+    )
+    assert [place.length_mm for place in told] == [1.0, 0.6]
