@@ -167,3 +167,15 @@ def test_a_level_beyond_full_scale_is_refused() -> None:
 def test_an_unknown_pick_up_is_refused() -> None:
     with pytest.raises(ValueError, match="one of resolver, photocell"):
         TapeFormat(pickup="gramophone")
+
+
+@pytest.mark.parametrize("name", PICK_UPS)
+def test_the_reference_is_a_sine_of_the_stated_level_whatever_the_pick_ups_are(
+    name: str,
+) -> None:
+    """It is the track of the source itself: eight samples a cycle of the reference, from phase 0 on."""
+    carrier = Carrier(PickUp(level=0.4, sensor=PICK_UPS[name]), [0.0])
+    travel_mm = np.linspace(0.0, 3.0, 600)[:, None]
+    reference = carrier.frames(travel_mm)[:, 0]
+    wanted = 0.4 * np.sin(2 * np.pi * np.arange(len(reference)) / 8)
+    assert np.abs(reference - wanted).max() < ROUNDING

@@ -11,6 +11,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.offset import OffsetPath
 from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.tracer.cutter.contour import Beside, Cut
+from morfax.tracer.cutter.start_places import _Path as StartPath
 from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.operator.operator import Operator
@@ -103,3 +104,19 @@ def test_a_path_that_the_arm_meets_on_its_way_is_another_path() -> None:
     foot = beside.foot(np.array([20.0, 0.0]))
     assert foot.path == 1
     assert beside.mm(foot) == pytest.approx([19.6, 0.8], abs=1 * UM)
+
+
+def test_a_corner_has_a_heading_before_and_one_after_it() -> None:
+    """Leads at a corner keep clear of both sides; on a side there is one heading."""
+    square = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]])
+    line = Line(along(square), "closed", 0.5, 80.0)
+    path = StartPath(Beside(cut_of(line), True, 0.0, [OffsetPath(along(square), True, 0)]), 0)
+    quarter = (len(path.points_mm) - 1) / 4
+    place, before, after = path.about(quarter)
+    assert place == pytest.approx([20, 0], abs=STEP_MM)
+    assert before == pytest.approx([1, 0], abs=0.02) and after == pytest.approx(
+        [0, 1], abs=0.02
+    )
+    place, before, after = path.about(1.5 * quarter)
+    assert place == pytest.approx([20, 10], abs=STEP_MM)
+    assert before == pytest.approx([0, 1], abs=1e-6) and after == pytest.approx(before)

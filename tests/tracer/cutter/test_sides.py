@@ -65,6 +65,21 @@ def test_lines_that_cross_lie_in_none_of_each_other() -> None:
     assert sides.depths(lines, crossed) == [0, 0, 1]
 
 
+@pytest.mark.parametrize(("over_deg", "crosses"), [(4.0, False), (20.0, True)])
+def test_an_end_that_runs_a_little_past_the_beginning_is_no_crossing(
+    over_deg: float, crosses: bool
+) -> None:
+    """The head closes 0.35 mm beyond where it began, or 1.7 mm: the other way round is the whole line."""
+    places = arc((9, 9), 5, 0, 360 + over_deg)
+    share = np.linspace(0, 1, len(places))[:, None]
+    outward = (places - 9) / 5
+    # across its own beginning in the middle of the overrun
+    places = places + 0.02 * outward * (share - 1 + 0.5 * over_deg / 360) * 360 / over_deg * (
+        share > 0.9
+    )
+    assert bool(sides.crossing([places])[0, 0]) == crosses
+
+
 def test_a_curl_where_the_head_swivelled_is_no_crossing() -> None:
     curl = np.vstack(
         [arc((9, 9), 5, 0, 180), arc((4, 9.0), 0.1, 0, 360), arc((9, 9), 5, 180, 360)]
