@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -30,13 +31,15 @@ class HollowLines:
     @classmethod
     def along(cls, drawing: Drawing, trace: Trace) -> HollowLines:
         """The hollow lines among those that the head followed; edges are none."""
+        from morfax.tracer.drawing.deviation import darkness_across
         from morfax.tracer.drawing.hollow import hollow
 
+        seen, pitch_mm = partial(darkness_across, drawing), drawing.pitch_mm
         found = [
             (line.number, there)
             for line in trace.lines
             if not line.on_edge and not drawing.edges_mm and not line.is_dot
-            if (there := hollow(drawing, line.xy_mm, line.width_mm)) is not None
+            if (there := hollow(seen, line.places_mm, line.width_mm, pitch_mm)) is not None
         ]
         scanned_dpi = MM_PER_INCH / (drawing.pitch_mm * drawing.finer)
         return cls(tuple(found), DPI_STEP * math.ceil(FINER * scanned_dpi / DPI_STEP))

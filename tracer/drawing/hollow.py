@@ -10,8 +10,8 @@
 Grain, a speck or a scratch differs from station to station, so a piece is hollow only where the stations' own
 spread makes its paler middle certain.
 
-Signals: a drawing and a path, sheet mm, in; how much of the path is hollow, where the longest stretch of that
-is, and how far the two dark rows are apart there, mm, out.
+Signals: the darkness of a sheet and a path, sheet mm, in; how much of the path is hollow, where the longest
+stretch of that is, and how far the two dark rows are apart there, mm, out.
 
 Source: our own. Questions: some pens (worn ball pens, markers) leave the middle of a line paler; there the
 path is right. Two lines of which the scan shows one flat top are not told from one line.
@@ -20,20 +20,19 @@ path is right. Two lines of which the scan shows one flat top are not told from 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.long_array import one_in
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.drawing.deviation import darkness_across
 
-if TYPE_CHECKING:
-    from morfax.motion.arrays import Array
-    from morfax.tracer.drawing.drawing import Drawing
+# darkness (n, k) at places (n, 2) mm, across their headings (n,) rad, at distances (k,) mm to the left
+Seen = Callable[[Array, Array, Array], Array]
 
 PIECE_MM, PIECE_PX = 3.0, 24.0
-THINNED = 30  # one position in 30 shows where a path runs: every 50 um at 10 mm/s
+AT_ONCE = 256  # pieces that are looked at in one go
 FEWEST_PIECES = 2  # in a row: one alone is where a line crosses, or a wall's end
 APART_PX = 2.0  # stations: pixels so far apart have noise of their own
 OFFSETS = np.arange(-8, 9) / 16  # of the line's width, to the left
@@ -52,19 +51,22 @@ class Hollow(NamedTuple):
     apart_mm: float
 
 
-def hollow(drawing: Drawing, path_mm: Array, width_mm: float) -> Hollow | None:
-    """The hollow stretches of a path (n, 2) mm along ink of a width; None if there are none."""
-    places = one_in(path_mm, THINNED)
+def hollow(seen: Seen, places: Array, width_mm: float, pitch_mm: float) -> Hollow | None:
+    """The hollow stretches of a path through places (n, 2) mm, along ink of a width on pixels of a pitch, mm;
+    None if there are none.
+    """
     come_mm = lengths_mm(places)
-    piece_mm = max(PIECE_MM, PIECE_PX * drawing.pitch_mm)
-    count = int(piece_mm / (APART_PX * drawing.pitch_mm))
+    piece_mm = max(PIECE_MM, PIECE_PX * pitch_mm)
+    count = int(piece_mm / (APART_PX * pitch_mm))
     shares = (np.arange(count) + 0.5) / count
-    apart_mm = width_mm * np.array(
-        [
-            _apart(drawing, _stations(places, come_mm, piece_mm * (k + shares)), width_mm)
-            for k in range(int(come_mm[-1] / piece_mm))
-        ]
-    )
+    apart = [np.empty(0)]
+    pieces = int(come_mm[-1] / piece_mm)
+    for first in range(0, pieces, AT_ONCE):
+        numbers = np.arange(first, min(first + AT_ONCE, pieces))
+        at_mm = piece_mm * (numbers[:, None] + shares).ravel()
+        dark = seen(*_stations(places, come_mm, at_mm), width_mm * OFFSETS)
+        apart.append(_apart(dark.reshape(len(numbers), count, -1)))
+    apart_mm = width_mm * np.concatenate(apart)
     ends = np.flatnonzero(np.diff(np.r_[False, np.isfinite(apart_mm), False].astype(np.int8)))
     rows = [(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= FEWEST_PIECES]
     if not rows:
@@ -83,16 +85,23 @@ def _stations(places: Array, come_mm: Array, at_mm: Array) -> tuple[Array, Array
     return there, np.arctan2(way[:, 1], way[:, 0])
 
 
-def _apart(drawing: Drawing, stations: tuple[Array, Array], width_mm: float) -> float:
-    """How far the dark rows of a piece are apart, widths; NaN where it is not hollow."""
-    seen = darkness_across(drawing, *stations, width_mm * OFFSETS)
-    mean = seen.mean(axis=0)
+def _apart(dark: Array) -> Array:
+    """How far the dark rows of pieces are apart, widths, by their darkness (pieces, stations, rows): NaN
+    where a piece is not hollow.
+    """
+    # 1. the darkest row on each side of the path, and the palest between them
+    mean, rows = dark.mean(axis=1), np.arange(dark.shape[2])
     right, left = (
-        int(np.argmax(np.where(side * OFFSETS > BESIDE, mean, -1.0))) for side in (-1, 1)
+        np.argmax(np.where(side * OFFSETS > BESIDE, mean, -1.0), axis=1)[:, None]
+        for side in (-1, 1)
     )
-    middle = right + int(np.argmin(mean[right : left + 1]))
-    paler = np.minimum(seen[:, right], seen[:, left]) - seen[:, middle]
-    certain = CERTAIN * float(paler.std()) / math.sqrt(len(paler))
-    if paler.mean() < max(PALER * float(mean.max()), certain):
-        return math.nan
-    return float(OFFSETS[left] - OFFSETS[right])
+    between = (rows >= right) & (rows <= left)
+    middle = np.argmin(np.where(between, mean, np.inf), axis=1)[:, None]
+    # 2. how much paler, and whether that is certain
+    at_right, at_left, at_middle = (
+        np.take_along_axis(dark, row[:, None], axis=2)[:, :, 0] for row in (right, left, middle)
+    )
+    paler = np.minimum(at_right, at_left) - at_middle
+    certain = CERTAIN * paler.std(axis=1) / math.sqrt(dark.shape[1])
+    is_hollow = paler.mean(axis=1) >= np.maximum(PALER * mean.max(axis=1), certain)
+    return np.where(is_hollow, OFFSETS[left[:, 0]] - OFFSETS[right[:, 0]], math.nan)

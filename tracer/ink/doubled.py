@@ -29,7 +29,7 @@ from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends
 from morfax.tracer.ink.nib import Ink, is_by_heading, what_swells
 from morfax.tracer.ink.run import Run, smooth
-from morfax.tracer.ink.swelling import Swelling, pen_of, stands_out
+from morfax.tracer.ink.swelling import Swelling, pen_of, pen_of_hollow, stands_out
 
 Flags = NDArray[np.bool_]
 
@@ -81,8 +81,13 @@ class Doubled(NamedTuple):
             n: swelling for n in some if (swelling := Swelling.of(felt[n], ends[n])) is not None
         }
         every = list(found.values())
-        pen_mm = pen_of(every)
-        if not pen_mm > LEAST_PX * pixel_mm or (ink := _what_is(every, pen_mm)) == Ink.NIB:
+        pen_mm, beside_mm = pen_of(every), pen_of_hollow(every)
+        if math.isnan(pen_mm):
+            pen_mm = beside_mm
+        if not pen_mm > LEAST_PX * pixel_mm:
+            return cls()
+        ink = Ink.TWO_LINES if beside_mm > 0 else _what_is(every, pen_mm)
+        if ink == Ink.NIB:
             return cls()
         # 2. those that swell and shrink, and even ones where these go on
         broad = {

@@ -2,7 +2,8 @@
 
 Signals: the stations along a stretch (places mm, widths mm) in; its widths averaged out, mm.
 
-A sheet is clean if its lines have smooth edges and much of the ink is about as narrow as the narrowest.
+A sheet is clean if its lines have smooth edges and much of the ink is about as narrow as the narrowest. Where
+lines run in pairs all over, their ink is paler in its middle, which tells the pen, too.
 
 Source: our own.
 """
@@ -17,6 +18,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.tracer.drawing.hollow import Hollow, hollow
 from morfax.tracer.ink.felt import Ends
 from morfax.tracer.ink.run import Run
 
@@ -30,6 +32,8 @@ SO_NARROW, LEAST_NARROW = 0.05, 0.05
 ONE_WIDTH = 2.0
 SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
 FEWEST = 10  # stations that tell a width
+MUCH_HOLLOW = 0.1  # of the ink: less is a place where the pen left its middle pale
+BROADLY = 90.0  # percentile of a stretch's widths: its ink is hardly broader
 
 
 class Swelling(NamedTuple):
@@ -87,3 +91,30 @@ def stands_out(some: Sequence[Swelling], pen_mm: float) -> bool:
     narrow = float(np.mean(np.abs(shares - 1) < SO_NARROW))
     broader = float(np.mean(np.abs(shares - 1 - 2 * SO_NARROW) < SO_NARROW))
     return narrow > ONE_WIDTH * broader
+
+
+def pen_of_hollow(some: Sequence[Swelling]) -> float:
+    """The width of the pen that drew two lines beside each other, mm, where much of a sheet is that; else
+    NaN: the ink's width less what its two dark rows are apart.
+    """
+    hollow_mm, pens_mm = 0.0, list[float]()
+    for run in (each.run for each in some):
+        if (found := _hollow(run)) is not None:
+            near = int(np.argmin(np.hypot(*(run.places_mm - found.place_mm).T)))
+            hollow_mm += found.length_mm
+            pens_mm.append(float(run.widths_mm[near]) - found.apart_mm)
+    is_much = hollow_mm > MUCH_HOLLOW * sum(each.run.length_mm for each in some)
+    return float(np.nanmedian(pens_mm)) if is_much else math.nan
+
+
+def _hollow(run: Run) -> Hollow | None:
+    """The ink along a stretch that is paler in its middle than at its sides; None if it is so nowhere."""
+    view = run.view
+
+    def seen(places: Array, headings: Array, across: Array) -> Array:
+        left = np.column_stack([-np.sin(headings), np.cos(headings)])
+        around = places[:, None] + left[:, None] * across[:, None]
+        return view.darkness_along(around.reshape(-1, 2)).reshape(len(places), -1)
+
+    broad_mm = float(np.nanpercentile(run.widths_mm, BROADLY))
+    return hollow(seen, run.places_mm, broad_mm, view.pitch_mm)

@@ -5,18 +5,27 @@ Broken on purpose, with `PALER` three times as large or a third, or `CERTAIN` le
 
 from __future__ import annotations
 
+from functools import partial
+
 import cv2
 import numpy as np
 import pytest
 
 from morfax.jobs.hollow_lines import HollowLines
+from morfax.tracer.drawing import hollow as hollow_lines
+from morfax.tracer.drawing.deviation import darkness_across
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.hollow import hollow
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline
 
 MIDDLE_MM, RADIUS_MM = (26.0, 26.0), 20.0
 WITHIN_MM = 0.08  # of the rows' distance: a sixteenth of the ink's width, 1.25 mm
+
+
+def hollow(drawing: Drawing, places: Points, width_mm: float) -> hollow_lines.Hollow | None:
+    """The hollow stretches of a path on a drawing."""
+    seen = partial(darkness_across, drawing)
+    return hollow_lines.hollow(seen, places, width_mm, drawing.pitch_mm)
 
 
 def rings(apart_mm: float, dpi: float, seed: int = 1) -> Drawing:
@@ -35,7 +44,7 @@ def test_a_path_between_two_lines_is_told_with_their_distance(
     (line,) = trace(drawing).lines
     off_mm = np.abs(np.hypot(*(line.xy_mm - MIDDLE_MM).T) - RADIUS_MM)
     assert off_mm.max() < 0.1  # the path of neither
-    found = hollow(drawing, line.xy_mm, line.width_mm)
+    found = hollow(drawing, line.places_mm, line.width_mm)
     assert found is not None
     assert found.length_mm > 0.9 * line.length_mm
     assert found.apart_mm == pytest.approx(apart_mm, abs=WITHIN_MM)
@@ -68,7 +77,7 @@ def test_one_line_is_not_hollow(way: Points, width_mm: float, dpi: float) -> Non
     for seed in range(3):
         drawing = inked(way, width_mm=width_mm, dpi=dpi, seed=seed)
         (line,) = trace(drawing).lines
-        assert hollow(drawing, line.xy_mm, line.width_mm) is None
+        assert hollow(drawing, line.places_mm, line.width_mm) is None
 
 
 def test_a_pen_that_skips_here_and_there_leaves_no_hollow_line() -> None:

@@ -57,6 +57,21 @@ def test_two_lines_nearer_than_a_width_are_two_strokes(crossed: bool) -> None:
         assert away_mm < 0.25 * WIDTH_MM  # the other line is up to three widths away
 
 
+@pytest.mark.parametrize("apart", [1.15, 1.3])
+def test_where_all_lines_run_in_pairs_their_pale_middle_shows_that_they_are_two(
+    apart: float,
+) -> None:
+    """Two rings, one moved aside: no line shows the pen, and the ink swells as a nib's would."""
+    rings = [arc((30 + dx, 30.0), 22) for dx in (0.0, apart * WIDTH_MM)]
+    found = trace_ink(inked(*rings, seed=1))
+    truth = np.vstack(rings)
+    assert found.ink is not None and found.ink.followed_share > 0.99
+    near_mm = nearest_mm(truth, np.vstack([line.xy_mm for line in found.lines]))
+    assert np.mean(near_mm < 0.15 * WIDTH_MM) > 0.97
+    ways = [length_mm(line.xy_mm) for line in found.lines]
+    assert sum(ways) == pytest.approx(2 * 2 * np.pi * 22, rel=0.02)
+
+
 @pytest.mark.parametrize("long_mm", [4.6, 4.9, 5.2, 7.0])
 def test_a_pen_that_turns_back_beside_its_own_line_draws_one_stroke(long_mm: float) -> None:
     """A loop as in handwriting, narrower than two widths all along, which crosses itself at its foot.
