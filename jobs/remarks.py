@@ -40,7 +40,6 @@ def remarks(
         )
     yield from _of_stops(trace)
     yield from _of_turns(trace)
-    yield from _of_reference(trace, settings)
     yield from _of_gaps(trace, gap_mm)
     yield from _of_breaks(trace, gap_mm)
     yield from _of_open(trace)
@@ -117,22 +116,6 @@ def _of_turns(trace: Trace) -> Iterator[str]:
                     f"no line leads off to the {side} at junction {k} of {_named(line, trace)}, "
                     f"{x:.1f},{y:.1f} mm: the head went straight on"
                 )
-
-
-def _of_reference(trace: Trace, settings: TraceSettings) -> Iterator[str]:
-    """A reference point that was given and from which no line begins."""
-    from morfax.tracer.following.open_ends import LEAD_MM
-
-    given = settings.line.reference_mm
-    if given is None or any(line.reference_mm == given for line in trace.lines):
-        return
-    use = (
-        "it is the machine's zero only"
-        if settings.program.zero == "reference"
-        else "the program does not begin there"
-    )
-    x, y = given
-    yield f"no line begins within {LEAD_MM:g} mm of the reference point {x:g},{y:g} mm: {use}"
 
 
 def _of_gaps(trace: Trace, allowed_mm: float) -> Iterator[str]:

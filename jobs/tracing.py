@@ -16,6 +16,7 @@ from morfax.jobs.depths import of_tabs
 from morfax.jobs.hollow_lines import HollowLines
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.remarks_on_edges import of_picture_edge
+from morfax.jobs.remarks_on_reference import of_reference
 from morfax.jobs.skips import gap_across_skips
 from morfax.jobs.traced import Traced
 from morfax.jobs.who_led import WhoLed
@@ -103,6 +104,7 @@ class Tracing:
         times = max(times, followed.enlarged)
         yield from followed.notes
         yield from remarks(followed, self.settings, self.of_head.gap_mm, times)
+        yield from of_reference(followed, drawing, self.settings)
         yield from of_picture_edge(followed, drawing)
         yield from of_order(followed, self.settings.line.order)
         if led is not None:

@@ -232,8 +232,9 @@ _PROGRAM = (
         type=click.Choice(["auto", "on", "off"]),
         default="auto",
         show_default=True,
-        help="Whether ticks across a line and dots are stop marks and holes (on) or ink (off). auto: marks "
-        "with a card, with a reference point, and on a sheet of nothing but dots.",
+        help="Whether ticks across a line and dots are stop marks and holes (on) or ink (off); with off no "
+        "cross or ring is a reference point either. auto: marks with a card, with a reference point, and "
+        "on a sheet of nothing but dots.",
     ),
     option(
         "Program",

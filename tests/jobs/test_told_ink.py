@@ -17,7 +17,7 @@ from morfax.tracer.program.selection import Others
 from morfax.tracer.program.trace import trace
 from tests.tracer.drawing.test_skips import ring
 from tests.tracer.ink.test_pale import with_pale_bar
-from tests.tracer.inked import Points, inked, polyline
+from tests.tracer.inked import Points, arc, cross, inked, polyline
 
 
 class Heard(Silent):
@@ -98,3 +98,33 @@ def test_a_plain_trace_tells_how_long_the_longest_other_line_is(
     traced = trace(inked(polyline((5, 5), (55, 9)), seed=1))
     (told,) = of_ink(replace(traced, others=others), several=False)
     assert told.startswith("one line of 50 mm is traced; ") and said in told
+
+
+PLATE = polyline((5, 5), (70, 5), (70, 45), (5, 45), (5, 5))
+HOLE_AND_SLIT = (arc((25.0, 25.0), 4.0), polyline((32, 25), (60, 25)))
+
+
+def test_a_ring_that_is_taken_for_a_reference_point_is_told_and_marks_off_cuts_it() -> None:
+    """A hole of 8 mm with a slit that leads away from it is what a drawn program begins with, too."""
+    drawing = inked(PLATE, *HOLE_AND_SLIT, seed=1)
+    contours = TraceSettings(LineSettings(lines="contours"))
+    heard = Heard()
+    traced = Tracing.prepared(contours).trace(drawing, heard)
+    assert len(traced.trace.lines) == 2
+    (told,) = [text for text in heard.said if "the ring at 25.0,25.0 mm" in text]
+    assert "line 2 is run from it with the tool up" in told and "give --marks off" in told
+    off = replace(contours, program=replace(contours.program, marks="off"))
+    heard = Heard()
+    traced = Tracing.prepared(off).trace(drawing, heard)
+    assert [line.ending for line in traced.trace.lines].count("closed") == 2
+    assert len(traced.trace.lines) == 3 and not any("the ring" in text for text in heard.said)
+
+
+def test_a_cross_that_a_program_begins_with_is_not_told() -> None:
+    """Nobody would cut it."""
+    heard = Heard()
+    drawing = inked(PLATE, *cross((25.0, 25.0)), HOLE_AND_SLIT[1], seed=1)
+    contours = TraceSettings(LineSettings(lines="contours"))
+    traced = Tracing.prepared(contours).trace(drawing, heard)
+    assert traced.trace.reference_mm == pytest.approx((25, 25), abs=0.05)
+    assert not any("reference point" in text for text in heard.said)

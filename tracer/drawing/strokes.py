@@ -84,6 +84,7 @@ class Sheet:
     widths_mm: Array
     are_solid: NDArray[np.bool_]
     window: Window | None = None
+    has_references: bool = True  # small crosses and rings may be reference points
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)

@@ -66,6 +66,8 @@ def references(
 
     Of those that stand alone only such as the line comes within `about_mm` of, to all sides of their ink.
     """
+    if not sheet.has_references:
+        return
     found: list[Reference] = []
     for reference in _every(sheet, view, stroke, about_mm):
         if all(_apart(reference, other) > LEAST_MM for other in found):

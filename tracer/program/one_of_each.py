@@ -61,7 +61,7 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[
             letters += 1
         else:
             raise _a_letter(contour)
-    return lines, letters
+    return [line for line in lines if not _is_reference(line, begins_mm)], letters
 
 
 def with_least_numbers(lines: list[Line], asked: list[Contour]) -> list[Line]:
@@ -110,6 +110,12 @@ def _is_done(contour: Contour, near: list[Line], begins_mm: list[tuple[float, fl
     if selection.are_about(contour.stroke.middles_mm, begins_mm):
         return True
     return any(contour.lies_on(line.places_mm) for line in near)
+
+
+def _is_reference(line: Line, begins_mm: list[tuple[float, float]]) -> bool:
+    """Whether a line is the reference point from which another begins, which was followed after it."""
+    begins_there = line.is_lead or line.reference_mm is not None
+    return not begins_there and selection.are_about(line.places_mm, begins_mm)
 
 
 def _is_inner(contour: Contour, lines: list[Line]) -> bool:

@@ -25,6 +25,10 @@ class Setup:
     operator: Operator = field(default_factory=Operator)
     progress: HeadProgress | None = None
 
+    def __post_init__(self) -> None:
+        if self.operator.marks == "off":
+            object.__setattr__(self, "sheet", replace(self.sheet, has_references=False))
+
     def after(self, before_mm: float, total_mm: float) -> Setup:
         """The set-up for one of several lines: its progress counts on from those before, of their total."""
         progress = self.progress
