@@ -232,8 +232,9 @@ class Drawing:
             notes = (*notes, coarse.note(seen_px, pitch[0]))
         slit = grain.slit_for(in_lines, width_px, pitch[0])
         if slit is not None:
-            darkness = grain.behind(slit, np.asarray(darkness))
-            notes = (*notes, grain.note(slit, pitch[0]))
+            behind = grain.behind(slit, np.asarray(darkness))
+            if grain.mends(np.asarray(darkness), behind):
+                darkness, notes = behind, (*notes, grain.note(slit, pitch[0]))
         finer = coarse.times_finer(darkness, width_px)
         if finer > 1:
             darkness = coarse.finer(np.asarray(darkness), finer, seen_px)
