@@ -18,7 +18,7 @@ line. `LEAST` is above what shines through a sheet; on paper with grain nothing 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
@@ -34,9 +34,9 @@ INK = 0.5
 SPOT_PX = 1.0  # standard deviation of the spot behind which lines are told from noise
 # of ink's darkness behind that spot. Paler are what shines through a sheet and a JPEG's rims; chosen
 LEAST = 0.15
-# of ink's darkness: the noise of spots on quiet scans is up to 0.012, on photographs of boards and squared
-# paper from 0.024; by trial on half of the fetched sheets
-MOST_NOISE = 0.015
+# of ink's darkness: the noise of spots is up to 0.011 on scans, 0.013 to 0.03 on photographs of crumpled and
+# of squared paper and of boards; by trial on half of the fetched sheets
+MOST_NOISE = 0.012
 STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that tell its noise
 ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
 # percentiles one standard deviation apart: stains and rims of ink are on one side, lines on few places
@@ -52,6 +52,7 @@ LEAST_MM, LEAST_PX = 2.0, 8  # as for ink: what is shorter is a speck; by trial
 SLENDER = 3.0  # times its breadth: a shorter patch is a blot
 BROAD, BROAD_PX = 2.0, 2.0  # usual widths and pixels: a broader patch is shade
 DARKER = 80.0  # percentile of a line's pixels: those that no edge makes lighter, as of ink
+FULL = 0.9  # a thin line may be as dark as ink and be seen pale behind the spot: it stays
 ROUNDS = 3  # each reaches what is half as dark: three reach an eighth
 
 
@@ -141,20 +142,20 @@ def _lines(pale: Mask, darkness: Darkness, noise: Noise, pitch_mm: float) -> _Li
     are_lines &= lengths_px > SLENDER * broad_px
     are_lines &= broad_px < BROAD * usual_px + BROAD_PX
     are_lines[0] = False
+    dark = _usual(darkness[rows, columns], patch, count)
+    are_lines &= dark < FULL
     if not are_lines.any():
         return None
-    numbers = np.cumsum(are_lines) * are_lines
-    kept = are_lines[patch]
-    dark = _usual(darkness[rows[kept], columns[kept]], numbers[patch[kept]])
-    return _Lines(numbers.astype(np.int32)[labels], dark, float(lengths_px[are_lines].sum()))
+    numbers = (np.arange(count) * are_lines).astype(np.int32)
+    return _Lines(numbers[labels], dark, float(lengths_px[are_lines].sum()))
 
 
-def _usual(seen: Darkness, number: NDArray[np.int64]) -> Darkness:
-    """How dark the lines of numbers from 1 on are."""
-    order = np.lexsort((seen, number))
-    begins = np.searchsorted(number[order], np.arange(1, number.max() + 2))
+def _usual(seen: Darkness, patch: NDArray[Any], count: int) -> Darkness:
+    """How dark each patch is by its pixels; that of number 0 is the paper."""
+    order = np.lexsort((seen, patch))
+    begins = np.searchsorted(patch[order], np.arange(count + 1))
     at = begins[:-1] + (DARKER / 100 * (np.diff(begins) - 1)).astype(int)
-    return np.asarray(np.r_[1.0, seen[order][at]], np.float32)
+    return np.where(np.diff(begins) > 0, seen[order][at], np.float32(1))
 
 
 def _deepen(darkness: Darkness, lines: _Lines, rim_px: int) -> None:
