@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from morfax.tracer.drawing import coarse, grain, inks, large, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.border import border_note, without_border
+from morfax.tracer.drawing.deepening import deepened, deepened_note
 from morfax.tracer.drawing.levelling import levelled
 from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
@@ -54,12 +55,13 @@ Shapes = NDArray[np.bool_]
 
 class Reading(NamedTuple):
     """How a scan is read: the edges of filled shapes alone; printed lines of what kind of paper are left out;
-    or filled shapes as ink, which is as dark as the lines that end at them.
+    or filled shapes as ink, which is as dark as the lines that end at them; or pale lines as ink.
     """
 
     edge: bool = False
     printed: PaperKind = "auto"
     shapes_are_ink: bool = False
+    pale_is_ink: bool = False
 
 
 AS_LINES = Reading()
@@ -228,17 +230,24 @@ class Drawing:
         edges = without_border(darkness)
         if edges:
             notes = (*notes, border_note(edges))
+        pale_mm = 0.0
+        if reading.pale_is_ink and not isinstance(darkness, Tiles):
+            pale_mm = deepened(darkness, pitch[0], paper_noise)
         # 3. grain, and too large pixels
         in_lines, width_px, seen_px = within(darkness, paper_noise)
         if seen_px < coarse.SEEN_PX:
             notes = (*notes, coarse.note(seen_px, pitch[0]))
         slit = grain.slit_for(in_lines, width_px, pitch[0])
         if slit is not None:
-            darkness = grain.behind(slit, np.asarray(darkness))
-            notes = (*notes, grain.note(slit, pitch[0]))
+            behind = grain.behind(slit, np.asarray(darkness))
+            if grain.mends(np.asarray(darkness), behind):
+                darkness, notes = behind, (*notes, grain.note(slit, pitch[0]))
         finer = coarse.times_finer(darkness, width_px)
         if finer > 1:
             darkness = coarse.finer(np.asarray(darkness), finer, seen_px)
+            if reading.pale_is_ink:  # a line of a pixel is paler now
+                pale_mm += deepened(darkness, pitch[0] / finer, None)
+        notes = (*notes, deepened_note(pale_mm)) if pale_mm else notes
         return cls(
             darkness,
             pitch[0] / finer,

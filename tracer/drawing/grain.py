@@ -43,6 +43,7 @@ DIRECTIONS = 16
 SPREADS = 2.5  # standard deviations of the slit: its weight beyond that is 1 %
 EMPTY = 0.3  # of the ink's darkness: where nothing is darker, behind a spot of one pixel, is no line
 TILE_PX = 512
+INK, SOFTENED_PX = 0.5, 0.7  # of ink's darkness, and the spot behind which ink is told
 
 
 class Slit(NamedTuple):
@@ -89,6 +90,21 @@ def behind(slit: Slit, darkness: Darkness) -> Darkness:
                 part = seen[top : top + TILE_PX, left : left + TILE_PX]
                 part[:] = _tile(slit, around)[own][: part.shape[0], : part.shape[1]]
     return seen
+
+
+def mends(before: Darkness, after: Darkness) -> bool:
+    """Whether the ink of a sheet hangs together as well behind the slit as before.
+
+    Grain parts a line, and the slit joins it. Where it parts more than it joins, strokes are pressed harder
+    and softer, or bend tighter than the slit is long; that is no grain.
+    """
+    return _pieces(after) <= _pieces(before)
+
+
+def _pieces(darkness: Darkness) -> int:
+    """How many pieces the ink is in."""
+    soft = cv2.GaussianBlur(darkness, (0, 0), SOFTENED_PX)
+    return int(cv2.connectedComponents((soft > INK).view(np.uint8), connectivity=8)[0])
 
 
 def _tile(slit: Slit, darkness: Darkness) -> Darkness:

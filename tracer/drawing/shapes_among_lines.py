@@ -66,10 +66,12 @@ def drawing_of_all_ink(
 
     Raises what `Drawing.of` raises.
     """
-    drawing = Drawing.of(scan, scale, ink, Reading(printed=printed))
+    drawing = Drawing.of(scan, scale, ink, Reading(printed=printed, pale_is_ink=True))
     if drawing.shapes is None or not drawing.shapes.any():
         return drawing
-    whole = Drawing.of(scan, scale, ink, Reading(printed=printed, shapes_are_ink=True))
+    whole = Drawing.of(
+        scan, scale, ink, Reading(False, printed, shapes_are_ink=True, pale_is_ink=True)
+    )
     return (
         whole if has_lines(whole) else replace(drawing, notes=(*drawing.notes, MOSTLY_SHAPES))
     )

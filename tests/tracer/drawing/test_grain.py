@@ -109,3 +109,24 @@ def test_clean_ink_and_lines_of_several_pens_have_no_grain() -> None:
     assert within(both).grain < 0.06
     clean = inked(arc((22.0, 22.0), 16.0), seed=2)
     assert grain.slit_for(*within(clean.darkness)[:2], PITCH_MM) is None
+
+
+def test_small_bends_pressed_harder_and_softer_are_no_grain() -> None:
+    """Behind the slit the nine rings and three zigzags came apart: 23 strokes."""
+    dpi = 100.0
+    corners = np.arange(5, 40, 2.0)
+    zigzags = [
+        polyline(*[(x, y + 2.0 * (i % 2)) for i, x in enumerate(corners)]) for y in (5, 11, 17)
+    ]
+    small = [arc((x, 26.0), 1.5) for x in (8, 14, 20, 26, 32)]
+    large = [arc((x, 33.0), 2.4) for x in (8, 16, 24, 32)]
+    ink = inked(*zigzags, *small, *large, width_mm=0.85, dpi=dpi).darkness
+    down, right = np.mgrid[: ink.shape[0], : ink.shape[1]] * MM_PER_INCH / dpi
+    pressed = 0.72 + 0.28 * np.sin(2 * np.pi * (right + 0.6 * down) / 3.5)
+    noise = np.random.default_rng(1).normal(0, 2, ink.shape)
+    grey = np.clip(np.round(240 - 190 * ink * pressed + noise), 0, 255).astype(np.uint8)
+    drawing = Drawing.of(Scan(Path("made.png"), grey, Stated((dpi, dpi))), Scale())
+    assert within(drawing.darkness).grain > grain.LEAST_GRAIN
+    found = trace_ink(drawing)
+    assert len(found.lines) == len([*zigzags, *small, *large])
+    assert found.ink is not None and found.ink.followed_share > 0.99

@@ -1,0 +1,89 @@
+"""Pale lines where all the ink is asked for: followed at their middles on quiet paper, left on grained."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from morfax.motion.polyline import nearest_mm
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import Scan, Stated
+from morfax.tracer.drawing.shapes_among_lines import drawing_of_all_ink
+from morfax.tracer.program.trace_ink import trace_ink
+from tests.tracer.inked import DPI, arc, inked, polyline
+
+SQUARE = polyline((6, 6), (46, 6), (46, 36), (6, 36), (6, 6))
+WAVE = np.column_stack(
+    [np.linspace(6, 46, 800), 21 + 5 * np.sin(np.linspace(0, 4 * np.pi, 800))]
+)
+RING = arc((16, 12), 3.5)
+NOISE = 0.02  # of a quiet scan
+UM = 1e-3
+
+
+def read(pale: float, *, grain: float = 0.0, all_ink: bool = True) -> Drawing:
+    """A scan of a square with a ring in it, and a paler wave from side to side."""
+    dark, wave = inked(SQUARE, RING).darkness, inked(WAVE, SQUARE).darkness
+    alone = np.maximum(wave - inked(SQUARE).darkness, 0)
+    rng = np.random.default_rng(1)
+    coarse = cv2.GaussianBlur(rng.normal(0, 1, dark.shape), (0, 0), 1.5)
+    noise = rng.normal(0, NOISE, dark.shape) + grain * coarse / coarse.std()
+    grey = 240 - 200 * (np.maximum(dark, pale * alone) + noise)
+    pixels = np.asarray(np.clip(np.round(grey), 0, 255), np.uint8)
+    scan = Scan(Path("made.png"), pixels, Stated((DPI, DPI)))
+    return (
+        drawing_of_all_ink(scan, Scale(), None, "auto")
+        if all_ink
+        else Drawing.of(scan, Scale())
+    )
+
+
+def _middle(drawing: Drawing) -> tuple[slice, slice]:
+    """The part of a sheet where only the wave is."""
+    rows, columns = (np.array(drawing.darkness.shape) / 40).astype(int)
+    return slice(15 * rows, 30 * rows), slice(22 * columns, 34 * columns)
+
+
+def off_mm(drawing: Drawing, line: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far places of a line are from the nearest path."""
+    ways = [each.xy_mm for each in trace_ink(drawing).lines]
+    return np.min([nearest_mm(line, way) for way in ways], axis=0)
+
+
+@pytest.mark.parametrize("pale", [0.2, 0.3, 0.45])
+def test_a_pale_line_on_quiet_paper_is_followed_at_its_middle_and_told(pale: float) -> None:
+    drawing = read(pale)
+    off = off_mm(drawing, WAVE)
+    # the noise of a line of a fifth of ink's darkness is five times as high
+    assert np.sqrt(np.mean(off[30:-30] ** 2)) < 8 * UM
+    assert off.max() < 0.25  # it begins at the middle of the square's line
+    ink = trace_ink(drawing).ink
+    assert ink is not None and ink.followed_share > 0.995
+    assert any("less than half as dark" in note for note in drawing.notes)
+
+
+def test_dark_lines_stay_where_they_are_beside_a_pale_one() -> None:
+    off = off_mm(read(0.3), RING)
+    assert np.sqrt(np.mean(off**2)) < 4 * UM
+
+
+def test_what_is_paler_than_what_shines_through_stays_as_it_is() -> None:
+    drawing = read(0.1)
+    assert off_mm(drawing, WAVE).max() > 1 and not drawing.notes
+
+
+def test_on_grained_paper_nothing_is_made_darker() -> None:
+    """As on a photograph: grain would be lines."""
+    drawing = read(0.3, grain=0.07)
+    assert not any("less than half as dark" in note for note in drawing.notes)
+
+
+def test_where_all_the_ink_is_not_asked_for_pale_lines_stay_pale() -> None:
+    drawing = read(0.3, all_ink=False)
+    assert not any("less than half as dark" in note for note in drawing.notes)
+    assert np.percentile(np.asarray(drawing.darkness)[_middle(drawing)], 99) < 0.5

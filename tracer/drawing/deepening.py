@@ -1,0 +1,185 @@
+"""Deepening: pale lines of a quiet sheet are made as dark as its ink, so that the cells see them too.
+
+Signals: darkness of a sheet (0 paper, 1 ink), changed in place; out the length of the lines that were made
+darker, mm. It serves sheets of which all the ink is asked for.
+
+    darkness 1 ┤  ▟▙                   ▟▙      ▗▖
+            0.5┤··▐▌········  becomes  ▐▌······▐▌···
+            0.3┤  ▐▌      ▗▖           ▐▌      ▐▌
+               └──────────────         └────────────
+
+Each pale line is divided by its own darkness; as that is one figure for all of the line, its middle stays
+where it is. A line that fades is taken up again at its end, in a few rounds.
+
+Source: our own. Questions: what shines through the paper and what is printed on it may be as dark as a pale
+line. `LEAST` is above what shines through a sheet; on paper with grain nothing is made darker.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.median import percentile
+from morfax.tracer.drawing.components import FEW_PX, Mask, strips
+from morfax.tracer.drawing.noise import Noise, measured
+
+Darkness = NDArray[np.float32]
+
+INK = 0.5
+SPOT_PX = 1.0  # standard deviation of the spot behind which lines are told from noise
+# of ink's darkness behind that spot. Paler are what shines through a sheet and a JPEG's rims; chosen
+LEAST = 0.15
+# of ink's darkness: the noise of spots is up to 0.011 on scans, 0.013 to 0.03 on photographs of crumpled and
+# of squared paper and of boards; by trial on half of the fetched sheets
+MOST_NOISE = 0.012
+STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that tell its noise
+ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
+# percentiles one standard deviation apart: stains and rims of ink are on one side, lines on few places
+MIDDLE_AND_HIGH = 50.0, 84.13
+FAR_PX = 7  # from ink: its rims are no paper
+# pixels, and spots of the picture's softness: so near to ink is its own rim
+RIM_PX, SPOTS = 2, 2.0
+BEYOND_PX = (
+    2  # a line is made darker so much farther than that rim: up to ink, and into its edge
+)
+TOUCHED = 0.7  # of a pale line's darkness: within the rim of ink it goes on where it is as dark
+LEAST_MM, LEAST_PX = 2.0, 8  # as for ink: what is shorter is a speck; by trial
+SLENDER = 3.0  # times its breadth: a shorter patch is a blot
+BROAD, BROAD_PX = 2.0, 2.0  # usual widths and pixels: a broader patch is shade
+DARKER = 80.0  # percentile of a line's pixels: those that no edge makes lighter, as of ink
+FULL = 0.9  # a thin line may be as dark as ink and be seen pale behind the spot: it stays
+ROUNDS = 3  # each reaches what is half as dark: three reach an eighth
+
+
+class _Lines(NamedTuple):
+    """The pale lines of a sheet: numbers of their pixels (0 elsewhere), the darkness of each, the length."""
+
+    labels: NDArray[np.int32]
+    dark: Darkness
+    length_px: float
+
+
+def deepened(darkness: Darkness, pitch_mm: float, paper_noise: float | None) -> float:
+    """Make pale lines as dark as ink, in place; the length of all of them, mm."""
+    noise = measured(darkness, pitch_mm, paper_noise)
+    if not math.isfinite(noise.softness_px):
+        return 0.0
+    if noise_of_spots(darkness) > MOST_NOISE:
+        return 0.0
+    rim_px = RIM_PX + math.ceil(SPOTS * noise.softness_px)
+    length_px = 0.0
+    for _ in range(ROUNDS):
+        pale = pale_ink(darkness, SPOT_PX, LEAST, rim_px)
+        lines = _lines(pale, darkness, noise, pitch_mm)
+        if lines is None:
+            break
+        length_px += lines.length_px
+        _deepen(darkness, lines, rim_px)
+    return length_px * pitch_mm
+
+
+def deepened_note(pale_mm: float) -> str:
+    """What the operator should know of pale lines that are followed."""
+    return (
+        f"{pale_mm:.0f} mm of line are less than half as dark as the rest, and are followed as well; if they"
+        " shine through the paper, or are printed on it, rub them out (morfax correct --rub)"
+    )
+
+
+def pale_ink(darkness: Darkness, spot_px: float, level: float, rim_px: int) -> Mask:
+    """Where a sheet is darker than a level behind a spot, and is no ink, nor so near to ink as its rim."""
+    pale = np.zeros(darkness.shape, np.uint8)
+    halo = rim_px + math.ceil(4 * spot_px)
+    for top, bottom, rows in strips(pale.shape, halo=halo, pixels=FEW_PX):
+        soft = cv2.GaussianBlur(darkness[rows], (0, 0), spot_px)
+        inked = cv2.dilate((soft > INK).view(np.uint8), _disc(rim_px))
+        own = slice(top - rows.start, bottom - rows.start)
+        pale[top:bottom] = ((soft > level) & (inked == 0))[own]
+    return pale
+
+
+def noise_of_spots(darkness: Darkness) -> float:
+    """The standard deviation of the paper behind a spot, against the paper about it.
+
+    Grain, and what a camera has made of noise, is broader than pixels: a spot averages little of it. Shade
+    that is even, such as a tinted room of a plan, is none.
+    """
+    every = max(1, darkness.shape[0] // (STRIPS * STRIP_PX))
+    seen = list[Darkness]()
+    for top in range(0, darkness.shape[0], every * STRIP_PX):
+        strip = darkness[top : top + STRIP_PX]
+        soft = cv2.GaussianBlur(strip, (0, 0), SPOT_PX)
+        inked = cv2.dilate((soft > INK).view(np.uint8), _disc(FAR_PX))
+        differs = soft - cv2.GaussianBlur(soft, (0, 0), ABOUT_PX)
+        seen.append(differs[(strip != 0) & (inked == 0)][::SPARSE])  # bare paper is made 0
+    paper = np.concatenate(seen)
+    if not len(paper):
+        return 0.0
+    middle, high = (percentile(paper, percent) for percent in MIDDLE_AND_HIGH)
+    return high - middle
+
+
+def _lines(pale: Mask, darkness: Darkness, noise: Noise, pitch_mm: float) -> _Lines | None:
+    """The patches of a mask that are lines; None if none is."""
+    count, labels, boxes, _ = cv2.connectedComponentsWithStats(pale, connectivity=8)
+    if count < 2:
+        return None
+    rows, columns = np.nonzero(pale)
+    patch = labels[rows, columns]
+    depth = cv2.distanceTransform(pale, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[rows, columns]
+    areas = np.maximum(np.bincount(patch, minlength=count), 1)
+    # a line's pixels are a quarter of its breadth deep, and half a pixel, as a mean
+    broad_px = np.maximum(4 * np.bincount(patch, depth, count) / areas - 2, 1)
+    lengths_px = areas / broad_px
+    long_px = boxes[:, 2:4].max(axis=1)
+    usual_px = noise.width_mm / pitch_mm
+    are_lines = long_px >= max(LEAST_PX, LEAST_MM / pitch_mm)
+    are_lines &= lengths_px > SLENDER * broad_px
+    are_lines &= broad_px < BROAD * usual_px + BROAD_PX
+    are_lines[0] = False
+    dark = _usual(darkness[rows, columns], patch, count)
+    are_lines &= dark < FULL
+    if not are_lines.any():
+        return None
+    numbers = (np.arange(count) * are_lines).astype(np.int32)
+    return _Lines(numbers[labels], dark, float(lengths_px[are_lines].sum()))
+
+
+def _usual(seen: Darkness, patch: NDArray[Any], count: int) -> Darkness:
+    """How dark each patch is by its pixels; that of number 0 is the paper."""
+    order = np.lexsort((seen, patch))
+    begins = np.searchsorted(patch[order], np.arange(count + 1))
+    at = begins[:-1] + (DARKER / 100 * (np.diff(begins) - 1)).astype(int)
+    return np.where(np.diff(begins) > 0, seen[order][at], np.float32(1))
+
+
+def _deepen(darkness: Darkness, lines: _Lines, rim_px: int) -> None:
+    """Divide each pale line with its soft rims by its darkness, up to the ink that it runs into."""
+    away, nearest = cv2.distanceTransformWithLabels(
+        (lines.labels == 0).view(np.uint8),
+        cv2.DIST_L2,
+        cv2.DIST_MASK_PRECISE,
+        labelType=cv2.DIST_LABEL_PIXEL,
+    )
+    line_of = np.zeros(int(nearest.max()) + 1, np.int32)
+    line_of[nearest[lines.labels > 0]] = lines.labels[lines.labels > 0]
+    rows, columns = np.nonzero(away < rim_px + BEYOND_PX)
+    seen = darkness[rows, columns]
+    dark = lines.dark[line_of[nearest[rows, columns]]]
+    # in ink's rim only what is as dark as the line is the line
+    soft = cv2.GaussianBlur(darkness, (0, 0), SPOT_PX)
+    in_rim = cv2.dilate((soft > INK).view(np.uint8), _disc(rim_px))[rows, columns] > 0
+    is_line = ~in_rim | (seen > TOUCHED * dark)
+    darker = np.maximum(np.minimum(seen / dark, 1.0), seen)
+    darkness[rows, columns] = np.where(is_line, darker, seen)
+
+
+def _disc(radius_px: int) -> Mask:
+    """Mask of a disc."""
+    across = 2 * radius_px + 1
+    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)
