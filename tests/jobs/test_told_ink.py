@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from morfax.tracer.program.selection import Others
 from morfax.tracer.program.trace import trace
 from tests.tracer.drawing.test_skips import ring
 from tests.tracer.ink.test_pale import with_pale_bar
-from tests.tracer.inked import Points, inked, polyline
+from tests.tracer.inked import Points, arc, inked, polyline
 
 
 class Heard(Silent):
@@ -98,3 +99,19 @@ def test_a_plain_trace_tells_how_long_the_longest_other_line_is(
     traced = trace(inked(polyline((5, 5), (55, 9)), seed=1))
     (told,) = of_ink(replace(traced, others=others), several=False)
     assert told.startswith("one line of 50 mm is traced; ") and said in told
+
+
+def test_a_line_too_close_to_a_contour_is_told_and_the_advice_follows_it() -> None:
+    """Two rings 1.4 widths apart, joined by four short strokes: ink so near counted as the other's way."""
+    radii_mm = 20.0, 19.3
+    bars = [
+        polyline(*[(24 + r * math.cos(a), 24 + r * math.sin(a)) for r in radii_mm])
+        for a in (0.3, 1.9, 3.6, 5.0)
+    ]
+    drawing = inked(*[arc((24, 24), r) for r in radii_mm], *bars, seed=1)
+    said, endings = said_of(drawing, LineSettings(lines="contours"))
+    (told,) = [text for text in said if "joined to the contours was not followed" in text]
+    assert endings == ["closed"] and "--lines all follows all of it" in told
+    assert float(told.split()[1]) == pytest.approx(math.tau * radii_mm[1], rel=0.1)
+    said, endings = said_of(drawing, LineSettings(lines="all"))
+    assert endings == ["closed", "closed"] and said == []
