@@ -31,8 +31,10 @@ def of_ink(trace: Trace, *, several: bool) -> Iterator[str]:
     yield from _of_all(trace)
     yield from _of_solids(trace)
     yield from _of_rough_edges(trace)
+    yield from _of_lost_outlines(trace)
     yield from _of_unread(trace)
     yield from _of_letters(trace)
+    yield from _of_joined(trace)
     alone = not several and trace.fault is None
     rest = tuple(_of_rest(trace.lines[0])) if alone else ()
     yield from rest
@@ -127,6 +129,23 @@ def _of_rough_edges(trace: Trace) -> Iterator[str]:
         )
 
 
+def _of_lost_outlines(trace: Trace) -> Iterator[str]:
+    """Outlines that were left out, as the head was lost on them."""
+    lost = trace.lost_outlines
+    if not lost:
+        return
+    are, them = (
+        ("1 outline is", "it") if len(lost) == 1 else (f"{len(lost)} outlines are", "them")
+    )
+    (x, y), longest_mm = lost[0]
+    all_mm = sum(outline.length_mm for outline in lost)
+    yield (
+        f"{are} left out, {all_mm:.0f} mm in all: too small or too fine for the head, which was lost on "
+        f"{them} (the longest, {longest_mm:.1f} mm, at {x:.1f},{y:.1f} mm; the figures list all, --picture "
+        f"marks them); the other outlines are whole: look whether the part can do without {them}"
+    )
+
+
 def _of_unread(trace: Trace) -> Iterator[str]:
     """Ticks and dots that were taken for ink."""
     if trace.unread and trace.operator.marks == "auto":
@@ -147,6 +166,15 @@ def _of_letters(trace: Trace) -> Iterator[str]:
             "all follows it"
         )
     yield from of_letters(list(trace.letters))
+
+
+def _of_joined(trace: Trace) -> Iterator[str]:
+    """Ink that is joined to contours, and of which no run of the head has made a line."""
+    if trace.ink is None and trace.left_out_mm > LEFT_SHARE * trace.length_mm:
+        yield (
+            f"about {trace.left_out_mm:.0f} mm of ink that is joined to the contours was not followed: "
+            "bars between them, or lines that run too close to them; --lines all follows all of it"
+        )
 
 
 def _of_rest(line: Line) -> Iterator[str]:

@@ -106,6 +106,14 @@ def unexplained(trace: Trace) -> list[dict[str, Any]]:
     ]
 
 
+def lost_outlines(trace: Trace) -> list[dict[str, Any]]:
+    """Outlines that were left out: where the head was lost, and how long they are."""
+    return [
+        {"lost_outline_place_mm": lost.place_mm, "lost_outline_mm": lost.length_mm}
+        for lost in trace.lost_outlines
+    ]
+
+
 def _what(place: Unexplained) -> str:
     """What is at a place that closed lines do not explain."""
     if place.is_tip:

@@ -85,6 +85,8 @@ class Traced:
             stops_mm |= {f"pale {k}": (x, y) for k, (x, y, _) in enumerate(pale, 1)}
         beside = enumerate(self.trace.unexplained[:MARKED], 1)
         stops_mm |= {f"unexplained {k}": place.place_mm for k, place in beside}
+        lost_mm = enumerate(self.trace.lost_outlines[:MARKED], 1)
+        stops_mm |= {f"lost outline {k}": lost.place_mm for k, lost in lost_mm}
         stops_mm |= self.hollow.marked_mm
         if self.left is None:
             return stops_mm
@@ -137,6 +139,7 @@ class Traced:
             "reference_place_mm": trace.reference_mm,
             **self._figures_of_lines(),
             "unexplained": trace_figures.unexplained(trace) or None,
+            "lost_outlines": trace_figures.lost_outlines(trace) or None,
             **self.hollow.figures(),
             "leads": trace_figures.leads(trace) or None,
             "stops": trace_figures.stops(trace) or None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -128,3 +129,19 @@ def test_a_cross_that_a_program_begins_with_is_not_told() -> None:
     traced = Tracing.prepared(contours).trace(drawing, heard)
     assert traced.trace.reference_mm == pytest.approx((25, 25), abs=0.05)
     assert not any("reference point" in text for text in heard.said)
+
+
+def test_a_line_too_close_to_a_contour_is_told_and_the_advice_follows_it() -> None:
+    """Two rings 1.4 widths apart, joined by four short strokes: ink so near counted as the other's way."""
+    radii_mm = 20.0, 19.3
+    bars = [
+        polyline(*[(24 + r * math.cos(a), 24 + r * math.sin(a)) for r in radii_mm])
+        for a in (0.3, 1.9, 3.6, 5.0)
+    ]
+    drawing = inked(*[arc((24, 24), r) for r in radii_mm], *bars, seed=1)
+    said, endings = said_of(drawing, LineSettings(lines="contours"))
+    (told,) = [text for text in said if "joined to the contours was not followed" in text]
+    assert endings == ["closed"] and "--lines all follows all of it" in told
+    assert float(told.split()[1]) == pytest.approx(math.tau * radii_mm[1], rel=0.1)
+    said, endings = said_of(drawing, LineSettings(lines="all"))
+    assert endings == ["closed", "closed"] and said == []

@@ -93,7 +93,7 @@ def profiles_of(darkness: Kept) -> Profiles | None:
     good = steep & alone
     if np.count_nonzero(good) < FEWEST_PROFILES:
         return None
-    found = Profiles(seen[good], at_px, middles[good], across[good])
+    found = Profiles(_own(seen[good]), at_px, middles[good], across[good])
     # of a pattern or a damaged picture: what is dark in them is not in their middle
     is_line = median(middle_of(found)) > 0 and median(seen[good].sum(axis=1)) > 0
     return found if is_line else None
@@ -142,6 +142,18 @@ def _slope(darkness: Kept, places: Array, reach_px: float = SLOPE_PX) -> Array:
 def seen_at(darkness: Kept, places: Array) -> Array:
     """Darkness between pixels: places (2, n) or (n, 2, k), rows and columns."""
     return between(darkness, *np.moveaxis(places, -2, 0), edge_goes_on=True)
+
+
+def _own(seen: Array) -> Array:
+    """Profiles without the ink of a line that runs close beside: paper beyond the palest place between."""
+    middle, own = seen.shape[1] // 2, seen.copy()
+    for side in (own[:, middle:], own[:, middle::-1]):  # from the middle outwards
+        left = np.maximum.accumulate(side < INK, axis=1)  # the own line
+        again = left & (side > INK)
+        for k in np.flatnonzero(again.any(axis=1)):
+            first, next_line = int(np.argmax(left[k])), int(np.argmax(again[k]))
+            side[k, first + int(np.argmin(side[k, first:next_line])) :] = 0.0
+    return own
 
 
 def _smooth(seen: Array) -> Array:

@@ -37,7 +37,8 @@ from morfax.tracer.program.trace import followed_through
 # All limits below were chosen by trial on the test drawings.
 NEW = 0.6  # of a line's way: the rest may be another line's too
 SAME_WIDTHS = 0.7  # a place nearer to another line is that line's
-BESIDE_WIDTHS = 1.5  # ink nearer to a way is that way's
+# ink nearer to a way is that way's; where that is all of it, a line may run close beside: then so near
+BESIDE_WIDTHS, CLOSE_WIDTHS = 1.5, 1.2
 RUNS = 60  # tried on a patch, ...
 TRIED_MM = 1500.0  # ... and travel, besides the length of its ink, in runs that are no lines
 
@@ -69,7 +70,11 @@ def joined_to(line: Line, contour: Contour, setup: Setup) -> tuple[list[Line], f
         return [], 0.0
     shortest_mm = float(least_mm(stroke.width_mm))
     found = _Found([line], [line.places_mm])
-    left = _left(stroke, found.tried)
+    beside = BESIDE_WIDTHS
+    left = _left(stroke, found.tried, beside)
+    if left.length_mm < shortest_mm:
+        beside = CLOSE_WIDTHS
+        left = _left(stroke, found.tried, beside)
     if left.length_mm < shortest_mm:
         return [], 0.0
     view = view_of(setup.sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
@@ -81,12 +86,12 @@ def joined_to(line: Line, contour: Contour, setup: Setup) -> tuple[list[Line], f
         if stance is not None:
             found.take(followed_through(setup, stance))
         # 2. ink that no run has passed, or else that none has tried
-        left = _left(stroke, [*found.tried, *found.in_vain])
+        left = _left(stroke, [*found.tried, *found.in_vain], beside)
         if left.length_mm < shortest_mm:
-            left = _left(stroke, found.tried)
+            left = _left(stroke, found.tried, beside)
         if left.length_mm < shortest_mm or found.spent_mm > TRIED_MM + stroke.length_mm:
             break
-    over = _left(stroke, [some.places_mm for some in found.lines])
+    over = _left(stroke, [some.places_mm for some in found.lines], beside)
     return found.lines[1:], over.length_mm
 
 
@@ -100,9 +105,9 @@ def _is_line(line: Line, others: list[Line]) -> bool:
     return bool(np.mean(~np.any(near, axis=0)) > NEW)
 
 
-def _left(stroke: Stroke, ways: list[Array]) -> Stroke:
-    """The part of a stroke that none of some ways passes."""
-    beside_mm = BESIDE_WIDTHS * stroke.width_mm
+def _left(stroke: Stroke, ways: list[Array], beside: float) -> Stroke:
+    """The part of a stroke that none of some ways passes within so many widths."""
+    beside_mm = beside * stroke.width_mm
     near = np.any([nearest_mm(stroke.middles_mm, way) < beside_mm for way in ways], axis=0)
     # all of it, as a rule: nothing to weigh, and scipy is not imported
     share = 0.0 if near.all() else float(np.average(~near, weights=1 / _crowded(stroke)))

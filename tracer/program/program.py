@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from morfax.tracer.following.line import Line
     from morfax.tracer.ink.ledger import Balance
     from morfax.tracer.operator.work import Action, Work
+    from morfax.tracer.program.lost_outlines import LostOutline
     from morfax.tracer.program.unexplained import Unexplained
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first comes first
@@ -50,6 +51,7 @@ class Trace:
     `unexplained`: places at which closed lines are not what is drawn. `enlarged`: how many times at most
     the outlines of solid areas among lines were; `notes` on these are for the operator. `letters`: numbers of
     contours that are likely lettering; `letters_out`: of those that were left out as too low.
+    `lost_outlines`: edges that were left out, as the head was lost on them.
     """
 
     lines: tuple[Line, ...]
@@ -65,6 +67,7 @@ class Trace:
     notes: tuple[str, ...] = ()
     letters: tuple[int, ...] = ()
     letters_out: tuple[int, ...] = ()
+    lost_outlines: tuple[LostOutline, ...] = ()
 
     @property
     def work(self) -> Work:

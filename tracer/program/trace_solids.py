@@ -20,6 +20,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.left_out import Area, InkLeft
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.lost_outlines import without_lost
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress
 from morfax.tracer.program.trace_lines import trace_lines
@@ -34,7 +35,9 @@ def of_silhouettes(
     """Follow all edges of a sheet of silhouettes; raises DrawingFault if it has none."""
     edges = edges_of(drawing)
     found = trace_lines(edges, "contours", settings, operator, progress)
-    return replace(found, enlarged=_enlarged(edges, found.lines), notes=edges.notes)
+    whole, lost = without_lost(edges, found.lines)
+    enlarged = _enlarged(edges, whole)
+    return replace(found, lines=whole, lost_outlines=lost, enlarged=enlarged, notes=edges.notes)
 
 
 def with_outlines(trace: Trace, drawing: Drawing, left: InkLeft, settings: Settings) -> Trace:
@@ -52,13 +55,15 @@ def with_outlines(trace: Trace, drawing: Drawing, left: InkLeft, settings: Setti
         return replace(trace, notes=(f"left out: {cut}",))
     # crosses and ticks are ink on such a sheet: nothing stops the head at an edge either
     found = trace_lines(solid, "contours", settings)
+    whole, lost = without_lost(solid, found.lines)
     last = max(line.number for line in trace.lines)
-    outlines = [replace(line, number=last + line.number, on_edge=True) for line in found.lines]
+    outlines = [replace(line, number=last + line.number, on_edge=True) for line in whole]
     areas = tuple(_told(area, outlines, BESIDE_PX * drawing.pitch_mm) for area in ink.areas)
     return replace(
         trace,
         lines=(*trace.lines, *outlines),
         ink=ink._replace(areas=areas),
+        lost_outlines=lost,
         enlarged=_enlarged(solid, outlines),
         notes=solid.notes,
     )

@@ -14,8 +14,9 @@ from morfax.motion.contour import distance
 from morfax.tracer.drawing.coarse import finer
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
-from morfax.tracer.drawing.scan import Scan, Stated
+from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
 from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 
 WIDTH_MM = 0.5
@@ -136,3 +137,24 @@ def test_the_resolution_that_is_advised_is_enough(dpi: float) -> None:
     found = re.search(r"scan at (\d+) dpi", advice)
     assert found is not None
     assert not any("pixels wide" in text for text in doubts(float(found[1])))
+
+
+@pytest.mark.parametrize(
+    ("dpi", "width_mm", "apart"),
+    [(120.0, 0.3, 2.5), (120.0, 0.3, 3.0), (100.0, 0.5, 2.0), (120.0, 0.5, 2.0)],
+)
+def test_two_coarse_lines_close_beside_each_other_are_two(
+    dpi: float, width_mm: float, apart: float
+) -> None:
+    """Two lines in one profile looked like one broad line, which is not coarse: their ink ran together."""
+    radii_mm = 20.0, 20.0 - apart * width_mm
+    rings = [arc((24.0, 24.0), radius_mm) for radius_mm in radii_mm]
+    ink = inked(*rings, width_mm=width_mm, dpi=dpi, seed=1).darkness
+    grey = np.clip(np.round(235 - 195 * ink), 0, 255).astype(np.uint8)
+    drawing = Drawing.of(Scan(Path("made.png"), grey, Stated((dpi, dpi))), Scale())
+    assert drawing.finer == 2
+    lines = trace_lines(drawing).lines
+    assert [line.ending for line in lines] == ["closed", "closed"]
+    for line, radius_mm in zip(lines, sorted(radii_mm), strict=True):
+        off_mm = np.hypot(*(line.xy_mm - 24.0).T) - radius_mm
+        assert np.abs(off_mm).max() < 0.2 * MM_PER_INCH / dpi  # a fifth of a pixel

@@ -256,7 +256,7 @@ def test_the_ink_across_a_path_is_read_from_tiles(cam):
         [[20.0, 20.0], [21.0, 20.0], [300.0, 20.0]]
     )  # the last is beyond the sheet
     across = np.linspace(-1.0, 1.0, 9)
-    seen = [deviation._profile(each, places, np.zeros(3), across) for each in cam]
+    seen = [deviation.darkness_across(each, places, np.zeros(3), across) for each in cam]
     np.testing.assert_allclose(seen[0], seen[1], atol=STEP)
 
 
