@@ -122,3 +122,10 @@ def at_rest(place_mm: Array, lead_mm: float) -> Any:
     state.lead_mm = lead_mm
     state.ink = state.swept_ink = 1.0
     return state
+
+
+def two_of(state: Any) -> Any:
+    """Two states like this one, side by side, (2,): records that a kernel may use up."""
+    states = np.zeros(2, STATE).view(np.recarray)
+    states[:] = state
+    return states
