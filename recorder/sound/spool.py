@@ -15,6 +15,7 @@ from pathlib import Path as FilePath
 
 import numpy as np
 import soundfile
+from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.motion.ending import Ending
@@ -78,6 +79,7 @@ class Spool(Ending):
             for_soundfile(file), "w", rate_hz, tracks, subtype, format=container
         )
         self.frames = 0
+        self._samples = np.empty((0, tracks), np.int16)
         if text and container != "W64":
             self._sound.comment = text
 
@@ -95,9 +97,17 @@ class Spool(Ending):
                 f"cannot write {self._name}: an AIFF ends at 2 GiB; write a .wav, .rf64, .w64 or .flac"
             )
         try:
-            self._sound.write(_to_16_bit(frames) if self._subtype == "PCM_16" else frames)
+            self._sound.write(self._in_16_bit(frames) if self._subtype == "PCM_16" else frames)
         except AssertionError:  # soundfile asserts that libsndfile wrote all of it
             raise soundfile.SoundFileRuntimeError("not all frames were written") from None
+
+    def _in_16_bit(self, frames: Frames) -> NDArray[np.int16]:
+        """Frames as clipped samples of 16 bit, in memory that the next ones take over."""
+        if len(self._samples) < len(frames):
+            self._samples = np.empty(frames.shape, np.int16)
+        samples = self._samples[: len(frames)]
+        _to_16_bit(frames, samples)
+        return samples
 
     def _check_whole(self) -> None:
         """Raise SoundFileError unless the last frame is there: a FLAC meets a full disk only on closing."""
@@ -109,18 +119,11 @@ class Spool(Ending):
                 raise soundfile.SoundFileRuntimeError("the last frame is missing")
 
 
-@njit(cache=True)
-def _to_16_bit(frames):  # type: ignore[no-untyped-def]
-    """Frames (n, tracks) of full scale 1 as clipped 16-bit samples; libsndfile takes six times as long."""
-    out = np.empty(frames.shape, np.int16)
+@njit(cache=True, nogil=True)
+def _to_16_bit(frames, out):  # type: ignore[no-untyped-def]
+    """Make clipped 16-bit samples of frames of full scale 1; libsndfile takes six times as long."""
     for i in range(frames.shape[0]):
         for j in range(frames.shape[1]):
-            out[i, j] = np.int16(
-                np.rint(
-                    min(
-                        max(frames[i, j] * np.float32(32767), np.float32(-32768)),
-                        np.float32(32767),
-                    )
-                )
-            )
-    return out
+            value = frames[i, j] * np.float32(32767)
+            value = min(max(value, np.float32(-32768)), np.float32(32767))
+            out[i, j] = np.int16(np.rint(value))

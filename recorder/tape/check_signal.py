@@ -59,6 +59,7 @@ class CheckWriter:
         self._held: list[Frames] = []
         self._held_frames, self._done = 0, 0  # frames of the tape
         self._number = 0  # the next frame of the check signal
+        self._wave = _Wave(-1.0, 0, self._step, self._amplitude)
 
     def positions(self, cycles: Array) -> None:
         """Take the next displacements (n, axes), in cycles from the start."""
@@ -95,18 +96,31 @@ class CheckWriter:
 
     def _finished(self, count: int, *, last: bool) -> Iterator[Frames]:
         """So many held frames, which are those of one frame of the check signal, with it."""
-        bits = np.empty((self._tracks, SYMBOLS + 1))
+        bits = np.empty((SYMBOLS + 1, self._tracks))
         for track, said in enumerate(self._said(last)):
-            bits[track, :SYMBOLS], bits[track, SYMBOLS] = to_bits(said), SYNC[0]
-        frames = np.concatenate(self._held)
-        out, self._held = np.ascontiguousarray(frames[:count]), [frames[count:]]
-        start = self._number * CYCLES_PER_FRAME
-        _add(out, self._done * self._step - start, self._step, bits, self._amplitude)
+            bits[:SYMBOLS, track], bits[SYMBOLS, track] = to_bits(said), SYNC[0]
+        first = self._done * self._step - self._number * CYCLES_PER_FRAME
+        if not self._wave.serves(first, count):
+            self._wave = _Wave(first, count, self._step, self._amplitude)
+        done = 0
+        for piece in self._taken(count):
+            _add(piece, done, self._wave.table, bits)
+            done += len(piece)
+            yield piece
         self._done, self._held_frames = self._done + count, self._held_frames - count
         self._number += 1
         gone = max(self._row(self._number) - 1 - self._first_row, 0)
         self._cycles, self._first_row = self._cycles[gone:], self._first_row + gone
-        yield out
+
+    def _taken(self, count: int) -> Iterator[Frames]:
+        """The first held frames, so many, in the pieces in which they came."""
+        while count:
+            piece = self._held.pop(0)
+            if len(piece) > count:
+                self._held.insert(0, piece[count:])
+                piece = piece[:count]
+            count -= len(piece)
+            yield piece
 
     def _said(self, last: bool) -> Iterator[CheckFrame]:
         """What each track says in the next frame."""
@@ -116,18 +130,18 @@ class CheckWriter:
         rows = self._cycles[max(first - self._gauge, 0) : ends]
         # its first instant, and its middle
         ats = (self._number + np.array([0, 0.5])) * self._rows_per_frame - self._first_row
+        places = _between(self._cycles, ats)
         fastest, hardest = np.zeros((2, self._tracks - 1))
         _gauged(rows, (self._rate_hz, self._gauge), fastest, hardest)
         for axis in range(self._tracks - 1):
-            places = np.interp(ats, np.arange(len(self._cycles)), self._cycles[:, axis])
             yield CheckFrame(
                 axis + 1,
                 self._number,
-                float(places[0]),
+                float(places[0, axis]),
                 float(fastest[axis]),
                 float(hardest[axis]),
                 last,
-                middle_cycles=float(places[1]),
+                middle_cycles=float(places[1, axis]),
             )
 
 
@@ -146,15 +160,51 @@ def _gauged(rows, how, fastest, hardest):  # type: ignore[no-untyped-def]
                 hardest[axis] = max(hardest[axis], abs((speed - before) * (rate_hz / gauge)))
 
 
-@njit(cache=True)
-def _add(frames, first, step, bits, amplitude):  # type: ignore[no-untyped-def]
-    """Add the subcarrier of all tracks; `first`: cycles of the reference since the check frame's start."""
-    for i in range(len(frames)):
+def _between(rows: Array, ats: Array) -> Array:
+    """Rows at places between them, on the straight line; those outside are at the first or the last row."""
+    ats = np.clip(ats, 0, len(rows) - 1)
+    below = ats.astype(np.int64)
+    above = np.minimum(below + 1, len(rows) - 1)
+    return (rows[above] - rows[below]) * (ats - below)[:, None] + rows[below]
+
+
+class _Wave:
+    """The subcarrier over one check frame, which is the same in each that begins as far before its frames.
+
+    `table`: the subcarrier, the share of the next symbol, and the number of the symbol, of each frame.
+    """
+
+    def __init__(self, first: float, count: int, step: float, amplitude: float) -> None:
+        self._first, self._count = first, count
+        self.table = np.empty(count), np.empty(count), np.empty(count, np.int64)
+        _fill((first, step, amplitude), *self.table)
+
+    def serves(self, first: float, count: int) -> bool:
+        """Whether it serves frames whose first is so far behind the start, cycles of the reference."""
+        return first == self._first and count <= self._count
+
+
+@njit(cache=True, nogil=True)
+def _fill(how, waves, shares, symbols):  # type: ignore[no-untyped-def]
+    """Fill a table; `how`: cycles of the reference since the check frame's start, those of a frame of the
+    tape, and the amplitude.
+    """
+    first, step, amplitude = how
+    for i in range(len(waves)):
         theta = first + i * step
         place = max(theta, 0.0) / CYCLES_PER_SYMBOL
-        symbol = min(int(place), bits.shape[1] - 2)
-        after = 0.5 - 0.5 * _sine(0.25 + 0.5 * (place - symbol))  # sin² of a quarter turn
-        wave = amplitude * _sine(theta / CYCLES_PER_SUBCARRIER)
+        symbols[i] = min(int(place), SYMBOLS - 1)
+        # sin² of a quarter turn
+        shares[i] = 0.5 - 0.5 * _sine(0.25 + 0.5 * (place - symbols[i]))
+        waves[i] = amplitude * _sine(theta / CYCLES_PER_SUBCARRIER)
+
+
+@njit(cache=True, nogil=True)
+def _add(frames, at, table, bits):  # type: ignore[no-untyped-def]
+    """Add the subcarrier of all tracks (n, tracks) to frames of which the first is `at` in the table."""
+    waves, shares, symbols = table
+    for i in range(len(frames)):
+        wave, share, symbol = waves[at + i], shares[at + i], symbols[at + i]
         for track in range(frames.shape[1]):
-            now, then = bits[track, symbol], bits[track, symbol + 1]
-            frames[i, track] += wave * (now + (then - now) * after)
+            now, then = bits[symbol, track], bits[symbol + 1, track]
+            frames[i, track] += wave * (now + (then - now) * share)

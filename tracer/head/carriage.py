@@ -25,7 +25,7 @@ from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tune, tuned_along
 from morfax.tracer.head.slow_cell import Stretch
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import Home, Mark, at_rest, put_on_drum
+from morfax.tracer.head.state import Home, Mark, at_rest, put_on_drum, two_of
 from morfax.tracer.head.trail import Marks, Trail
 from morfax.tracer.sensing.leg import Leg, heading_of, turn
 from morfax.tracer.sensing.view import View
@@ -110,19 +110,16 @@ class Carriage:
         """
         if self.count > 1:  # a run that is taken up again
             return True
-        off_mm, back_mm = CALIBRATED_ASIDE * view.width_mm, 0.0
         stations, tuning = tuned_along(view), self.tuning
         if view.on_edge:
             tuning = tuning._replace(lead_mm=0.0)
-        for k in range(stations):
-            for side in (-1.0, 1.0):
-                state = self.state.copy()
-                state.lead_mm = tuning.lead_mm
-                state.x_mm += k * view.step_mm * math.cos(self.heading_rad)
-                state.y_mm += k * view.step_mm * math.sin(self.heading_rad)
-                state.middle_mm = 0.0 if view.on_edge else state.middle_mm
-                back_mm -= side * swinging.heard(view.cells, state, tuning, side * off_mm)
-        return back_mm > HEARD * 2 * stations * off_mm
+        states = two_of(self.state)
+        states[0].lead_mm = tuning.lead_mm
+        states[0].middle_mm = 0.0 if view.on_edge else self.state.middle_mm
+        off_mm = CALIBRATED_ASIDE * view.width_mm
+        how = stations, float(view.step_mm), float(off_mm)
+        back_mm = swinging.goes_back(view.cells, states, tuning, how)
+        return bool(back_mm > HEARD * 2 * stations * off_mm)
 
     @property
     def sees_line(self) -> bool:

@@ -131,3 +131,10 @@ def put_on_drum(state: Any, places_mm: Array) -> None:
     kept = places_mm[-DRUM:]
     state.drum_mm[: len(kept)] = kept
     state.places = len(kept)
+
+
+def two_of(state: Any) -> Any:
+    """Two states like this one, side by side, (2,): records that a kernel may use up."""
+    states = np.zeros(2, STATE).view(np.recarray)
+    states[:] = state
+    return states

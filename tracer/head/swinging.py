@@ -141,3 +141,23 @@ def heard(cells, state, t, off_mm):  # type: ignore[no-untyped-def]
         swing(cells, state, t, way_of(state))
     detect(state, t)
     return state.middle_mm - set_mm
+
+
+@njit(cache=True, _nrt=False)
+def goes_back(cells, states, t, how):  # type: ignore[no-untyped-def]
+    """By how much a standing head moves its sweep back to the line, summed over places ahead and both sides,
+    mm.
+
+    `states`: that of the head, and room for another one. `how`: the number of places, mm between them, and
+    how far the sweep is set off, mm.
+    """
+    stations, step_mm, off_mm = how
+    own, tried = states[0], states[1]
+    way, back_mm = way_of(own), 0.0
+    for k in range(stations):
+        for side in (-1.0, 1.0):
+            states[1] = states[0]
+            tried.x_mm += k * step_mm * way[0]
+            tried.y_mm += k * step_mm * way[1]
+            back_mm -= side * heard(cells, tried, t, side * off_mm)
+    return back_mm

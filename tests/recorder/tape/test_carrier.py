@@ -61,6 +61,18 @@ def test_the_plain_kernel_is_the_compiled_one(monkeypatch: pytest.MonkeyPatch) -
     assert np.abs(all_frames(FULL, positions) - compiled).max() <= SINE
 
 
+def test_the_chunks_of_the_kernel_do_not_show() -> None:
+    # each period by itself is what it is within many; a chunk's last periods are no whole chunk
+    periods = 2 * carrier.CHUNK_PERIODS + 5
+    cycles = np.cumsum(np.random.default_rng(19).normal(0, 0.05, (periods + 3, 3)), axis=0)
+    whole, reference_cycles = np.empty((8 * periods, 4), np.float32), 6001.37 / 6000
+    carrier._write(cycles, 7, reference_cycles, 0.5, whole)
+    one = np.empty((8, 4), np.float32)
+    for i in range(periods):
+        carrier._write(cycles[i : i + 4], 7 + i, reference_cycles, 0.5, one)
+        assert np.array_equal(one, whole[8 * i : 8 * i + 8])
+
+
 def test_the_sine_is_a_sine() -> None:
     cycles = np.linspace(-3, 3, 60_001)
     assert np.abs(carrier._sine.py_func(cycles) - np.sin(2 * np.pi * cycles)).max() <= 1.1e-7

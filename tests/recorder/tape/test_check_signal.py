@@ -10,6 +10,9 @@ import soundfile
 
 from morfax.motion.motion import Motion
 from morfax.player.tape.check_reader import read_ahead, read_check
+from morfax.recorder.tape import check_signal
+from morfax.recorder.tape.check_frame import SYMBOLS
+from morfax.recorder.tape.check_signal import CheckWriter
 from morfax.recorder.tape.format import CHECK_SHARE
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
 from tests.player.worn import program
@@ -110,3 +113,62 @@ def test_a_tape_shorter_than_a_frame_is_whole(tmp_path: Path) -> None:
     motion = Motion(np.zeros((100, 3)))
     report = record(motion, tmp_path / "a.wav", TapeFormat(dwell_s=0.0, checked=True))
     assert report.frames == 800
+
+
+def signal_alone(fmt: TapeFormat, sizes: list[int]) -> tuple[list[np.ndarray], np.ndarray]:
+    """Silent frames that were handed over in blocks, and these blocks with the check signal, in one."""
+    writer = CheckWriter(fmt)
+    given, out = [], []
+    for rows in sizes:
+        writer.positions(np.zeros((rows, 3)))
+        given.append(np.zeros((rows * fmt.samples_per_motion, 4), np.float32))
+        out += list(writer.frames(given[-1]))
+    return given, np.concatenate([*out, *writer.rest()])
+
+
+def test_the_signal_lies_on_the_frames_that_were_given() -> None:
+    # and on no copy of them
+    given, out = signal_alone(TapeFormat(checked=True), [5000, 3000, 7000])
+    assert np.array_equal(np.concatenate(given), out)
+    assert np.abs(out).max() > 0.9 * CHECK_SHARE * TapeFormat().level
+
+
+def test_the_subcarrier_of_one_frame_serves_all_where_frames_begin_alike(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = []
+    fill = check_signal._fill
+
+    def counted(*args: object) -> None:
+        made.append(args)
+        fill(*args)
+
+    monkeypatch.setattr(check_signal, "_fill", counted)
+    signal_alone(TapeFormat(checked=True), [30_000])  # ten check frames
+    assert len(made) <= 3  # the empty one, that of the whole frames, that of the rest
+
+
+@pytest.mark.parametrize("reference_hz", [6000.0, 6001.37])
+def test_the_subcarrier_is_in_phase_with_the_reference(reference_hz: float) -> None:
+    fmt = TapeFormat(checked=True, reference_hz=reference_hz)
+    _, out = signal_alone(fmt, [20_000])
+    theta = np.arange(len(out)) * (reference_hz / RATE_HZ)
+    wave = CHECK_SHARE * fmt.level * np.sin(2 * np.pi * theta / 6)
+    # at its start a symbol is +1 or -1 whole; in its first twentieth it has gone over by 0.6 % of the two
+    whole = theta % 24 < 24 / 20
+    off = np.abs(np.abs(out[whole, 1]) - np.abs(wave[whole]))
+    assert off.max() <= 2 * 0.0062 * CHECK_SHARE * fmt.level
+
+
+def test_the_plain_kernels_of_the_signal_are_the_compiled_ones() -> None:
+    how = (-0.01, 0.125, 0.1)
+    tables = [(np.empty(3000), np.empty(3000), np.empty(3000, np.int64)) for _ in range(2)]
+    check_signal._fill(how, *tables[0])
+    check_signal._fill.py_func(how, *tables[1])
+    bits = np.sign(np.random.default_rng(19).normal(size=(SYMBOLS + 1, 4)))
+    frames = np.full((2, 900, 4), 0.3, np.float32)
+    check_signal._add(frames[0], 40, tables[0], bits)
+    check_signal._add.py_func(frames[1], 40, tables[1], bits)
+    # the compiler may fuse multiply and add
+    assert np.abs(frames[0] - frames[1]).max() <= 6e-8  # a step of float32
+    assert np.array_equal(tables[0][2], tables[1][2])

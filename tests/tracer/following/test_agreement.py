@@ -8,6 +8,7 @@ darkness in every reading is averaged away by the sweep and the drum.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,8 +18,8 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following import follower
 from morfax.tracer.following.agreement import AGREES
 from morfax.tracer.following.start import put_down
-from morfax.tracer.head import carriage
-from morfax.tracer.head.settings import Settings
+from morfax.tracer.head import carriage, swinging
+from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tuned_along
 from morfax.tracer.program.trace import trace
 from tests.console.conftest import SAMPLES
 from tests.tracer.inked import UM, arc, inked, polyline
@@ -91,3 +92,34 @@ def test_a_circle_of_small_radius_is_the_cell_s() -> None:
     assert line.cell_share is not None and line.cell_share > 0.7
     off_mm = np.hypot(*(run.xy_mm - 14).T) - 2.2
     assert math.sqrt(float(np.mean(off_mm**2))) < 5 * UM
+
+
+@pytest.mark.parametrize("broken", [None, "inverted", "noisy"])
+def test_the_standing_head_hears_in_one_kernel_what_it_heard_sweep_by_sweep(
+    broken: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each sweep is set off from the same state, whatever the one before made of its own; the head's own
+    state stays as it is; and the plain kernel says the same."""
+    settings = Settings() if broken is None else BROKEN[broken]
+    stance, _ = next(iter(put_down(inked(STRAIGHT, seed=1))))
+    head, view = follower.Follower(stance, settings, 6000.0).carriage, stance.view
+    own, heard = head.state.copy(), []
+    compiled = swinging.goes_back
+
+    def noted(*args: Any) -> float:
+        heard.extend([compiled(*args), compiled.py_func(*args)])
+        return float(heard[0])
+
+    monkeypatch.setattr(swinging, "goes_back", noted)
+    hears = head.hears(view)
+    assert head.state == own
+    off_mm, back_mm, stations = CALIBRATED_ASIDE * view.width_mm, 0.0, tuned_along(view)
+    for k in range(stations):
+        for side in (-1.0, 1.0):
+            state = own.copy()
+            state.lead_mm = head.tuning.lead_mm
+            state.x_mm += k * view.step_mm * math.cos(state.heading_rad)
+            state.y_mm += k * view.step_mm * math.sin(state.heading_rad)
+            back_mm -= side * swinging.heard(view.cells, state, head.tuning, side * off_mm)
+    assert heard == pytest.approx([back_mm, back_mm], rel=1e-12)
+    assert hears == (back_mm > carriage.HEARD * 2 * stations * off_mm)
