@@ -33,9 +33,10 @@ WINDOW_STEADY, WINDOW = 1.3, 0.75
 STEADY = 0.2  # of the bend: an arc's changes by less from one half of a stretch to the other
 SIZES = 5  # of windows, from the fast cell's half window to the narrowest
 CHORDS = 4  # places of a way to half a window, between which its headings are taken
-# that a way may turn from one half of a window to the other: twice what stops a fast cell, for half of what
-# stations feel on few pixels is noise
-TURNS_RAD = 2 * TIGHTEST_RAD
+# that a way may turn from one half of a window to the other: half as much again as what stops a fast cell,
+# for a part of what stations feel on few pixels is noise. Twice as much takes a corner of 30 degrees, which
+# stations feel as a turn of 0.45, for a bend: the widest window cuts it by 37 um at 300 dpi
+TURNS_RAD = 1.5 * TIGHTEST_RAD
 # over the line's width, the bend at which the cell stops, and the tightest to which it may be led on: there
 # the inks of both sides touch
 BENT_WIDTHS, TOUCHING_WIDTHS = 0.7, 1.0

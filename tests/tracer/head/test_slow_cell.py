@@ -7,6 +7,7 @@ the path of a hole of 0.85 mm is not the cell's.
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -28,11 +29,12 @@ from morfax.tracer.head.slow_cell import (
     Stretch,
     Tried,
     along,
+    heads_along,
     keeps_mm,
     keeps_to,
     pieces,
 )
-from morfax.tracer.head.state import Home
+from morfax.tracer.head.state import MORE, Home
 from morfax.tracer.head.windows import Ahead, narrowest
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked
@@ -170,6 +172,19 @@ def test_the_stairs_of_hard_pixels_do_not_stop_the_cell(width_mm: float, dpi: fl
     assert led[CELL] > 0.85 * (led[CELL] + led[STATIONS]), led
     off = distance(line.xy_mm[::4], circle).path_to_reference
     assert off.rms_mm < 0.25 * 25.4 / dpi
+
+
+@pytest.mark.parametrize(("turned_rad", "is_kept"), [(0.0, True), (0.2, True), (0.3, False)])
+def test_a_head_that_has_turned_away_does_not_keep_to_the_way(
+    head: Follower, turned_rad: float, is_kept: bool
+) -> None:
+    """A tick turns the head before it is off the way; also where it has stopped on the way."""
+    way = ahead(head, RADIUS_MM)
+    for last in (len(way) // 2, len(way)):
+        dx, dy = way[min(last, len(way) - 1)] - way[last - 3]
+        state = head.carriage.state.copy()
+        state.heading_rad = math.atan2(dy, dx) + turned_rad
+        assert heads_along(Tried(way[:last], state, MORE), way) is is_kept
 
 
 @pytest.mark.parametrize("off_mm", [0.0, 0.004, 0.0099, 0.0101, 0.05])

@@ -83,6 +83,19 @@ def test_the_cell_does_not_look_beyond_what_is_clear(tuning: Tuning) -> None:
     assert windows[-1].half_mm == narrow_mm(tuning, straight())
 
 
+def test_a_felt_corner_is_no_bend_for_a_wide_window(tuning: Tuning) -> None:
+    """A corner of 30 degrees, rounded by 0.3 mm as stations feel it: the widest window would cut it."""
+    angles = np.linspace(0, np.pi / 6, 30)
+    bend = (2.0, 0.0) + 0.6 * np.column_stack([np.sin(angles), 1 - np.cos(angles)])
+    on = bend[-1] + np.linspace(0.02, 2, 100)[:, None] * (np.cos(np.pi / 6), 0.5)
+    halves_mm = [
+        window.half_mm
+        for window in widest(tuning, Ahead(np.vstack([straight(2.0), bend[1:], on]), WIDTH_MM))
+    ]
+    assert halves_mm[0] == halves_mm[-1] == pytest.approx(tuning.half_window_mm)
+    assert min(halves_mm) < 0.75 * tuning.half_window_mm
+
+
 @pytest.mark.parametrize(
     ("radius_widths", "most_widths"), [(20.0, 0.7), (1.8, 0.83), (1.2, 1.0)]
 )
