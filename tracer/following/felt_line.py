@@ -18,7 +18,8 @@ from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
-from morfax.tracer.head.slow_cell import Stretch, keeps_mm, keeps_straight_mm
+from morfax.tracer.head.slow_cell import Stretch, keeps_mm, keeps_straight_mm, rough_mm
+from morfax.tracer.head.windows import shortest_lead_mm
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
 from morfax.tracer.sensing.ray import edges
 from morfax.tracer.sensing.scout import REACH, REACH_PX
@@ -27,7 +28,9 @@ from morfax.tracer.sensing.view import View
 FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils the first place
 # of the lead, before what stops the slow cell: room to plan, as a fast head has it; by trial
 ROOM_LEADS = 0.4
-STUB_WIDTHS = 1.5  # of the line's width: where it is wider something leaves it; by trial
+# where a line is wider something leaves it: of its width, and wider by so many standard deviations of the
+# middle of a rough line, whose edges differ by twice as much; by trial
+STUB_WIDTHS, STUB_ROUGH = 1.5, 8.0
 Anchor = tuple[Array, float, float]  # where the line begins to be clean: place, heading, travel
 
 
@@ -60,21 +63,33 @@ def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> Stretch | None:
 
 def bare_stretch(view: View, carriage: Carriage, way: Array, seen: Array) -> Stretch | None:
     """The part of a way (n, 2) mm along which nothing leaves the line; None if that is too short."""
-    lead_mm = carriage.tuning.lead_mm
-    bare_mm = _bare_mm(view, way)
+    clear_mm = math.inf
+    bare_mm = _bare_mm(view, way, seen)
     if bare_mm < length_mm(way):
-        way = way[lengths_mm(way) < bare_mm - lead_mm]
+        clear_mm = shortest_lead_mm(carriage.tuning)
+        way = way[lengths_mm(way) < bare_mm - clear_mm]
     if len(way) < 2:
         return None
-    room_mm = ROOM_LEADS * lead_mm
-    return Stretch(way, keeps_mm(view, seen), room_mm, keeps_straight_mm(view))
+    room_mm = ROOM_LEADS * carriage.tuning.lead_mm
+    return Stretch(way, keeps_mm(view, seen), room_mm, keeps_straight_mm(view), clear_mm)
 
 
-def _bare_mm(view: View, way: Array) -> float:
+def bare_from_mm(view: View, way: Array, seen: Array) -> float | None:
+    """From where on along a way (n, 2) mm nothing leaves the line any more, mm; None if nothing does at all,
+    or to the way's end.
+    """
+    way_mm = length_mm(way)
+    from_mm = way_mm - _bare_mm(view, way[::-1], seen)
+    return from_mm if 0.0 < from_mm < way_mm else None
+
+
+def _bare_mm(view: View, way: Array, seen: Array) -> float:
     """For how far nothing leaves a line along a way (n, 2) mm, as a stub that draws the cell aside."""
     places = at_lengths(way, np.arange(0.0, length_mm(way), view.step_mm))
     reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
-    bare = int(_bare(view.cells, places, float(reach_mm), float(STUB_WIDTHS * view.width_mm)))
+    width_mm = max(view.width_mm, view.usual_mm or 0.0)
+    broadest_mm = max(STUB_WIDTHS * width_mm, width_mm + STUB_ROUGH * rough_mm(seen))
+    bare = int(_bare(view.cells, places, float(reach_mm), float(broadest_mm)))
     return length_mm(way) if bare == len(places) - 1 else bare * view.step_mm
 
 

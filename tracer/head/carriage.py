@@ -171,9 +171,12 @@ class Carriage:
         tried = slow_cell.follow(view, self.state, self.tuning, home, stretch)
         if tried is None:
             return None
+        own_from_mm = self.travel_mm + tried.own_mm
         if tried.felt_mm > 0:
             self._log.add(self.count, STATIONS)
-            self._cell_from_mm = self.travel_mm + tried.felt_mm
+        else:  # the drum may still hold what was felt before
+            own_from_mm = min(self._cell_from_mm, own_from_mm)
+        self._cell_from_mm = own_from_mm
         from_mm, self.state = self.travel_mm, tried.state
         self._led(tried.positions, from_mm)
         self._keep(tried.positions)

@@ -243,7 +243,7 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         drive_gain=settings.drive.gain(1 / rate_hz),
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
         steering_gain=steering_gain,
-        aslant_mm2=0.0,
+        square=False,
         direct_rad_s_mm=settings.direct_rad_s_mm,
         cell_gain=settings.cell_gain,
         detector_gain=settings.detector_gain,

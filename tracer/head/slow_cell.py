@@ -7,9 +7,9 @@ Signals: the head's state and tuning, and the way that was felt (sheet mm), in; 
 the motion rate, out. If it leaves the way, the head has not moved, and stations lead instead (see `leaders`).
 
 In a tight bend a long lead swings the cell across a line that has turned away from it, and a wide window cuts
-the bend. A head that goes slowly needs neither: more sweeps fall on each mm. But a parabola over few pixels
-bends by what the pixels do to the line's edges, by h^-2.5 for half a window of h. Where that stops the cell,
-it tries once more, with the widest window over which the way that was felt hardly bends.
+the bend. A head that goes slowly needs neither: more sweeps fall on each mm. Its sweep stands square to the
+bend. Where a narrow window does not keep to the way, the cell tries once more with windows as wide as the
+way's own bend allows (see `windows`).
 
 Source: our own. Optical tracers slow down at tight bends, and so does the patent's relay RL.
 """
@@ -17,7 +17,6 @@ Source: our own. Optical tracers slow down at tight bends, and so does the paten
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,11 +25,18 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.contour import distances_mm
 from morfax.motion.median import median
-from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
+from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
-from morfax.tracer.head.settings import LEAD_SWEEPS, TIGHTEST_RAD
 from morfax.tracer.head.state import HOME, MORE, Home, Tuning, put_on_drum
-from morfax.tracer.sensing.leg import turn
+from morfax.tracer.head.windows import (
+    Ahead,
+    Window,
+    most_bend_per_mm,
+    narrowest,
+    slowly,
+    widest,
+)
+from morfax.tracer.sensing.leg import heading_of, turn
 from morfax.tracer.sensing.parabola import ROBUST
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
@@ -41,44 +47,58 @@ KEEPS_WIDTHS, KEEPS_PX = 0.02, 0.2
 # ... but a line of few pixels, whose pixels were parted, may be seen so far off: the smaller of these
 KEEPS_FINE_WIDTHS, KEEPS_FINE_MM = 0.12, 0.017
 KEEPS_ROUGH = 3.0  # standard deviations of a rough line's middle, as its width shows them
+# at its end it has to head as the way does: ink beside the line turns it before it is off the way. Few pixels
+# turn it by 0.2 at the most, the ticks that led it astray by 0.4 to 0.6 (664 stretches, 90 to 300 dpi)
+HEADS_RAD = 0.25
 CHECKED = 8  # one position in 8 is held against the way: every 4 um at 3 mm/s
 LEAST_MM = 0.3  # for less the cell does not go on, ...
 # ... nor along a shorter stretch: a corner follows, and stations lead up to that
 SHORTEST_MM = 0.75
+CHORD = 2  # places of a way to either side of one, between which its heading is taken
 FELT_EVERY_MM = 0.04  # as fast sweeps lie on the drum, at 10 mm/s
-# of the narrowest half window of a fast cell: in an arc, and where the bend changes
-WINDOW_STEADY, WINDOW = 1.3, 0.75
-STEADY = 0.2  # of the bend: an arc's changes by less from one half of a stretch to the other
-WINDOWS = 5  # that are tried, from the fast cell's half window to the narrowest
-CHORDS = 4  # places of a way to half a window, between which its headings are taken
-BENT_WIDTHS = 0.7  # by more than this over its width the line may not bend: the cell, which cuts it aslant,
-# would see its middle w²/8·l²·k³ further inside: 8 um at a lead l of 0.36 mm and a radius of 0.9 mm
 
 
 class Tried(NamedTuple):
     """Where the cell went along a way: positions (n, 2) mm, the head's state there, why it stopped.
 
-    `felt_mm`: for so far stations led, with whose places the drum was filled.
+    `felt_mm`: for so far stations led, with whose places the drum was filled. `own_mm`: after so far the
+    cell's own places fill half of its window.
     """
 
     positions: Array
     state: Any
     why: int
     felt_mm: float = 0.0
+    own_mm: float = 0.0
+
+
+class Piece(NamedTuple):
+    """A piece of a way, mm, and the tuning along it."""
+
+    length_mm: float
+    tuning: Tuning
 
 
 class Stretch(NamedTuple):
     """What was felt: a way (n, 2) mm from where the head stands, and how far beside it the cell may go, mm.
 
     `room_mm`: so far before the place where the cell stops the head stays, if it stops on the way.
-    `straight_mm`: how far beside it the cell may go with a window over which the way hardly bends: it cannot
-    cut a bend there, and sees the edges of hard pixels otherwise than stations do.
+    `straight_mm`: how far beside it the cell may go with windows over which the way hardly bends: it cannot
+    cut a bend there, and sees the edges of hard pixels otherwise than stations do. `clear_mm`: how far beyond
+    the way's end the cell may look before something leaves the line.
     """
 
     way: Array
     within_mm: float
     room_mm: float = 0.0
     straight_mm: float = 0.0
+    clear_mm: float = math.inf
+
+
+def rough_mm(seen: Array) -> float:
+    """The roughness of the middle of stations (n, 3), as their widths show it: a standard deviation, mm."""
+    widths = seen[:, 2]
+    return 0.5 * ROBUST * median(np.abs(widths - median(widths)))
 
 
 def keeps_mm(view: View, seen: Array) -> float:
@@ -86,11 +106,9 @@ def keeps_mm(view: View, seen: Array) -> float:
 
     Both edges are as rough as each other, so that the middle is half as rough as the width.
     """
-    widths = seen[:, 2]
-    rough_mm = 0.5 * ROBUST * median(np.abs(widths - median(widths)))
     fine_mm = min(KEEPS_FINE_WIDTHS * view.width_mm, KEEPS_FINE_MM)
     by_view_mm = max(KEEPS_WIDTHS * view.width_mm, KEEPS_PX * view.pitch_mm, fine_mm)
-    return max(by_view_mm, KEEPS_ROUGH * rough_mm)
+    return max(by_view_mm, KEEPS_ROUGH * rough_mm(seen))
 
 
 def keeps_straight_mm(view: View) -> float:
@@ -98,89 +116,70 @@ def keeps_straight_mm(view: View) -> float:
     return KEEPS_PX * view.parted * view.pitch_mm
 
 
-def is_steady(way: Array) -> bool:
-    """Whether a way (n, 2) mm is an arc: it bends as much in its second half as in its first."""
-    thirds = at_lengths(way, np.linspace(0.0, length_mm(way), 4))
-    dx, dy = np.diff(thirds, axis=0).T
-    first, second = (turn(*pair) for pair in pairwise(np.arctan2(dy, dx)))
-    return abs(second - first) < STEADY * max(abs(first), abs(second))
-
-
-def narrow_mm(t: Tuning, way: Array) -> float:
-    """Half of the window for a tight bend, mm."""
-    return (WINDOW_STEADY if is_steady(way) else WINDOW) * t.narrow_mm
-
-
-def wide_mm(t: Tuning, way: Array) -> float | None:
-    """Half of the widest window over which a way (n, 2) mm hardly bends, mm; None if it bends over all."""
-    for half_mm in np.geomspace(t.half_window_mm, t.narrow_mm, WINDOWS + 1)[:-1].tolist():
-        if largest_bend_rad(way, half_mm) < TIGHTEST_RAD:
-            return float(half_mm)
-    return None
-
-
-def largest_bend_rad(way: Array, half_mm: float) -> float:
-    """By how much a way (n, 2) mm turns at most from one half of a window to the other, rad; infinite if it
-    is shorter than a window.
-    """
-    places = at_lengths(way, np.arange(0.0, length_mm(way), half_mm / CHORDS))
-    if len(places) <= 2 * CHORDS:
-        return math.inf
-    dx, dy = (places[CHORDS:] - places[:-CHORDS]).T
-    headings = np.unwrap(np.arctan2(dy, dx))
-    return float(np.abs(headings[CHORDS:] - headings[:-CHORDS]).max())
-
-
-def slowly(t: Tuning, width_mm: float, half_mm: float) -> Tuning:
-    """The tuning for a low speed, half of a window, mm, and the lead that suffices for them."""
-    speed_mm_s = t.slowed * t.speed_mm_s
-    sweeps_mm = LEAD_SWEEPS * speed_mm_s * t.sweep_periods * t.period_s
-    return t._replace(
-        speed_mm_s=speed_mm_s,
-        lead_mm=min(t.lead_mm, half_mm + t.point_mm + sweeps_mm),
-        half_window_mm=half_mm,
-        narrow_mm=half_mm,
-        aslant_mm2=width_mm * width_mm,
-        narrowest_per_mm=max(t.narrowest_per_mm, BENT_WIDTHS / width_mm),
-    )
-
-
 def follow(view: View, state: Any, t: Tuning, home: Home, stretch: Stretch) -> Tried | None:
-    """Follow from a state, which is not changed, along a stretch: as through a tight bend, or else with a
-    wide window; None if the cell keeps to it with neither. `t` is the fast cell's tuning.
+    """Follow from a state, which is not changed, along a stretch: as through a tight bend, or else with
+    windows as wide as its bends allow; None if the cell keeps to it with neither. `t` is the fast cell's
+    tuning.
     """
-    tight = slowly(t, view.width_mm, narrow_mm(t, stretch.way))
-    tried = along(view.cells, state, tight, home, stretch)
-    half_mm = wide_mm(t, stretch.way) if tried is None else None
-    if half_mm is None:
+    if length_mm(stretch.way) < SHORTEST_MM:
+        return None
+    ahead = Ahead(stretch.way, view.width_mm, stretch.clear_mm)
+    narrow = narrowest(t, ahead)
+    tried = along(view.cells, state, pieces(t, ahead, narrow), home, stretch)
+    wide = widest(t, ahead) if tried is None else narrow
+    if wide == narrow:
         return tried
-    within_mm = max(stretch.within_mm, stretch.straight_mm)
-    straight = stretch._replace(within_mm=within_mm)
-    return along(view.cells, state, slowly(t, view.width_mm, half_mm), home, straight)
+    straight = stretch._replace(within_mm=max(stretch.within_mm, stretch.straight_mm))
+    return along(view.cells, state, pieces(t, ahead, wide), home, straight)
 
 
-def along(cells: Cells, state: Any, t: Tuning, home: Home, stretch: Stretch) -> Tried | None:
+def pieces(t: Tuning, ahead: Ahead, windows: list[Window]) -> list[Piece]:
+    """The slow cell's tuning for each window of a way."""
+    most_per_mm = most_bend_per_mm(t, ahead)
+    return [Piece(long_mm, slowly(t, half_mm, most_per_mm)) for long_mm, half_mm in windows]
+
+
+def along(
+    cells: Cells, state: Any, course: list[Piece], home: Home, stretch: Stretch
+) -> Tried | None:
     """Follow from a state, which is not changed, along a stretch; None if the cell does not keep to it.
 
     First with what the cell has seen itself. If it has lost the line, it begins on what was felt.
     """
-    way_mm = length_mm(stretch.way)
-    if way_mm < SHORTEST_MM:
-        return None
-    for start, felt_mm in ((_drawn_in, 0.0), (_on_felt, t.lead_mm - t.point_mm)):
+    t = course[0].tuning
+    own_mm = t.lead_mm - t.point_mm
+    for start, felt_mm in ((_drawn_in, 0.0), (_on_felt, own_mm)):
         begun = start(state, t, stretch.way)
-        tried = _for(cells, begun, t, home, way_mm)
+        tried = _through(cells, begun, course, home)
         if tried.why not in (MORE, HOME):
             come_mm = tried.state.travel_mm - state.travel_mm - stretch.room_mm
             if come_mm < felt_mm + LEAST_MM:
                 continue
-            tried = _for(cells, begun, t, home, come_mm)
-        if keeps_to(tried.positions, stretch):
-            return tried._replace(felt_mm=felt_mm)
+            tried = _through(cells, begun, course, home, come_mm)
+        if keeps_to(tried.positions, stretch) and heads_along(tried, stretch.way):
+            return tried._replace(felt_mm=felt_mm, own_mm=own_mm)
     return None
 
 
-def _drawn_in(state: Any, t: Tuning, _: Array) -> Any:
+def _through(
+    cells: Cells, begun: Any, course: list[Piece], home: Home, longest_mm: float = math.inf
+) -> Tried:
+    """Follow through the pieces of a way one after the other, for so many mm at the most."""
+    state, why, parts, end_mm = begun, MORE, [np.empty((0, 2))], 0.0
+    for long_mm, t in course:
+        end_mm = min(end_mm + long_mm, longest_mm)
+        left_mm = end_mm - (state.travel_mm - begun.travel_mm)
+        if why != MORE or left_mm <= 0.0:
+            break
+        # the mount is drawn in at once; out it slides by itself
+        state = _drawn_in(state, t) if t.lead_mm < state.lead_mm else state
+        tried = _for(cells, state, t, home, left_mm)
+        state, why = tried.state, tried.why
+        parts.append(tried.positions)
+    return Tried(np.vstack(parts), state, why)
+
+
+def _drawn_in(state: Any, t: Tuning, _: Array | None = None) -> Any:
     """The state with the mount drawn in."""
     state = state.copy()
     mount.set_to(state, t.lead_mm)
@@ -212,6 +211,13 @@ def _for(cells: Cells, begun: Any, t: Tuning, home: Home, length_mm: float) -> T
         n, why = kernel.follow(cells, state, t, home, out)
         parts.append(out[:n])
     return Tried(np.vstack(parts), state, int(why))
+
+
+def heads_along(tried: Tried, way: Array) -> bool:
+    """Whether the head goes on as a way (n, 2) mm does where the head has come to."""
+    last = int(np.argmin(np.hypot(*(way - tried.positions[-1]).T)))
+    before, after = way[max(0, last - CHORD)], way[min(last + CHORD, len(way) - 1)]
+    return abs(turn(heading_of(after - before), tried.state.heading_rad)) < HEADS_RAD
 
 
 def keeps_to(positions: Array, stretch: Stretch) -> bool:

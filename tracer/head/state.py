@@ -96,7 +96,7 @@ class Tuning(NamedTuple):
     steering_gain: (
         float  # share of the turn rate's error that the servo makes good in one period
     )
-    aslant_mm2: float  # the line's width squared, where the sweep's cut is made good; else 0
+    square: bool  # the sweep stands square to bends
     direct_rad_s_mm: float  # turn rate per mm that the cell sees the line aside; 0: by the drum
     cell_gain: float  # of the swinging cell's current
     detector_gain: float  # of the synchronous detector

@@ -67,8 +67,10 @@ def _hiss(state):  # type: ignore[no-untyped-def]
 def swing(cells, state, t, way):  # type: ignore[no-untyped-def]
     """One period of the swinging cell on a way (see `way_of`): its current goes into the detector."""
     sine, cosine = t.pin[state.sweep_periods, 0], t.pin[state.sweep_periods, 1]
-    aside = state.middle_mm + t.amplitude_mm * sine
-    ahead = state.lead_mm + t.along_mm * cosine
+    across, along = t.amplitude_mm * sine, t.along_mm * cosine
+    turned, straight = _across(state, t)
+    aside = state.middle_mm + across * straight + along * turned
+    ahead = state.lead_mm + along * straight - across * turned
     darkness = t.cell_gain * seen(cells, state, way, ahead, aside)
     if t.cell_noise > 0.0:
         darkness += t.cell_noise * _hiss(state)
@@ -80,15 +82,16 @@ def swing(cells, state, t, way):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, inline="always")
-def _on_line(state, t):  # type: ignore[no-untyped-def]
-    """The line's middle to the left of the heading, where a sweep is centred on both edges, mm.
-
-    A line that bends is cut aslant: the middle of its cut lies nearer to the inside of the bend.
+def _across(state, t):  # type: ignore[no-untyped-def]
+    """Sine and cosine of the angle from the heading to the line where the cell swings: on the arc that
+    touches the heading, if the sweep stands square to bends; else along the heading.
     """
-    lead2, aside = state.lead_mm * state.lead_mm, state.middle_mm
-    if t.aslant_mm2 == 0.0 or abs(aside) > MOST_ASLANT * state.lead_mm:
-        return aside
-    return aside - t.aslant_mm2 * lead2 * (aside / (lead2 - aside * aside)) ** 3
+    if not t.square:
+        return 0.0, 1.0
+    lead = state.lead_mm
+    aside = min(max(state.middle_mm, -MOST_ASLANT * lead), MOST_ASLANT * lead)
+    square = lead * lead + aside * aside
+    return 2.0 * lead * aside / square, (lead * lead - aside * aside) / square
 
 
 @njit(cache=True, _nrt=False)
@@ -104,6 +107,7 @@ def detect(state, t):  # type: ignore[no-untyped-def]
     else:
         state.swept_ink = abs(first) / t.mean
         aside = t.detector_gain * (mean - BALANCED) / t.balance_per_mm
+    aside /= _across(state, t)[1]
     state.sweep_periods = 0
     state.first_sum = state.mean_sum = 0.0
     # 2. without a drum, the mount turns with the head only
@@ -117,7 +121,7 @@ def detect(state, t):  # type: ignore[no-untyped-def]
     middle = state.heading_rad - 0.5 * t.sweep_periods * t.period_s * state.turn_rad_s
     c, s = math.cos(middle), math.sin(middle)
     if abs(aside) < limit:
-        place, on_line = state.places % DRUM, _on_line(state, t)
+        place, on_line = state.places % DRUM, state.middle_mm
         state.drum_mm[place, 0] = state.swept_x_mm + state.lead_mm * c - on_line * s
         state.drum_mm[place, 1] = state.swept_y_mm + state.lead_mm * s + on_line * c
         state.places += 1

@@ -26,7 +26,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import length_mm, nearest_mm
-from morfax.tracer.following.felt_line import bare_stretch
+from morfax.tracer.following.felt_line import bare_from_mm, bare_stretch
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import CHUNK, Carriage
 from morfax.tracer.head.leaders import STATIONS, Led
@@ -34,6 +34,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.slow_cell import SHORTEST_MM
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, MORE, Home, Mark
+from morfax.tracer.head.windows import shortest_lead_mm
 from morfax.tracer.ink.chains import Chain, Junctions, Side
 from morfax.tracer.ink.partners import way_through
 from morfax.tracer.ink.run import Run
@@ -55,6 +56,7 @@ STRAYED = 0.3  # widths: a head so far beside what was felt has left the line
 LOOKED_AT = 60  # one position in so many is held against what was felt
 SWELLS = 0.5  # the share of a change of a line's width that the head takes over at once
 SLOWLY_LEGS = 3.0  # the cell goes on by itself for so many legs, then fast again
+PAST_MM = 0.3  # stations lead beyond a stub, until its ink no longer draws the cell
 NOTHING = np.empty((0, 2))  # was felt between
 NEVER_HOME = Home(0.0, 0.0, 0.0, math.inf)
 
@@ -189,11 +191,19 @@ class InkHead:
         at = self._station(run, at)
         if self._slowly(run, view, at):
             return view, self._station(run, at)
-        return view, self._along(run, at, round(view.leg_mm / view.step_mm), view)
+        return view, self._along(run, at, self._past(run, view, at), view)
+
+    def _past(self, run: Run, view: View, at: int) -> int:
+        """How many stations lead past what stopped the cell: a leg's, or fewer past a stub."""
+        leg = round(view.leg_mm / view.step_mm)
+        ahead = run.part(at, at + leg + 1)
+        bare_mm = bare_from_mm(view, ahead.places_mm, ahead.stations())
+        return leg if bare_mm is None else math.ceil((bare_mm + PAST_MM) / view.step_mm)
 
     def _slowly(self, run: Run, view: View, at: int) -> bool:
         """Whether the cell itself, slow and with a short lead, goes on along what was felt."""
-        left_mm = (len(run) - 1 - at) * view.step_mm - self.carriage.tuning.lead_mm
+        lead_mm = shortest_lead_mm(self.carriage.tuning)
+        left_mm = (len(run) - 1 - at) * view.step_mm - lead_mm
         if left_mm < SHORTEST_MM:
             return False
         on = at + round(min(left_mm, SLOWLY_LEGS * view.leg_mm) / view.step_mm)
@@ -201,6 +211,8 @@ class InkHead:
         stretch = bare_stretch(view, self.carriage, way, run.stations()[at : on + 1])
         if stretch is None:
             return False
+        to_end_mm = left_mm + lead_mm - length_mm(way)
+        stretch = stretch._replace(clear_mm=min(stretch.clear_mm, to_end_mm))
         return self.carriage.follow_slowly(view, NEVER_HOME, stretch) is not None
 
     def _strayed(self, run: Run, at: int, mark: Mark) -> bool:

@@ -1,12 +1,13 @@
 """The slow cell: it follows tight bends by itself, and what was felt only checks it.
 
 The wave bends up to 0.73 per mm, twice what a fast cell may follow unasked. Broken on purpose, with `lead_mm`
-of `slowly` left at the fast head's: the cell's share of a wave falls to a half; with `aslant_mm2` left at 0,
-the path of a hole of 1.2 mm lies 11 um inside of it.
+of `slowly` left at the fast head's: the cell's share of a wave falls to a half; with `square` left at False,
+the path of a hole of 0.85 mm is not the cell's.
 """
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -24,18 +25,17 @@ from morfax.tracer.head import slow_cell
 from morfax.tracer.head.leaders import CELL, STATIONS
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.slow_cell import (
+    Piece,
     Stretch,
     Tried,
     along,
-    is_steady,
+    heads_along,
     keeps_mm,
     keeps_to,
-    largest_bend_rad,
-    narrow_mm,
-    slowly,
-    wide_mm,
+    pieces,
 )
-from morfax.tracer.head.state import DRUM, Home, put_on_drum
+from morfax.tracer.head.state import DRUM, MORE, Home, put_on_drum
+from morfax.tracer.head.windows import Ahead, narrowest
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, WIDTH_MM, arc, inked
 
@@ -68,10 +68,14 @@ def ahead(head: Follower, radius_mm: float, length_mm: float = 1.5) -> Array:
 
 def tried(head: Follower, radius_mm: float, within_mm: float) -> Tried | None:
     """The slow cell along such a way."""
-    carriage = head.carriage
     way = Stretch(ahead(head, radius_mm), within_mm)
-    tuning = slowly(carriage.tuning, WIDTH_MM, narrow_mm(carriage.tuning, way.way))
-    return along(head.view.cells, carriage.state, tuning, NEVER_HOME, way)
+    return along(head.view.cells, head.carriage.state, course(head, way), NEVER_HOME, way)
+
+
+def course(head: Follower, way: Stretch) -> list[Piece]:
+    """The slow cell's narrow window along a way."""
+    felt = Ahead(way.way, WIDTH_MM)
+    return pieces(head.carriage.tuning, felt, narrowest(head.carriage.tuning, felt))
 
 
 def test_the_cell_steers_and_not_what_was_felt(head: Follower) -> None:
@@ -97,8 +101,9 @@ def test_a_cell_that_has_lost_the_line_begins_on_what_was_felt(head: Follower) -
     state = carriage.state.copy()
     state.middle_mm += 4.0
     way = Stretch(ahead(head, RADIUS_MM), 20 * UM)
-    tuning = slowly(carriage.tuning, WIDTH_MM, narrow_mm(carriage.tuning, way.way))
-    went = along(head.view.cells, state, tuning, NEVER_HOME, way)
+    run = course(head, way)
+    went = along(head.view.cells, state, run, NEVER_HOME, way)
+    tuning = run[0].tuning
     assert went is not None and went.felt_mm == pytest.approx(tuning.lead_mm - tuning.point_mm)
 
 
@@ -146,23 +151,16 @@ def test_tight_bends_are_the_cell_s() -> None:
     assert distance(line.xy_mm, wave()).path_to_reference.rms_mm < 8 * UM
 
 
-def test_a_small_circle_is_not_cut() -> None:
-    """A sweep across a tight bend would move the path inward by 11 um; the lens moves it by 2 um."""
-    radius_mm = 1.2
+@pytest.mark.parametrize("radius_mm", [0.85, 1.2])
+def test_a_small_circle_is_not_cut(radius_mm: float) -> None:
+    """The lens moves its line inward by 2 um. With a sweep across the heading the cell's path lies 11 um
+    inside a circle of 1.2 mm, and one of 0.85 mm is not its own: the sweep stands square to the bend.
+    """
     line = trace(inked(arc((8, 8), radius_mm), seed=1)).lines[0]
     led = line.led.lengths_mm(line.xy_mm)
     assert led[CELL] > led[STATIONS]
     beside_mm = np.hypot(*(line.xy_mm - 8).T).mean() - radius_mm
     assert abs(beside_mm) < 4 * UM
-
-
-def test_an_arc_is_told_from_a_bend_that_changes() -> None:
-    """With stations 2 um off at random, as a scan's are."""
-    angles = np.linspace(0, 0.75, 60)
-    spiral = np.cumsum(np.column_stack([np.cos(angles**2), np.sin(angles**2)]), axis=0) / 40
-    noise = 2 * UM * np.random.default_rng(1).normal(size=(60, 2))
-    assert is_steady(2.0 * np.column_stack([np.cos(angles), np.sin(angles)]) + noise)
-    assert not is_steady(spiral + noise)
 
 
 def hard(line: Array, width_mm: float, dpi: float) -> Drawing:
@@ -186,15 +184,17 @@ def test_the_stairs_of_hard_pixels_do_not_stop_the_cell(width_mm: float, dpi: fl
     assert off.rms_mm < 0.25 * 25.4 / dpi
 
 
-def test_the_window_is_as_wide_as_the_way_s_bend_allows(head: Follower) -> None:
-    """On a way with stairs of 20 um every half a mm; none round a tight arc, nor on a short way."""
-    tuning = head.carriage.tuning
-    x = np.linspace(0, 4, 200)
-    stairs = np.column_stack([x, 20 * UM * np.sign(np.sin(2 * np.pi * x / 0.5))])
-    assert largest_bend_rad(stairs, narrow_mm(tuning, stairs)) > 0.1
-    assert wide_mm(tuning, stairs) == pytest.approx(tuning.half_window_mm)
-    assert wide_mm(tuning, arc((0, 0), 0.8)) is None
-    assert wide_mm(tuning, stairs[:20]) is None
+@pytest.mark.parametrize(("turned_rad", "is_kept"), [(0.0, True), (0.2, True), (0.3, False)])
+def test_a_head_that_has_turned_away_does_not_keep_to_the_way(
+    head: Follower, turned_rad: float, is_kept: bool
+) -> None:
+    """A tick turns the head before it is off the way; also where it has stopped on the way."""
+    way = ahead(head, RADIUS_MM)
+    for last in (len(way) // 2, len(way)):
+        dx, dy = way[min(last, len(way) - 1)] - way[last - 3]
+        state = head.carriage.state.copy()
+        state.heading_rad = math.atan2(dy, dx) + turned_rad
+        assert heads_along(Tried(way[:last], state, MORE), way) is is_kept
 
 
 @pytest.mark.parametrize("off_mm", [0.0, 0.004, 0.0099, 0.0101, 0.05])
@@ -219,7 +219,9 @@ def test_the_wide_window_is_only_sought_where_the_cell_does_not_keep_to_the_way(
     head: Follower, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = list[Array]()
-    monkeypatch.setattr(slow_cell, "wide_mm", lambda t, way: asked.append(way))
+    monkeypatch.setattr(
+        slow_cell, "widest", lambda t, felt: asked.append(felt.way) or narrowest(t, felt)
+    )
     view, carriage = head.view, head.carriage
     way = ahead(head, RADIUS_MM)
     stretch = Stretch(way, keeps_mm(view, np.column_stack([way, np.full(len(way), WIDTH_MM)])))
