@@ -126,6 +126,6 @@ def at_rest(place_mm: Array, lead_mm: float) -> Any:
 
 def two_of(state: Any) -> Any:
     """Two states like this one, side by side, (2,): records that a kernel may use up."""
-    states = np.zeros(2, STATE).view(np.recarray)
+    states = np.zeros(2, state.dtype)  # a plain array of records: its kernels are kept on disk
     states[:] = state
     return states
