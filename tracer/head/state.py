@@ -135,6 +135,6 @@ def put_on_drum(state: Any, places_mm: Array) -> None:
 
 def two_of(state: Any) -> Any:
     """Two states like this one, side by side, (2,): records that a kernel may use up."""
-    states = np.zeros(2, STATE).view(np.recarray)
+    states = np.zeros(2, state.dtype)  # a plain array of records: its kernels are kept on disk
     states[:] = state
     return states

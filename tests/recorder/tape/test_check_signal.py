@@ -172,3 +172,16 @@ def test_the_plain_kernels_of_the_signal_are_the_compiled_ones() -> None:
     # the compiler may fuse multiply and add
     assert np.abs(frames[0] - frames[1]).max() <= 6e-8  # a step of float32
     assert np.array_equal(tables[0][2], tables[1][2])
+
+
+@pytest.mark.parametrize("rows", [0, 1, 12, 13, 14, 500])
+@pytest.mark.parametrize("plain", [False, True])
+def test_the_gauge_finds_the_largest_of_plain_differences(rows: int, plain: bool) -> None:
+    places = np.cumsum(np.random.default_rng(rows).normal(0, 0.01, (rows, 3)), axis=0)
+    told = np.full((2, 3), 20.0)  # of the rows before
+    gauged = check_signal._gauged.py_func if plain else check_signal._gauged
+    gauged(places, (6000.0, 12), told[0], told[1])
+    speeds = np.diff(places, axis=0) * 6000.0
+    changes = np.abs(speeds[12:] - speeds[:-12]) * (6000.0 / 12)
+    assert told[0] == pytest.approx(np.abs(speeds).max(axis=0, initial=20.0), rel=1e-12)
+    assert told[1] == pytest.approx(changes.max(axis=0, initial=20.0), rel=1e-12)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from morfax.motion.compiled import described
 from morfax.motion.contour import distance
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following import follower
@@ -107,6 +108,9 @@ def test_the_standing_head_hears_in_one_kernel_what_it_heard_sweep_by_sweep(
     compiled = swinging.goes_back
 
     def noted(*args: Any) -> float:
+        described(
+            args
+        )  # raises TypeError for what only numba, and no kernel kept on disk, could run
         heard.extend([compiled(*args), compiled.py_func(*args)])
         return float(heard[0])
 

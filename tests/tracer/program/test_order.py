@@ -75,6 +75,26 @@ def test_an_order_is_improved_as_by_plain_loops(lines: int, nested: bool) -> Non
     assert order.idle_way_mm(found, idle_mm) <= order.idle_way_mm(way, idle_mm)
 
 
+@pytest.mark.parametrize("plain", [False, True])
+def test_the_best_turn_is_that_of_plain_loops(
+    plain: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So no stretch is passed over whose turn is a gain."""
+    for name in ("_saved", "_best_turn", "_lay_out") if plain else ():
+        monkeypatch.setattr(order, name, getattr(order, name).py_func)
+    random, lines = np.random.default_rng(4), 40
+    idle_mm, way = random.uniform(1.0, 100.0, (lines, lines)), random.permutation(lines)
+    laid = order._Legs(idle_mm, idle_mm.T.copy(), *np.zeros((2, lines + 1)))
+    order._lay_out(way, laid)
+    for i in range(1, lines - 1):
+        gains = []
+        for j in range(i + 1, lines):
+            turned = np.concatenate([way[:i], way[i : j + 1][::-1], way[j + 1 :]])
+            gains.append(order.idle_way_mm(way, idle_mm) - order.idle_way_mm(turned, idle_mm))
+        best = order._best_turn(way, laid, order._saved(laid), i)
+        assert best == pytest.approx(max(gains), abs=order.ROUNDING_MM)
+
+
 def test_an_order_is_made_once_where_no_line_may_be_turned(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
