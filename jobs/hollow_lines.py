@@ -31,6 +31,7 @@ class HollowLines:
     @classmethod
     def along(cls, drawing: Drawing, trace: Trace) -> HollowLines:
         """The hollow lines among those that the head followed; edges are none."""
+        from morfax.tracer.drawing import coarse
         from morfax.tracer.drawing.deviation import darkness_across
         from morfax.tracer.drawing.hollow import hollow
 
@@ -42,7 +43,10 @@ class HollowLines:
             if (there := hollow(seen, line.places_mm, line.width_mm, pitch_mm)) is not None
         ]
         scanned_dpi = MM_PER_INCH / (drawing.pitch_mm * drawing.finer)
-        return cls(tuple(found), DPI_STEP * math.ceil(FINER * scanned_dpi / DPI_STEP))
+        wants_dpi = DPI_STEP * math.ceil(FINER * scanned_dpi / DPI_STEP)
+        if drawing.seen_px < coarse.SEEN_PX:  # the drawing's own note advises that
+            wants_dpi = max(wants_dpi, coarse.wanted_dpi(drawing.pitch_mm * drawing.finer))
+        return cls(tuple(found), wants_dpi)
 
     def figures(self) -> dict[str, Any]:
         """Each line's hollow length, where the longest stretch is, and how far its dark rows are apart."""

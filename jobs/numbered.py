@@ -3,9 +3,19 @@
 Signals in: what they are, and their numbers; out: the beginning of a sentence.
 """
 
+MOST_NAMED = 6  # numbers that a sentence names; of more it says how many there are
+
 
 def numbered(what: str, numbers: list[int]) -> str:
     """Things by their numbers, with their verb."""
+    return f"{listed(what, numbers)} {'is' if len(numbers) == 1 else 'are'}"
+
+
+def listed(what: str, numbers: list[int]) -> str:
+    """Things by their numbers: all of a few; of many how many there are, and the first."""
     if len(numbers) == 1:
-        return f"{what} {numbers[0]} is"
-    return f"{what}s {', '.join(map(str, numbers))} are"
+        return f"{what} {numbers[0]}"
+    named = ", ".join(map(str, numbers[:MOST_NAMED]))
+    if len(numbers) <= MOST_NAMED:
+        return f"{what}s {named}"
+    return f"{len(numbers)} {what}s ({named} and so on)"

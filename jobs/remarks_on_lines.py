@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from morfax.jobs.numbered import numbered
+from morfax.jobs.numbered import listed, numbered
 
 if TYPE_CHECKING:
     from morfax.tracer.program.survey import Survey
@@ -52,7 +52,9 @@ def _of_left_out(seen: Survey) -> Iterator[str]:
         "reference points": [e.number for e in seen.entries if e.is_reference],
         "pieces of another line": [e.number for e in seen.entries if e.piece_of is not None],
     }
-    left += [f"{_list(numbers)} ({what})" for what, numbers in kinds.items() if numbers]
+    left += [
+        f"{listed('line', numbers)} ({what})" for what, numbers in kinds.items() if numbers
+    ]
     if seen.not_followed_mm and seen.not_followed_mm >= 1.0:
         left.append(f"{seen.not_followed_mm:.0f} mm of ink that only connects lines")
     if left:
@@ -83,11 +85,6 @@ def _of_solids(seen: Survey) -> Iterator[str]:
             f"{numbered('line', solid)} the rim of a dark area broader than a line: if that is a filled "
             "shape, --edge follows its outline, and --lines all --edge the lines beside it too"
         )
-
-
-def _list(numbers: list[int]) -> str:
-    """Lines by their numbers."""
-    return f"line{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
 
 
 def _pieces(count: int) -> str:

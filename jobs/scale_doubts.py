@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.scan import MM_PER_INCH
 
 if TYPE_CHECKING:
@@ -27,25 +28,32 @@ SAME, NEAR = 0.012, 0.1
 def scale_doubts(drawing: Drawing, line_width_mm: float | None) -> Iterator[str]:
     """What makes the scale of a drawing unlikely."""
     if line_width_mm is not None:
-        yield from _of_line_width(
-            line_width_mm, drawing.pitch_mm * drawing.finer / drawing.enlarged
-        )
+        yield from _of_line_width(line_width_mm)
+        # of lines of a pixel the drawing's own note tells the resolution that is enough
+        if drawing.seen_px >= coarse.SEEN_PX:
+            pitch_mm = drawing.pitch_mm * drawing.finer / drawing.enlarged
+            yield from _of_pixels(line_width_mm, pitch_mm)
     yield from _of_format(drawing.width_mm, drawing.height_mm)
 
 
-def _of_line_width(width_mm: float, pitch_mm: float) -> Iterator[str]:
-    """A line that is broader or thinner than pens draw, or too few pixels wide."""
+def _of_line_width(width_mm: float) -> Iterator[str]:
+    """A line that is broader or thinner than pens draw."""
     if not THINNEST_MM <= width_mm <= BROADEST_MM:
         yield (
             f"the lines are {width_mm:.2g} mm wide by this scale; pens draw {THINNEST_MM:g} to "
             f"{BROADEST_MM:g} mm: check the scale (--dpi, --width, --known)"
         )
+
+
+def _of_pixels(width_mm: float, pitch_mm: float) -> Iterator[str]:
+    """A line that is too few pixels wide."""
     if width_mm < FEWEST_PX * pitch_mm:
         wide_px = width_mm / pitch_mm
         # a line of one pixel looks as if it had two
         dpi = MM_PER_INCH / pitch_mm * 2 * FEWEST_PX / wide_px
+        told_px = math.floor(10 * wide_px) / 10  # what is too few never reads as enough
         yield (
-            f"the lines are {wide_px:.1f} pixels wide, and the head wants {FEWEST_PX:g}: scan at "
+            f"the lines are {told_px:.1f} pixels wide, and the head wants {FEWEST_PX:g}: scan at "
             f"{DPI_STEP * math.ceil(dpi / DPI_STEP)} dpi"
         )
 

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from morfax.tracer.program.lost_outlines import LostOutline
     from morfax.tracer.program.unexplained import Unexplained
 
+MOST_NAMED = 6  # lines that a fault names by their numbers
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first comes first
 
 
@@ -162,7 +163,10 @@ class Trace:
 
 def _incomplete(lost: list[Line], lines: int) -> LineFault:
     """The fault of the first of several lines that were lost, with the numbers of all."""
-    numbers = ", ".join(str(number) for number in sorted(line.number for line in lost))
+    named = sorted(line.number for line in lost)
+    numbers = ", ".join(map(str, named[:MOST_NAMED]))
+    if len(named) > MOST_NAMED:
+        numbers = f"{numbers} and {len(named) - MOST_NAMED} more"
     first = lost[0].fault
     assert first is not None
     are = (

@@ -129,14 +129,20 @@ def test_lines_of_two_pixels_and_more_are_not_told_of(dpi: float) -> None:
 def test_the_resolution_that_is_advised_is_enough(dpi: float) -> None:
     line = arc((22.0, 22.0), 16.0)
 
-    def doubts(at_dpi: float) -> list[str]:
+    def advised(at_dpi: float) -> list[float]:
         drawing = scanned(line, at_dpi)
-        return list(scale_doubts(drawing, trace(drawing).lines[0].width_mm))
+        said = (*drawing.notes, *scale_doubts(drawing, trace(drawing).lines[0].width_mm))
+        return [float(dpi) for text in said for dpi in re.findall(r"scan at (\d+) dpi", text)]
 
-    (advice,) = (text for text in doubts(dpi) if "pixels wide" in text)
-    found = re.search(r"scan at (\d+) dpi", advice)
-    assert found is not None
-    assert not any("pixels wide" in text for text in doubts(float(found[1])))
+    (enough,) = advised(dpi)  # one advice, and not two
+    assert not advised(enough)
+
+
+@pytest.mark.parametrize("wide_px", [2.96, 2.999])
+def test_lines_of_too_few_pixels_never_read_as_wide_enough(wide_px: float) -> None:
+    drawing = scanned(STEP, 150)
+    (told,) = [t for t in scale_doubts(drawing, wide_px * drawing.pitch_mm) if "pixels" in t]
+    assert "the lines are 2.9 pixels wide, and the head wants 3:" in told
 
 
 @pytest.mark.parametrize(
