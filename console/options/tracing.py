@@ -222,8 +222,7 @@ _PROGRAM = (
         "--stop-override",
         type=STOPS,
         help="Stop marks that do not stop the head: none, all, or numbers such as 1,3.  [default: the "
-        "card's, or "
-        "none]",
+        "card's, or none]",
     ),
     renamed("--override", "--stop-override"),
     option(

@@ -248,10 +248,8 @@ def _cut(edges: list[Array], shape: tuple[int, ...], pitch_mm: float) -> str:
 def _softness_px(share: Grey, edges: list[Array]) -> float:
     """Standard deviation of the lens, pixels, by how steep the edges are: 1/(√(2π) · steepness)."""
     rows, columns = np.round(np.vstack(edges)).astype(int).T
-    steep = np.hypot(
-        cv2.Sobel(share, cv2.CV_32F, 1, 0, scale=1 / 8),
-        cv2.Sobel(share, cv2.CV_32F, 0, 1, scale=1 / 8),
-    )
+    ways = (1, 0), (0, 1)
+    steep = np.hypot(*(cv2.Sobel(share, cv2.CV_32F, *way, scale=1 / 8) for way in ways))
     steepness = float(np.percentile(steep[rows, columns], 60))
     # the Sobel cells are themselves as soft as (1, 2, 1)/4 along and across, and the pixel as a twelfth
     return float(np.sqrt(max(1 / (2 * np.pi * steepness**2) - 0.4, SOFT_PX**2)))
