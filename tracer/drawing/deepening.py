@@ -64,8 +64,15 @@ class _Lines(NamedTuple):
     length_px: float
 
 
-def deepened(darkness: Darkness, pitch_mm: float, paper_noise: float | None) -> float:
-    """Make pale lines as dark as ink, in place; the length of all of them, mm."""
+def deepened(
+    darkness: Darkness,
+    pitch_mm: float,
+    paper_noise: float | None,
+    shapes: NDArray[np.bool_],
+) -> float:
+    """Make pale lines as dark as ink, in place; the length of all of them, mm. The shade of filled shapes is
+    no line.
+    """
     noise = measured(darkness, pitch_mm, paper_noise)
     if not math.isfinite(noise.softness_px):
         return 0.0
@@ -75,6 +82,8 @@ def deepened(darkness: Darkness, pitch_mm: float, paper_noise: float | None) -> 
     length_px = 0.0
     for _ in range(ROUNDS):
         pale = pale_ink(darkness, SPOT_PX, LEAST, rim_px)
+        if shapes.any():
+            pale &= 1 - shaded(shapes, pale.shape)
         lines = _lines(pale, darkness, noise, pitch_mm)
         if lines is None:
             break
@@ -101,6 +110,12 @@ def pale_ink(darkness: Darkness, spot_px: float, level: float, rim_px: int) -> M
         own = slice(top - rows.start, bottom - rows.start)
         pale[top:bottom] = ((soft > level) & (inked == 0))[own]
     return pale
+
+
+def shaded(shapes: NDArray[np.bool_], shape: tuple[int, ...]) -> Mask:
+    """Where filled shapes were taken for dark paper: their shade is no line."""
+    large = cv2.resize(shapes.view(np.uint8), shape[::-1], interpolation=cv2.INTER_NEAREST)
+    return np.asarray(large, np.uint8)
 
 
 def noise_of_spots(darkness: Darkness) -> float:

@@ -232,7 +232,7 @@ class Drawing:
             notes = (*notes, border_note(edges))
         pale_mm = 0.0
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
-            pale_mm = deepened(darkness, pitch[0], paper_noise)
+            pale_mm = deepened(darkness, pitch[0], paper_noise, shapes)
         # 3. grain, and too large pixels
         in_lines, width_px, seen_px = within(darkness, paper_noise)
         if seen_px < coarse.SEEN_PX:
@@ -246,7 +246,7 @@ class Drawing:
         if finer > 1:
             darkness = coarse.finer(np.asarray(darkness), finer, seen_px)
             if reading.pale_is_ink:  # a line of a pixel is paler now
-                pale_mm += deepened(darkness, pitch[0] / finer, None)
+                pale_mm += deepened(darkness, pitch[0] / finer, None, shapes)
         notes = (*notes, deepened_note(pale_mm)) if pale_mm else notes
         return cls(
             darkness,

@@ -19,10 +19,10 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.components import FEW_PX, Mask, strips
+from morfax.tracer.drawing.deepening import shaded
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.inked import INK
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
@@ -76,7 +76,7 @@ def _pale(drawing: Drawing) -> Mask:
         inked = cv2.dilate((soft > INK).view(np.uint8), rim)
         own = slice(top - rows.start, bottom - rows.start)
         pale[top:bottom] = ((soft > level) & (inked == 0))[own]
-    return pale if drawing.shapes is None else pale & (1 - _shaded(drawing.shapes, pale.shape))
+    return pale if drawing.shapes is None else pale & (1 - shaded(drawing.shapes, pale.shape))
 
 
 def _sides(patch: Indices, rows: Indices, columns: Indices, count: int) -> tuple[Array, Array]:
@@ -106,12 +106,6 @@ def _noise_of_spots(drawing: Drawing) -> float:
         return 0.0
     low, middle = np.percentile(paper, LOW_AND_MIDDLE)
     return float(middle - low)
-
-
-def _shaded(shapes: NDArray[np.bool_], shape: tuple[int, ...]) -> Mask:
-    """Where filled shapes were taken for dark paper: their shade is no line."""
-    large = cv2.resize(shapes.view(np.uint8), shape[::-1], interpolation=cv2.INTER_NEAREST)
-    return np.asarray(large, np.uint8)
 
 
 def _lines(mask: Mask, drawing: Drawing) -> Iterator[Pale]:

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.polyline import nearest_mm
-from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.drawing import Drawing, Reading
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.shapes_among_lines import drawing_of_all_ink
@@ -87,3 +87,14 @@ def test_where_all_the_ink_is_not_asked_for_pale_lines_stay_pale() -> None:
     drawing = read(0.3, all_ink=False)
     assert not any("less than half as dark" in note for note in drawing.notes)
     assert np.percentile(np.asarray(drawing.darkness)[_middle(drawing)], 99) < 0.5
+
+
+def test_the_shade_of_a_filled_shape_is_no_pale_line() -> None:
+    """Its rim on the picture is the only line that there is."""
+    grey = np.full((500, 700), 240, np.uint8)
+    cv2.circle(grey, (350, 250), 150, 40, -1, cv2.LINE_AA)
+    scan = Scan(Path("made.png"), grey, Stated((100.0, 100.0)))
+    drawing = Drawing.of(scan, Scale(), None, Reading(pale_is_ink=True))
+    plain = Drawing.of(scan, Scale())
+    assert plain.shapes is not None and plain.shapes.any()
+    assert np.array_equal(np.asarray(drawing.darkness), np.asarray(plain.darkness))
