@@ -34,7 +34,11 @@ WITH_WORDS = (
 
 
 def main(names: list[str]) -> None:
-    """Call `main()` of every benchmark in this folder, or of those named."""
+    """Call `main()` of every benchmark in this folder, or of those named; with --help say what they do."""
+    if "--help" in names:
+        asked = [f"benchmarks.{name}" for name in names if name in WITH_WORDS]
+        print(importlib.import_module(asked[0]).__doc__ if asked else __doc__)
+        return
     if names and names[0] in WITH_WORDS:
         importlib.import_module(f"benchmarks.{names[0]}").main(names[1:])
         return

@@ -55,5 +55,15 @@ def test_a_drawing_on_which_no_line_can_be_begun_is_told_in_its_row(tmp_path: Pa
 
 
 def test_a_benchmark_that_there_is_not_is_one_line_with_those_that_there_are() -> None:
-    with pytest.raises(SystemExit, match=r"--help is no benchmark; give .*folder.*tracing"):
-        main(["--help"])
+    with pytest.raises(SystemExit, match=r"speed is no benchmark; give .*folder.*tracing"):
+        main(["speed"])
+
+
+@pytest.mark.parametrize(
+    ("words", "said"), [(["--help"], "all benchmarks"), (["choice", "--help"], "-v names")]
+)
+def test_help_says_what_is_measured_and_runs_nothing(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(words)
+    assert said in capsys.readouterr().out

@@ -111,8 +111,8 @@ def deviation(
     ]
     if not any(np.isfinite(error).any() for error in errors):
         raise MotionFault(
-            "the path nowhere follows the drawing's ink, it only crosses it;"
-            " check that both have the same scale and origin"
+            "the path nowhere follows the drawing's ink, it only crosses it or runs beside it; check that"
+            " both have the same scale and origin, and give the --cutter or --kerf of a path beside the lines"
         )
     missed, ink = _missed(
         drawing, [path.xy_mm] if isinstance(path, Path) else [*runs, *over], width_mm

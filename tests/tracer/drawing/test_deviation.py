@@ -116,6 +116,15 @@ def test_a_path_off_the_drawing_is_a_fault(drawing) -> None:  # type: ignore[no-
             deviation(drawing, [path])
 
 
+def test_a_path_beside_the_lines_is_a_fault_that_names_the_cutter() -> None:
+    """A cutter's path round a triangle crosses only the line that leaves its lower side, and that square."""
+    triangle = polyline((6, 8), (30, 8), (18, 26), (6, 8))
+    beside = polyline((2.4, 6), (33.6, 6), (18, 29.6), (2.4, 6))
+    drawing = inked(triangle, polyline((18, 8), (18, 3)))
+    with pytest.raises(MotionFault, match=r"runs beside it; .* give the --cutter"):
+        deviation(drawing, [beside])
+
+
 def test_a_path_that_never_has_its_tool_down_is_a_fault(drawing) -> None:  # type: ignore[no-untyped-def]
     up = Path(
         np.arange(len(CIRCLE)) * 0.1, np.column_stack([CIRCLE, np.full(len(CIRCLE), 2.0)])
