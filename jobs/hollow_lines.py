@@ -6,7 +6,6 @@ places that a picture marks.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.hollow import Hollow
     from morfax.tracer.program.program import Trace
 
-MM_PER_INCH, DPI_STEP = 25.4, 50
-FINER = 2  # times the resolution shows a gap that this one hardly shows
+FINER = 2.0  # times the resolution shows a gap that this one hardly shows
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +40,10 @@ class HollowLines:
             if not line.on_edge and not drawing.edges_mm and not line.is_dot
             if (there := hollow(seen, line.places_mm, line.width_mm, pitch_mm)) is not None
         ]
-        scanned_dpi = MM_PER_INCH / (drawing.pitch_mm * drawing.finer)
-        wants_dpi = DPI_STEP * math.ceil(FINER * scanned_dpi / DPI_STEP)
+        scanned_mm = drawing.pitch_mm * drawing.finer
+        wants_dpi = coarse.finer_dpi(scanned_mm, FINER)
         if drawing.seen_px < coarse.SEEN_PX:  # the drawing's own note advises that
-            wants_dpi = max(wants_dpi, coarse.wanted_dpi(drawing.pitch_mm * drawing.finer))
+            wants_dpi = max(wants_dpi, coarse.wanted_dpi(scanned_mm))
         return cls(tuple(found), wants_dpi)
 
     def figures(self) -> dict[str, Any]:

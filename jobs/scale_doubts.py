@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from morfax.tracer.drawing import coarse
-from morfax.tracer.drawing.scan import MM_PER_INCH
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
 THINNEST_MM, BROADEST_MM = 0.1, 2.0
 # of a line's width: below it the head sees fewer than one pixel between the edges
 FEWEST_PX = 3.0
-DPI_STEP = 50  # resolutions that are advised
 ALIKE = 0.007  # share by which the ratio of a format's sides is met: 2 mm on 297; by trial
 # share by which both sides are off: a scanner's margin, or a wrong scale; by trial
 SAME, NEAR = 0.012, 0.1
@@ -50,11 +48,11 @@ def _of_pixels(width_mm: float, pitch_mm: float) -> Iterator[str]:
     if width_mm < FEWEST_PX * pitch_mm:
         wide_px = width_mm / pitch_mm
         # a line of one pixel looks as if it had two
-        dpi = MM_PER_INCH / pitch_mm * 2 * FEWEST_PX / wide_px
+        dpi = coarse.finer_dpi(pitch_mm, 2 * FEWEST_PX / wide_px)
         told_px = math.floor(10 * wide_px) / 10  # what is too few never reads as enough
         yield (
             f"the lines are {told_px:.1f} pixels wide, and the head wants {FEWEST_PX:g}: scan at "
-            f"{DPI_STEP * math.ceil(dpi / DPI_STEP)} dpi"
+            f"{dpi} dpi"
         )
 
 

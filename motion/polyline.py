@@ -134,9 +134,14 @@ def plain(line_mm: Array, within_mm: float) -> Array:
 
 
 def at_places(line_mm: Array, at: Array) -> Array:
-    """Where a polyline is at places between its own, numbered with shares, (n, 2) mm."""
-    index = np.arange(len(line_mm))
-    return np.column_stack([np.interp(at, index, column) for column in line_mm.T])
+    """Where a polyline is at places between its own, numbered with shares, (n, 2) mm; before its first place
+    and beyond its last it is at these.
+    """
+    at = np.clip(at, 0, len(line_mm) - 1)
+    before = at.astype(np.int64)
+    after = np.minimum(before + 1, len(line_mm) - 1)
+    share = (at - before)[:, None]
+    return np.asarray((line_mm[after] - line_mm[before]) * share + line_mm[before])
 
 
 def at_lengths(line_mm: Array, at_mm: Array) -> Array:

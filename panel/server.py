@@ -24,7 +24,6 @@ from morfax.panel.guard import Guard
 LOCAL = ("127.0.0.1", "localhost")
 TOKEN_BYTES = 24
 LEAST_TOKEN = 16  # characters of a token that somebody chose
-NEWEST_FRAME_BYTES = 1 << 16  # a page that stops reading has no more than this waiting for it
 
 
 @dataclass(frozen=True, slots=True)

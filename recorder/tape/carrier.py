@@ -41,9 +41,7 @@ from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
 FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate, as drawn above
 # samples that the next frames still need: the neighbour before, and two not yet played
 _HELD_BACK = 3
-CHUNK_PERIODS = (
-    64  # made at a time: with their columns they stay in the processor's first cache
-)
+CHUNK_PERIODS = 64  # made at a time: they stay in the processor's first cache
 
 Frames = NDArray[np.float32]
 

@@ -30,6 +30,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.polyline import at_places
 from morfax.recorder.tape.carrier import Frames, _sine
 from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, CheckFrame, to_bits
 from morfax.recorder.tape.format import CHECK_SHARE, TapeFormat
@@ -130,7 +131,7 @@ class CheckWriter:
         rows = self._cycles[max(first - self._gauge, 0) : ends]
         # its first instant, and its middle
         ats = (self._number + np.array([0, 0.5])) * self._rows_per_frame - self._first_row
-        places = _between(self._cycles, ats)
+        places = at_places(self._cycles, ats)
         fastest, hardest = np.zeros((2, self._tracks - 1))
         _gauged(rows, (self._rate_hz, self._gauge), fastest, hardest)
         for axis in range(self._tracks - 1):
@@ -162,14 +163,6 @@ def _gauged(rows, how, fastest, hardest):  # type: ignore[no-untyped-def]
         for k in range(gauge, moves):
             hard = max(hard, abs((speeds[k] - speeds[k - gauge]) * (rate_hz / gauge)))
         fastest[axis], hardest[axis] = fast, hard
-
-
-def _between(rows: Array, ats: Array) -> Array:
-    """Rows at places between them, on the straight line; those outside are at the first or the last row."""
-    ats = np.clip(ats, 0, len(rows) - 1)
-    below = ats.astype(np.int64)
-    above = np.minimum(below + 1, len(rows) - 1)
-    return (rows[above] - rows[below]) * (ats - below)[:, None] + rows[below]
 
 
 class _Wave:

@@ -45,10 +45,8 @@ MOST_PX = 1 << 22  # of a sheet, before: large sheets are no coarse scans, and n
 # pixels, as `noise.Within` says: a line of 1.5 looks 1.8 to 2.12 wide, one of 2 looks 2.16 or more; by trial
 SEEN_PX = 2.14
 DETAIL_PX = 6.0  # details that are smaller may be cut off; by trial
-WANTED_TIMES, DPI_STEP = (
-    3.0,
-    50,
-)  # a line of one pixel then has three; resolutions that are advised
+WANTED_TIMES = 3.0  # a line of one pixel then has three
+DPI_STEP = 50  # of the resolutions that are advised
 
 
 def times_finer(darkness: Darkness, width_px: float) -> int:
@@ -72,7 +70,12 @@ def finer(darkness: Darkness, times: int, seen_px: float = math.inf) -> Darkness
 
 def wanted_dpi(pitch_mm: float) -> int:
     """The resolution that is enough where lines are a pixel wide."""
-    return DPI_STEP * math.ceil(WANTED_TIMES * MM_PER_INCH / pitch_mm / DPI_STEP)
+    return finer_dpi(pitch_mm, WANTED_TIMES)
+
+
+def finer_dpi(pitch_mm: float, times: float) -> int:
+    """The resolution, as one advises it, at which pixels of a pitch are so many times finer."""
+    return DPI_STEP * math.ceil(times * MM_PER_INCH / pitch_mm / DPI_STEP)
 
 
 def note(seen_px: float, pitch_mm: float) -> str:

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import lengths_mm
+from morfax.motion.polyline import at_lengths, length_mm
 
 # darkness (n, k) at places (n, 2) mm, across their headings (n,) rad, at distances (k,) mm to the left
 Seen = Callable[[Array, Array, Array], Array]
@@ -55,16 +55,15 @@ def hollow(seen: Seen, places: Array, width_mm: float, pitch_mm: float) -> Hollo
     """The hollow stretches of a path through places (n, 2) mm, along ink of a width on pixels of a pitch, mm;
     None if there are none.
     """
-    come_mm = lengths_mm(places)
     piece_mm = max(PIECE_MM, PIECE_PX * pitch_mm)
     count = int(piece_mm / (APART_PX * pitch_mm))
     shares = (np.arange(count) + 0.5) / count
     apart = [np.empty(0)]
-    pieces = int(come_mm[-1] / piece_mm)
+    pieces = int(length_mm(places) / piece_mm)
     for first in range(0, pieces, AT_ONCE):
         numbers = np.arange(first, min(first + AT_ONCE, pieces))
         at_mm = piece_mm * (numbers[:, None] + shares).ravel()
-        dark = seen(*_stations(places, come_mm, at_mm), width_mm * OFFSETS)
+        dark = seen(*_stations(places, at_mm), width_mm * OFFSETS)
         apart.append(_apart(dark.reshape(len(numbers), count, -1)))
     apart_mm = width_mm * np.concatenate(apart)
     ends = np.flatnonzero(np.diff(np.r_[False, np.isfinite(apart_mm), False].astype(np.int8)))
@@ -72,15 +71,14 @@ def hollow(seen: Seen, places: Array, width_mm: float, pitch_mm: float) -> Hollo
     if not rows:
         return None
     first, last = max(rows, key=lambda row: row[1] - row[0])
-    middle = int(np.searchsorted(come_mm, 0.5 * (first + last) * piece_mm))
-    place_mm = float(places[middle, 0]), float(places[middle, 1])
-    length_mm = piece_mm * sum(b - a for a, b in rows)
-    return Hollow(length_mm, place_mm, float(np.median(apart_mm[first:last])))
+    x, y = at_lengths(places, np.array([0.5 * (first + last) * piece_mm]))[0].tolist()
+    hollow_mm = piece_mm * sum(b - a for a, b in rows)
+    return Hollow(hollow_mm, (x, y), float(np.median(apart_mm[first:last])))
 
 
-def _stations(places: Array, come_mm: Array, at_mm: Array) -> tuple[Array, Array]:
+def _stations(places: Array, at_mm: Array) -> tuple[Array, Array]:
     """Where a way is at some lengths from its start, (n, 2) mm, and its headings there."""
-    there = np.column_stack([np.interp(at_mm, come_mm, column) for column in places.T])
+    there = at_lengths(places, at_mm)
     way = np.gradient(there, axis=0)
     return there, np.arctan2(way[:, 1], way[:, 0])
 

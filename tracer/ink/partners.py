@@ -35,9 +35,6 @@ from morfax.tracer.sensing.leg import Leg, turn
 SMOOTHLY = math.radians(22)  # a way that turns by no more between two legs is smooth
 AT_VERTEX = 0.6  # widths from where all legs meet: two legs that meet there may be a corner
 CORNERED = math.radians(30)  # a corner counts as turning so much more: a smooth way is likelier
-NOT_BENT = (
-    0.25  # of the turn: straight legs do not account for half of it, legs of an arc for all
-)
 HIDDEN_WIDTHS = 6.0  # a vertex further beyond both clean ends is told by neither leg
 STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning so much more
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
