@@ -148,13 +148,14 @@ def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Une
 def _off_edges(drawing: Drawing, closed: Sequence[Line]) -> Iterator[Unexplained]:
     """Where the ways and the edges of filled shapes are further apart than a fine scan allows."""
     most_mm = most_off_mm(drawing.pitch_mm * drawing.enlarged)
-    if not drawing.edges_mm or most_mm <= OFF_MM:
+    if not drawing.edges_mm or not closed or most_mm <= OFF_MM:
         return
     ways = [line.places_mm for line in closed]
     edges = [with_places(edge, EVERY_MM) for edge in drawing.edges_mm]
     for lines, others in ((edges, ways), (ways, edges)):
-        for line in lines:
-            away_mm = nearest_mm(line, np.vstack(others))
+        all_mm = nearest_mm(np.vstack(lines), np.vstack(others))
+        ends = np.cumsum([len(line) for line in lines])
+        for line, away_mm in zip(lines, np.split(all_mm, ends[:-1]), strict=True):
             if np.median(away_mm) > OFF_MM:
                 continue  # an edge that was not followed
             off = np.diff(np.r_[False, away_mm > OFF_MM, False].astype(np.int8))

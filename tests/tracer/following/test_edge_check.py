@@ -105,3 +105,9 @@ def test_a_tip_at_which_edge_and_way_are_off_is_told_once() -> None:
         [Unexplained(place_mm, off_mm, True, is_tip=True) for place_mm, off_mm in places]
     )
     assert [place.length_mm for place in told] == [1.0, 0.6]
+
+
+def test_where_no_line_closed_nothing_is_off_its_edge() -> None:
+    """A line that ran into itself has come round, and is no edge."""
+    drawing = Drawing(np.zeros((8, 8), np.float32), 0.5, edges_mm=(SQUARE,))
+    assert list(_off_edges(drawing, [])) == []
