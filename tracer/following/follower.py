@@ -30,6 +30,7 @@ from morfax.tracer.following.felt_line import (
     trail_behind,
 )
 from morfax.tracer.following.followed import Followed
+from morfax.tracer.following.hidden_corner import hides_corner
 from morfax.tracer.following.run_ends import RunEnds
 from morfax.tracer.following.way_home import WayHome
 from morfax.tracer.following.ways_out import (
@@ -47,7 +48,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, HOME, MORE
 from morfax.tracer.junctions.choice import Choice
-from morfax.tracer.junctions.felt_corner import round_corner
+from morfax.tracer.junctions.felt_corner import corner_ahead, round_corner
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.junctions.width_change import of_another_pen
 from morfax.tracer.marks.dots import dot_at_end
@@ -170,10 +171,13 @@ class Follower(RunEnds):
         fork = self._ways_out.fork(self.view, seen, here, self.carriage)
         if fork is not None:
             return self._through_legs(leg_of(seen[: fork + 1], True, self.view.leg_mm))
-        # 3. a corner that can be felt round
-        corner = round_corner(self._planner(), seen, here)
+        # 3. a corner that can be felt round, or that its ink alone shows to be sharp
+        felt = corner_ahead(self.view, seen, here)
+        corner = None if felt is None else round_corner(self._planner(), felt)
         if corner is not None:
             return self._pass(corner)
+        if felt is not None and hides_corner(self.view, felt):
+            return self._through_legs(felt.legs(self.view)[0])
         # 4. clean line
         if self._agreement.goes_on(self.carriage, self.view, seen):
             return None

@@ -105,17 +105,14 @@ class Carriage:
     def hears(self, view: View) -> bool:
         """Whether the standing head's sweep, set a little to either side of the line, goes back to it.
 
-        Over a few places ahead, as the tuning was measured. On an edge, which may bend more, the cell swings
-        under the axis.
+        Over a few places ahead, as the tuning was measured. The cell swings under the axis: where its lead
+        would stand, a small circle has turned away from the heading.
         """
         if self.count > 1:  # a run that is taken up again
             return True
-        stations, tuning = tuned_along(view), self.tuning
-        if view.on_edge:
-            tuning = tuning._replace(lead_mm=0.0)
+        stations, tuning = tuned_along(view), self.tuning._replace(lead_mm=0.0)
         states = two_of(self.state)
-        states[0].lead_mm = tuning.lead_mm
-        states[0].middle_mm = 0.0 if view.on_edge else self.state.middle_mm
+        states[0].lead_mm = states[0].middle_mm = 0.0
         off_mm = CALIBRATED_ASIDE * view.width_mm
         how = stations, float(view.step_mm), float(off_mm)
         back_mm = swinging.goes_back(view.cells, states, tuning, how)

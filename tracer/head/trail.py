@@ -121,6 +121,11 @@ class Trail:
         way = self._places[i + 1] - self._places[i]
         return bool(way @ [math.cos(leg.heading_rad), math.sin(leg.heading_rad)] < 0)
 
+    def began_on(self, leg: Leg, width_mm: float) -> bool:
+        """Whether the trail begins on a leg and goes along it: the leg leads home."""
+        from_home = np.hypot(*(leg.seen[:, :2] - self._places[0]).T)
+        return bool(from_home.min() < NEAR * width_mm) and not self.comes_back(leg)
+
     def holds(self, leg: Leg, width_mm: float) -> bool:
         """Whether the beginning of a leg has been followed already, in either sense."""
         # 1. the places of the trail about the leg's first third

@@ -11,6 +11,7 @@ Source: our own, from first principles.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from morfax.tracer.junctions.corner import (
 )
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.junctions.rings import corner_in
-from morfax.tracer.sensing.leg import leg_of, turn
+from morfax.tracer.sensing.leg import Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
@@ -43,13 +44,38 @@ BENT_BACK = 2  # stations by which a leg that bends is shortened: it lies in the
 LEAST_COSINE = 0.5  # beyond a turn of 120 degrees the inner edge of the ink is no measure
 
 
-def round_corner(planner: Planner, seen: Array, here: int) -> Plan | None:
-    """The way round a corner in what was felt, ahead of station `here`; None if its ink shows no corner."""
-    longer = _felt_on(planner.view, seen)
+class FeltCorner(NamedTuple):
+    """Stations of a line (n, 3) that was felt as if it were smooth, and the one at which it turns sharply."""
+
+    seen: Array
+    station: int
+
+    @property
+    def place_mm(self) -> Array:
+        """Where the line turns, as it was felt."""
+        return self.seen[self.station, :2]
+
+    @property
+    def rounded(self) -> Array:
+        """The places (n, 2) between the legs, as they were felt."""
+        return self.seen[self.station - SKIPPED : self.station + SKIPPED + 1, :2]
+
+    def legs(self, view: View) -> tuple[Leg, Leg]:
+        """The legs before and after the stations that the corner rounds."""
+        incoming = leg_of(self.seen[: self.station - SKIPPED], True, view.leg_mm)
+        return incoming, leg_of(self.seen[self.station + SKIPPED + 1 :], False, view.leg_mm)
+
+
+def corner_ahead(view: View, seen: Array, here: int) -> FeltCorner | None:
+    """The corner in what was felt, ahead of station `here`; None if there is none."""
+    longer = _felt_on(view, seen)
     i = corner_in(longer, here + AHEAD)
-    if i is None or i > len(seen) - LEG_STATIONS:
-        return None
-    return _by_vertex(planner, longer, i) or _by_round(planner, longer, i)
+    return None if i is None or i > len(seen) - LEG_STATIONS else FeltCorner(longer, i)
+
+
+def round_corner(planner: Planner, felt: FeltCorner) -> Plan | None:
+    """The way round a corner in what was felt; None if its ink shows none."""
+    return _by_vertex(planner, felt) or _by_round(planner, felt.seen, felt.station)
 
 
 def _felt_on(view: View, seen: Array) -> Array:
@@ -63,11 +89,10 @@ def _felt_on(view: View, seen: Array) -> Array:
     return more if len(more) > len(seen) else seen
 
 
-def _by_vertex(planner: Planner, seen: Array, i: int) -> Plan | None:
-    """The way by the vertex of a corner at a station, if its ink shows it to be sharp."""
+def _by_vertex(planner: Planner, felt: FeltCorner) -> Plan | None:
+    """The way by the vertex of a corner, if its ink shows it to be sharp."""
     view = planner.view
-    incoming = leg_of(seen[: i - SKIPPED], True, view.leg_mm)
-    outgoing = leg_of(seen[i + SKIPPED + 1 :], False, view.leg_mm)
+    incoming, outgoing = felt.legs(view)
     corner = Corner.of(incoming, outgoing)
     # the bend is not between the legs
     if corner is None or corner.nearest_mm < view.step_mm:
@@ -76,7 +101,7 @@ def _by_vertex(planner: Planner, seen: Array, i: int) -> Plan | None:
         return None
     plan = planner.through(incoming, outgoing, corner)
     angle = abs(turn(incoming.heading_rad, outgoing.heading_rad))
-    return plan if is_as_felt(view, plan, seen, angle) else None
+    return plan if is_as_felt(view, plan, felt.seen, angle) else None
 
 
 def _by_round(planner: Planner, seen: Array, i: int) -> Plan | None:

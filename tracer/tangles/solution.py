@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -37,13 +37,16 @@ FEW = 2.5  # vertices: no more for that, if the plan leads there too
 # one explains the ink as well as another: so many times its misfit, and more
 TWICE, LEAST_MISFIT = 2.0, 0.02
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
-AS_GOOD = 0.05  # of a plan that needs no other to be compared with
+AS_GOOD = 0.02  # of a plan that needs no other to be compared with
+SLACK = 0.005  # misfit that noise makes up for, if there is little of it
 WELL_MM2 = 0.015  # area of wrong ink in a redrawing that explains all of it
 # more vertices that reach no farther, and leave ink, are a scribble
 BLOT_VERTICES, BLOT_WIDTHS = 4.5, 4.0
 ROUGH_WIDTHS = 0.6  # to and fro within the line's own ink: that is rough
 # times the misfit of a redrawing: a tick in its place explains the ink as well
 MARK_AS_GOOD = 1.3
+GENTLE_RAD = math.radians(120)  # a strand that turns less at each vertex is a corner or a step
+BACK_RAD = math.radians(150)  # legs that turn by more lie beside each other
 CROSSES_RAD = math.radians(25)  # a line that bends less goes straight on
 
 
@@ -83,18 +86,23 @@ def unravelled(sketch: Sketch, approach: Approach) -> Solution:
         return Solution(plan, Redrawing(((0, 1),), (NONE,)))
     # 2. the best redrawing by each leg, of those that explain the ink
     best = _by_leg(sketch, approach, planned)
-    if not best:
+    if not best or (_runs_back(legs) and next(iter(best.values())).misfit > planned):
         return Solution(plan)
     # 3. one of them, and those that would do as well
     leg, straight = _taken(sketch, best, approach)
     way, others = best[leg], _others(sketch, best, leg)
     # 4. the plan, if it explains the ink as well
     direct = approach.over(NONE, legs[leg])
-    if any(_is_rough(way, line, _width(sketch)) for line in (plan, direct)):
+    if any(_is_rough(sketch, way, line) for line in (plan, direct)):
         return Solution(plan or direct, way, others)
     if straight or (_leads_to(sketch, plan, leg) and _stands(sketch, way, plan)):
         return Solution(plan, way, others)
     return Solution(approach.over(way.own, legs[leg]), way, others)
+
+
+def _runs_back(legs: list[Leg]) -> bool:
+    """Whether the only two legs lie beside each other: their inks run together and show little of a tip."""
+    return len(legs) == 2 and abs(turn(legs[0].heading_rad, legs[1].heading_rad)) > BACK_RAD
 
 
 def _planned_misfit(sketch: Sketch, plan: Plan | None) -> float:
@@ -135,12 +143,19 @@ def _by_leg(sketch: Sketch, approach: Approach, planned: float) -> dict[int, Red
         clear = max(CLEAR, min(BETTER * planned, LEAST_CLEAR))
     for way in every:
         leg = way.partner
-        if leg is None or approach.trail.holds(sketch.tangle.legs[leg], _width(sketch)):
+        if leg is None or _is_spent(sketch, approach.trail, leg):
             continue
         laboured = way.effort > FEW * VERTEX and _leads_to(sketch, approach.plan, leg)
         if way.misfit < (CLEAR if laboured else clear):
             best.setdefault(leg, way)
     return best
+
+
+def _is_spent(sketch: Sketch, trail: Trail, leg: int) -> bool:
+    """Whether a leg has been followed; the only other one of a corner may be that on which the head began."""
+    out, width_mm = sketch.tangle.legs[leg], _width(sketch)
+    only = len(sketch.tangle.legs) == 2
+    return trail.holds(out, width_mm) and not (only and trail.began_on(out, width_mm))
 
 
 def _taken(sketch: Sketch, best: dict[int, Redrawing], approach: Approach) -> tuple[int, bool]:
@@ -167,16 +182,45 @@ def _stands(sketch: Sketch, way: Redrawing, plan: Plan | None) -> bool:
         return False
     drawn = as_drawn(plan, sketch.tangle, _width(sketch))
     planned = sketch.misfit_with(way.without_own(), drawn)
-    if planned < way.misfit + VERTEX * (1 + len(way.own)):
+    if planned < _as_well(sketch, way):
         return True
-    return goes_straight(sketch.tangle.legs[0], plan.leg) and _is_mark(sketch, way, plan)
+    incoming, width_mm = sketch.tangle.legs[0], _width(sketch)
+    on_line = goes_straight(incoming, plan.leg) and same_line(plan.leg, incoming, width_mm)
+    return on_line and _is_mark(sketch, way, plan)
 
 
-def _is_rough(way: Redrawing, line: Plan | None, width_mm: float) -> bool:
-    """Whether a redrawing goes to and fro within a line's ink, and leaves some all the same: rough edges."""
+def _as_well(sketch: Sketch, way: Redrawing) -> float:
+    """The misfit up to which a plan explains the ink as well as a redrawing does.
+
+    At a corner or a step of two legs nothing but its vertices is in question: there noise alone excuses more.
+    """
+    if len(sketch.tangle.legs) == 2 and _is_gentle(sketch, way):
+        return TWICE * way.misfit + SLACK
+    return way.misfit + VERTEX * (1 + len(way.own))
+
+
+def _is_gentle(sketch: Sketch, way: Redrawing) -> bool:
+    """Whether a strand between two legs is a corner or a step: it turns back on itself nowhere."""
+    ends = sketch.poses[:, :2]
+    steps = np.diff(np.vstack([ends[:1], way.own, ends[1:2]]), axis=0)
+    headings = [
+        sketch.poses[0, 2],
+        *np.arctan2(steps[:, 1], steps[:, 0]),
+        sketch.poses[1, 2] + math.pi,
+    ]
+    return all(abs(turn(a, b)) < GENTLE_RAD for a, b in pairwise(headings))
+
+
+def _is_rough(sketch: Sketch, way: Redrawing, line: Plan | None) -> bool:
+    """Whether a redrawing goes to and fro within a line's ink, and leaves some all the same: rough edges.
+
+    The line explains most of the ink then; a step of the line leaves more of it.
+    """
+    width_mm = _width(sketch)
     if line is None or len(way.own) < 2 or way.misfit < WELL_MM2 / width_mm**2:
         return False
-    return aside_mm(way.own, line.stretches) < ROUGH_WIDTHS * width_mm
+    within = aside_mm(way.own, line.stretches) < ROUGH_WIDTHS * width_mm
+    return within and _planned_misfit(sketch, line) < CLEAR
 
 
 def _bends(sketch: Sketch, way: Redrawing) -> bool:
@@ -205,7 +249,7 @@ def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan) -> bool:
         return True
     bare = Redrawing(way.pairs, tuple(NONE for _ in way.pairs))
     marked = sketch.improved(bare, marks_only=True)
-    if _ticked(sketch, way, marked, bare) < MARK_AS_GOOD * way.misfit + LEAST_MISFIT:
+    if _ticked(sketch, way, marked, bare) < MARK_AS_GOOD * way.misfit + SLACK:
         return True
     if beside_mm < _width(sketch):
         return marked.misfit < TWICE * way.misfit

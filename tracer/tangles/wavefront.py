@@ -97,9 +97,9 @@ def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fr
     number = np.argsort(order).astype(np.int32)
     parents: list[list[int]] = [[] for _ in order]
     children: list[list[int]] = [[] for _ in order]
-    for a, b in number[links]:
-        parents[b].append(int(a))
-        children[a].append(int(b))
+    for a, b in dict.fromkeys(zip(*number[links].T.tolist(), strict=True)):
+        parents[b].append(a)
+        children[a].append(b)
     steps, pixels, at_row, at_column = table[order].T
     places = np.column_stack(
         [(at_column + left + 0.5) * pitch, (rows - at_row - top - 0.5) * pitch]
@@ -222,7 +222,7 @@ def _fill(distance, step_px, label, stack, row):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _links(label, table):  # type: ignore[no-untyped-def]
-    """Pairs of fronts (n, 2) that touch, the second one step further than the first."""
+    """Pairs of fronts (n, 2) that touch, the second one step further than the first; some several times."""
     rows, columns = label.shape
     links = np.empty((8 * rows * columns, 2), np.int32)
     found = 0

@@ -95,6 +95,14 @@ def test_a_circle_of_small_radius_is_the_cell_s() -> None:
     assert math.sqrt(float(np.mean(off_mm**2))) < 5 * UM
 
 
+@pytest.mark.parametrize("radius_mm", [1.4, 1.7])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_head_hears_its_cell_on_a_small_coarse_circle(radius_mm: float, seed: int) -> None:
+    """At 150 dpi the cell leads by the circle's radius: it was heard off the line, and the line refused."""
+    run = trace(inked(arc((10, 10), radius_mm), dpi=150.0, seed=seed))
+    assert run.ending == "closed"
+
+
 @pytest.mark.parametrize("broken", [None, "inverted", "noisy"])
 def test_the_standing_head_hears_in_one_kernel_what_it_heard_sweep_by_sweep(
     broken: str | None, monkeypatch: pytest.MonkeyPatch
@@ -118,12 +126,13 @@ def test_the_standing_head_hears_in_one_kernel_what_it_heard_sweep_by_sweep(
     hears = head.hears(view)
     assert head.state == own
     off_mm, back_mm, stations = CALIBRATED_ASIDE * view.width_mm, 0.0, tuned_along(view)
+    tuning = head.tuning._replace(lead_mm=0.0)
     for k in range(stations):
         for side in (-1.0, 1.0):
             state = own.copy()
-            state.lead_mm = head.tuning.lead_mm
+            state.lead_mm = state.middle_mm = 0.0
             state.x_mm += k * view.step_mm * math.cos(state.heading_rad)
             state.y_mm += k * view.step_mm * math.sin(state.heading_rad)
-            back_mm -= side * swinging.heard(view.cells, state, head.tuning, side * off_mm)
+            back_mm -= side * swinging.heard(view.cells, state, tuning, side * off_mm)
     assert heard == pytest.approx([back_mm, back_mm], rel=1e-12)
     assert hears == (back_mm > carriage.HEARD * 2 * stations * off_mm)

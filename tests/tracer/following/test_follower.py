@@ -317,3 +317,47 @@ def test_a_lost_line_is_caught_again_within_the_limit_only() -> None:
     assert caught.length_mm == pytest.approx(
         10 + math.hypot(2.5, 0.8) + math.hypot(11.5, 3.2), abs=0.1
     )
+
+
+def gear(teeth: int = 11, outer_mm: float = 24.0, depth_mm: float = 6.0) -> Array:
+    """A wheel with 4 corners to a tooth, whose sides are straight."""
+    step, places = math.tau / teeth, []
+    for k in range(teeth):
+        for share, radius in ((0, 0), (0.4, 0), (0.5, depth_mm), (0.95, depth_mm)):
+            angle = step * (k + share)
+            along = np.array([math.cos(angle), math.sin(angle)])
+            places.append(30 + (outer_mm - radius) * along)
+    return polyline(*places, places[0])
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_corner_after_a_side_that_seems_to_bend(seed: int) -> None:
+    """A side of 5 mm, felt with noise, may seem to bend; then the corner's vertex seemed to miss ink, and the
+    corner was rounded by up to 104 um.
+    """
+    followed(gear(), inked(gear(), width_mm=0.7, seed=seed))
+
+
+@pytest.mark.parametrize("height_mm", [1.1, 1.3])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_step_as_high_as_the_line_is_wide(height_mm: float, seed: int) -> None:
+    """It was taken for a tick across a line that goes straight on, and cut off by 0.36 mm."""
+    line = polyline((4, 10), (14, 10), (14.3, 10 + height_mm), (34, 10 + height_mm))
+    followed(line, inked(line, width_mm=1.0, seed=seed))
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_slot_closes_through_the_corner_before_home(seed: int) -> None:
+    """Both long sides are in one tangle: the one on which the head began was no way out of it."""
+    turned = np.array([[math.cos(0.3), -math.sin(0.3)], [math.sin(0.3), math.cos(0.3)]])
+    corners = np.array([(-1.5, -0.85), (1.5, -0.85), (1.5, 0.85), (-1.5, 0.85)]) @ turned.T + 12
+    line = polyline(*corners, corners[0])
+    followed(line, inked(line, width_mm=1.0, seed=seed), within_mm=30 * UM)
+
+
+def test_legs_are_found_along_a_line_that_runs_with_the_rows() -> None:
+    """More than 64 fronts of a wave stand in each row of pixels: they touched each other several times over,
+    and none of them counted as a line.
+    """
+    line = polyline((4, 8), (24, 8.1), (24.2, 9.3), (50, 9.4))
+    followed(line, inked(line, width_mm=1.0, seed=1))
