@@ -34,6 +34,7 @@ def of_ink(trace: Trace, *, several: bool) -> Iterator[str]:
     yield from _of_lost_outlines(trace)
     yield from _of_unread(trace)
     yield from _of_letters(trace)
+    yield from _of_small_rings(trace)
     yield from _of_joined(trace)
     alone = not several and trace.fault is None
     rest = tuple(_of_rest(trace.lines[0])) if alone else ()
@@ -166,6 +167,29 @@ def _of_letters(trace: Trace) -> Iterator[str]:
             "all follows it"
         )
     yield from of_letters(list(trace.letters))
+
+
+def _of_small_rings(trace: Trace) -> Iterator[str]:
+    """Lines that are too small to be contours, and may be holes."""
+    rings = trace.small_rings
+    if rings:
+        (x, y), across_mm = rings[0]
+        many = (
+            "1 small closed line is"
+            if len(rings) == 1
+            else f"{len(rings)} small closed lines are"
+        )
+        yield (
+            f"{many} left out, too short for a contour (the largest, {across_mm:.1f} mm across, at "
+            f"{x:.1f},{y:.1f} mm): --lines all follows all ink"
+        )
+    if trace.unclear:
+        (x, y), across_mm = trace.unclear[0]
+        many = "1 line is" if len(trace.unclear) == 1 else f"{len(trace.unclear)} lines are"
+        yield (
+            f"{many} left out, so small or narrow that the head can nowhere be put down (the largest, "
+            f"{across_mm:.1f} mm across, at {x:.1f},{y:.1f} mm): draw it larger or with a finer pen"
+        )
 
 
 def _of_joined(trace: Trace) -> Iterator[str]:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from morfax.tracer.cutter.cutter import Cutter, Left
     from morfax.tracer.ink.left_out import Area
     from morfax.tracer.program.program import Trace
+    from morfax.tracer.program.small_rings import SmallPatch
     from morfax.tracer.program.unexplained import Unexplained
 
 
@@ -38,6 +39,8 @@ def lines(
         "patches_left_out": trace.left_out,
         "ink_left_out_mm": trace.left_out_mm,
         **({"lettering_left_out": list(trace.letters_out)} if trace.letters_out else {}),
+        **_small_patches("small_closed_lines_left_out", trace.small_rings),
+        **_small_patches("unclear_lines_left_out", trace.unclear),
         **ink(trace),
         "lines": rows,
     }
@@ -92,6 +95,12 @@ def ink(trace: Trace) -> dict[str, Any]:
         ]
         or None,
     }
+
+
+def _small_patches(name: str, patches: Sequence[SmallPatch]) -> dict[str, Any]:
+    """The places and sizes of patches of ink that were left out, under a name; nothing if there are none."""
+    rows = [{"left_out_place_mm": p.place_mm, "across_mm": p.across_mm} for p in patches]
+    return {name: rows} if rows else {}
 
 
 def unexplained(trace: Trace) -> list[dict[str, Any]]:

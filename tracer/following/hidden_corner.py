@@ -1,8 +1,8 @@
 """Hidden corners: whether a line that was felt as a round turns sharply all the same.
 
 A line is felt over a length that rounds its corners, and the lens rounds the edge of a corner's ink. So a
-round that is neither a vertex nor an arc by its edge is a corner, or a step of several, where its legs meet
-at a clear angle ahead of them both, or where a pen along the felt line leaves other ink than is there.
+round that is neither a vertex nor an arc by its edge is a corner, or a step of several, where a pen along the
+felt line leaves other ink than is there.
 
 Signals: the view, and a corner in what was felt, in; whether there is more to it than was felt, out.
 
@@ -13,36 +13,37 @@ from __future__ import annotations
 
 import numpy as np
 
+from morfax.tracer.head.slow_cell import rough_mm
 from morfax.tracer.junctions.corner import SLIGHT, Corner
 from morfax.tracer.junctions.felt_corner import FeltCorner
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.likeness import Patch
 
 REACH_WIDTHS = 1.5  # of the line's width about a place: there a pen that turns leaves other ink
-WORSE = (
-    3.0  # times what the line before it leaves unexplained: grain and noise are the same there
-)
+# times what the line beside it leaves unexplained, for grain and noise are the same there; and where the legs
+# meet at a clear angle
+WORSE, WORSE_AT_ANGLE = 3.0, 1.5
+# of a pixel: a pen's line is rough by 4 to 8 % in its middle, a felt pen's on rough paper by 15 to 50 %;
+# its edges leave more ink unexplained than a corner does
+ROUGH_PX = 0.12
 ALONG = 16  # places of a leg, which bends little
 
 
 def hides_corner(view: View, felt: FeltCorner) -> bool:
     """Whether a line that was felt as a round turns more sharply than that."""
-    if view.on_edge:
+    if view.on_edge or rough_mm(felt.seen) > ROUGH_PX * view.parted * view.pitch_mm:
         return False
     incoming, outgoing = felt.legs(view)
-    corner = Corner.of(incoming, outgoing)
-    if (
-        corner is not None
-        and corner.nearest_mm > view.step_mm
-        and corner.deflection_rad > SLIGHT
-    ):
-        return True
-    from morfax.tracer.tangles.likeness import Patch
-
+    # 1. what a pen along the felt line leaves unexplained at the corner, and beside it
     reach_mm = REACH_WIDTHS * view.width_mm
     along = np.linspace(0.0, 3 * reach_mm, ALONG)
     places = np.vstack([incoming.at(-along[::-1]), felt.rounded, outgoing.at(along)])
-    near, usual = (
-        Patch.about(view, place, reach_mm, incoming).misfit(places)
-        for place in (felt.place_mm, incoming.at(-reach_mm))
+    around = felt.place_mm, incoming.at(-reach_mm), outgoing.at(reach_mm)
+    near, *usual = (
+        Patch.about(view, place, reach_mm, incoming).misfit(places) for place in around
     )
-    return near > WORSE * usual
+    # 2. less will do where the legs meet at a clear angle
+    corner = Corner.of(incoming, outgoing)
+    meets = corner is not None and corner.nearest_mm > view.step_mm
+    is_clear = meets and corner is not None and corner.deflection_rad > SLIGHT
+    return near > (WORSE_AT_ANGLE if is_clear else WORSE) * min(usual)

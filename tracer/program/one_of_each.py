@@ -1,6 +1,6 @@
 """One line of each patch: the first line that is followed on each patch of ink that is asked for.
 
-Signals: contours in; a line of each out, and how many patches are letters.
+Signals: contours in; a line of each out, and the contours on which the head can nowhere be put down.
 
 The head is put down at an open end of the patch, or at the plainest of its places. A patch along which a line
 was followed before is a piece of that line, which has gaps. A line that is lost is cut as far as it was
@@ -8,7 +8,7 @@ followed. Where lines cross or touch, and the line that the head finds does not 
 them, their longest closed outline goes before it, as where one line is asked for (see `net_outline`).
 
 Source: our own; the patent has one contour to a tape. Questions: a small patch on which the head can nowhere
-be put down is taken for a letter; a larger one counts as a lost line.
+be put down may be a letter, and is left out; a larger one counts as a lost line.
 """
 
 from __future__ import annotations
@@ -38,11 +38,13 @@ ABOUT_MM, ABOUT_WIDTHS = 40.0, 20.0
 ENDLESS_ABOUT_MM = 1.5 * LARGEST_MM
 
 
-def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[Line], int]:
-    """One line of each patch that is asked for, and how many patches are letters."""
+def one_of_each(
+    setup: Setup, asked: list[Contour], which: Which
+) -> tuple[list[Line], list[Contour]]:
+    """One line of each patch that is asked for, and the patches on which the head can nowhere be put down."""
     total_mm = sum(contour.stroke.length_mm for contour in asked)
-    lines, boxes_mm, letters, come_mm = list[Line](), list[Array](), 0, 0.0
-    begins_mm = list[tuple[float, float]]()
+    lines, boxes_mm, come_mm = list[Line](), list[Array](), 0.0
+    begins_mm, unclear = list[tuple[float, float]](), list[Contour]()
     for contour in asked:
         near = [lines[k] for k in _near(contour, boxes_mm)]
         if _is_done(contour, near, begins_mm):
@@ -58,10 +60,10 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> tuple[list[
             begins_mm += references_of([line])
             come_mm += line.length_mm
         elif isinstance(which, str) or contour.number not in which:
-            letters += 1
+            unclear.append(contour)
         else:
             raise _a_letter(contour)
-    return [line for line in lines if not _is_reference(line, begins_mm)], letters
+    return [line for line in lines if not _is_reference(line, begins_mm)], unclear
 
 
 def with_least_numbers(lines: list[Line], asked: list[Contour]) -> list[Line]:

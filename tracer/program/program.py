@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.ledger import Balance
     from morfax.tracer.operator.work import Action, Work
     from morfax.tracer.program.lost_outlines import LostOutline
+    from morfax.tracer.program.small_rings import SmallPatch
     from morfax.tracer.program.unexplained import Unexplained
 
 MOST_NAMED = 6  # lines that a fault names by their numbers
@@ -52,7 +53,8 @@ class Trace:
     `unexplained`: places at which closed lines are not what is drawn. `enlarged`: how many times at most
     the outlines of solid areas among lines were; `notes` on these are for the operator. `letters`: numbers of
     contours that are likely lettering; `letters_out`: of those that were left out as too low.
-    `lost_outlines`: edges that were left out, as the head was lost on them.
+    `lost_outlines`: edges that were left out, as the head was lost on them. `small_rings`: closed lines that
+    are too short to be contours; `unclear`: patches of ink on which the head can nowhere be put down.
     """
 
     lines: tuple[Line, ...]
@@ -69,6 +71,8 @@ class Trace:
     letters: tuple[int, ...] = ()
     letters_out: tuple[int, ...] = ()
     lost_outlines: tuple[LostOutline, ...] = ()
+    small_rings: tuple[SmallPatch, ...] = ()
+    unclear: tuple[SmallPatch, ...] = ()
 
     @property
     def work(self) -> Work:

@@ -43,6 +43,7 @@ from morfax.tracer.program.one_of_each import (
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
+from morfax.tracer.program.small_rings import SmallPatch, small_rings, unclear_patches
 from morfax.tracer.program.trace import followed
 from morfax.tracer.program.unexplained import unexplained
 
@@ -53,7 +54,8 @@ SAME = 0.8  # of a line's way along another: they are one line; by trial
 class FoundLines:
     """Lines that were followed, not yet in order; how many patches are no lines, and mm of ink that is joined
     to lines, but none. `patch_of` has the patch's number of each line that is joined to another; in
-    `letters_out` are the numbers of lettering that is lower than the operator wants.
+    `letters_out` are the numbers of lettering that is lower than the operator wants; on the patches `unclear`
+    the head could nowhere be put down.
     """
 
     lines: list[Line]
@@ -61,6 +63,7 @@ class FoundLines:
     left_out_mm: float
     patch_of: dict[int, int] = field(default_factory=dict)
     letters_out: tuple[int, ...] = ()
+    unclear: tuple[SmallPatch, ...] = ()
 
 
 def trace_lines(
@@ -90,7 +93,19 @@ def trace_lines(
         unexplained=unexplained(setup, lines) if which == "contours" else (),
         letters=_letters(setup.sheet, lines) if which == "contours" else (),
         letters_out=found.letters_out,
+        small_rings=_rings_left_out(setup, which, lines),
+        unclear=found.unclear,
     )
+
+
+def _rings_left_out(
+    setup: Setup, which: Which, lines: Sequence[Line]
+) -> tuple[SmallPatch, ...]:
+    """Closed lines that are too short to be contours; of a drawn program none, which has rings as marks."""
+    edges = setup.sheet.drawing.edges_mm
+    if not isinstance(which, str) or edges or setup.operator.reads_marks(lines):
+        return ()
+    return small_rings(setup.sheet)
 
 
 def _letters(sheet: Sheet, lines: Sequence[Line]) -> tuple[int, ...]:
@@ -143,7 +158,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     numbered = tuple(n for n in numbers if n <= patches) if numbers else which
     asked, left_out = selection.plan(setup.sheet, "contours" if beyond else numbered)
     asked, letters_out = _high_enough(setup, asked) if not numbers else (asked, ())
-    lines, letters = one_of_each(setup, asked, which)
+    lines, unclear = one_of_each(setup, asked, which)
     # 2. the other lines of those patches
     joined, left_mm = _joined(setup, asked, lines)
     patch_of = dict[int, int]()
@@ -157,7 +172,9 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     lines += holes
     if beyond or (holes and numbers):
         lines = _of_numbers(lines, numbers)
-    return FoundLines(lines, left_out + letters - len(holes), left_mm, patch_of, letters_out)
+    no_lines = left_out + len(unclear) - len(holes)
+    too_small = unclear_patches(setup.sheet, unclear)
+    return FoundLines(lines, no_lines, left_mm, patch_of, letters_out, too_small)
 
 
 def _high_enough(setup: Setup, asked: list[Contour]) -> tuple[list[Contour], tuple[int, ...]]:

@@ -25,6 +25,7 @@ from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import Leg, goes_straight, turn
+from morfax.tracer.tangles.likeness import Patch
 from morfax.tracer.tangles.redrawing import NONE, VERTEX, Redrawing
 from morfax.tracer.tangles.sketch import Sketch, redrawings
 from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretches_over
@@ -38,6 +39,8 @@ FEW = 2.5  # vertices: no more for that, if the plan leads there too
 TWICE, LEAST_MISFIT = 2.0, 0.02
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
 AS_GOOD = 0.02  # of a plan that needs no other to be compared with
+GRAINY = 3.0  # times as much as the line beside it leaves unexplained: that is its grain
+LEG_WIDTHS = np.linspace(-0.2, 2.2, 13)  # from a leg's end, where it is looked at for that
 SLACK = 0.005  # misfit that noise makes up for, if there is little of it
 WELL_MM2 = 0.015  # area of wrong ink in a redrawing that explains all of it
 # more vertices that reach no farther, and leave ink, are a scribble
@@ -192,11 +195,22 @@ def _stands(sketch: Sketch, way: Redrawing, plan: Plan | None) -> bool:
 def _as_well(sketch: Sketch, way: Redrawing) -> float:
     """The misfit up to which a plan explains the ink as well as a redrawing does.
 
-    At a corner or a step of two legs nothing but its vertices is in question: there noise alone excuses more.
+    At a corner or a step of two legs nothing but its vertices is in question: there only noise, and the grain
+    of the line, excuse more.
     """
     if len(sketch.tangle.legs) == 2 and _is_gentle(sketch, way):
-        return TWICE * way.misfit + SLACK
+        return max(TWICE * way.misfit, GRAINY * _grain(sketch)) + SLACK
     return way.misfit + VERTEX * (1 + len(way.own))
+
+
+def _grain(sketch: Sketch) -> float:
+    """What the tangle would leave unexplained if its ink were as like the pen's as that of its legs is."""
+    width_mm, grain = _width(sketch), list[float]()
+    for k, leg in enumerate(sketch.tangle.legs):
+        along = width_mm * (LEG_WIDTHS if k else -LEG_WIDTHS)
+        middle = leg.at(float(along[len(along) // 2]))
+        grain.append(Patch.about(sketch.view, middle, width_mm, leg).misfit(leg.at(along)))
+    return min(grain) * sketch.tangle.area_mm2 / width_mm**2
 
 
 def _is_gentle(sketch: Sketch, way: Redrawing) -> bool:

@@ -1,0 +1,72 @@
+"""Small rings: closed lines of a sheet that are too short or too narrow to be contours.
+
+A letter o and a small hole look alike: what is shorter than a contour is left out (see `selection`), and so
+is a small patch on which the head can nowhere be put down. But a hole that is left out is missed at the
+machine, so these are told.
+
+Signals: a Sheet, and contours on which the head could not be put down, in; places and sizes out, mm.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.tracer.drawing.lettering import lettering
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.program.selection import Contour, lines_of
+
+LEAST_WIDTHS = 2.0  # across: a smaller patch is a dot, whatever light is in it
+LEAST_HOLE_PX = 4  # of paper within: fewer are a speck in the ink
+MOST_RINGS = 500  # patches that are looked at, the largest first: sheets of text have thousands
+
+
+class SmallPatch(NamedTuple):
+    """Ink that is left out: its middle, and how far it reaches across, mm."""
+
+    place_mm: tuple[float, float]
+    across_mm: float
+
+    @classmethod
+    def of(cls, sheet: Sheet, patch: int) -> SmallPatch:
+        """A patch of ink of a sheet."""
+        top, bottom, left, right = sheet.patches.boxes[patch].tolist()
+        rows, pitch_mm = sheet.drawing.darkness.shape[0], sheet.drawing.pitch_mm
+        middle_mm = 0.5 * (left + right) * pitch_mm, (rows - 0.5 * (top + bottom)) * pitch_mm
+        return cls(middle_mm, max(bottom - top, right - left) * pitch_mm)
+
+
+def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
+    """The closed lines of a sheet that are too short to be contours, and no lettering; the largest first."""
+    patches, pitch_mm = sheet.patches, sheet.drawing.pitch_mm
+    across_mm = patches.longer_sides * pitch_mm
+    small = across_mm > LEAST_WIDTHS * np.median(sheet.widths_mm[lines_of(sheet)])
+    small[[*lines_of(sheet), *lettering(sheet)]] = False
+    chosen = np.flatnonzero(small)
+    chosen = chosen[np.argsort(-across_mm[chosen], kind="stable")][:MOST_RINGS]
+    return tuple(SmallPatch.of(sheet, p) for p in chosen.tolist() if _is_ring(sheet, p))
+
+
+def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPatch, ...]:
+    """The patches of contours on which the head could not be put down; the largest first."""
+    patches = (SmallPatch.of(sheet, contour.stroke.patch) for contour in contours)
+    return tuple(sorted(patches, key=lambda patch: -patch.across_mm))
+
+
+def _is_ring(sheet: Sheet, patch: int) -> bool:
+    """Whether a patch of ink has paper within."""
+    top, bottom, left, right = sheet.patches.boxes[patch].tolist()
+    own: NDArray[np.bool_] = np.zeros(sheet.patches.count, bool)
+    own[patch] = True
+    ink = sheet.patches.painted(own, top - 1, bottom + 1, left - 1, right + 1)
+    paper = (ink == 0).astype(np.uint8)
+    count, _, stats, _ = cv2.connectedComponentsWithStats(paper, connectivity=4)
+    around = 1  # the first piece of paper in the first row is what is around the patch
+    within = [stats[k, cv2.CC_STAT_AREA] for k in range(1, count) if k != around]
+    return max(within, default=0) >= LEAST_HOLE_PX
