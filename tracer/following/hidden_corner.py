@@ -17,7 +17,6 @@ from morfax.tracer.head.slow_cell import rough_mm
 from morfax.tracer.junctions.corner import SLIGHT, Corner
 from morfax.tracer.junctions.felt_corner import FeltCorner
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.likeness import Patch
 
 REACH_WIDTHS = 1.5  # of the line's width about a place: there a pen that turns leaves other ink
 # times what the line beside it leaves unexplained, for grain and noise are the same there; and where the legs
@@ -33,6 +32,10 @@ def hides_corner(view: View, felt: FeltCorner) -> bool:
     """Whether a line that was felt as a round turns more sharply than that."""
     if view.on_edge or rough_mm(felt.seen) > ROUGH_PX * view.parted * view.pitch_mm:
         return False
+    from morfax.tracer.tangles.likeness import (
+        Patch,
+    )  # most lines have nothing to be held against the ink
+
     incoming, outgoing = felt.legs(view)
     # 1. what a pen along the felt line leaves unexplained at the corner, and beside it
     reach_mm = REACH_WIDTHS * view.width_mm
