@@ -21,7 +21,7 @@ import threading
 from collections.abc import Callable
 from functools import cached_property, update_wrapper
 from types import ModuleType
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -73,7 +73,9 @@ class Kernel:
 
     def __call__(self, *args: Any) -> Any:
         """Run the machine code for arguments of these types; get it first if need be."""
-        key = tuple([kind if (kind := type(arg)) in _PLAIN else _key(arg) for arg in args])
+        of: list[Any] = []
+        _add_kinds(args, of)
+        key = tuple(of)
         run = self._ready.get(key)
         if run is None:
             run = self._ready[key] = self._found(args)
@@ -186,27 +188,61 @@ def _names_in(code: Any) -> set[str]:
     return set(code.co_names).union(*(_names_in(inner) for inner in within))
 
 
-_LASTING: dict[int, tuple[Any, Any]] = {}
+Kind = TypeVar("Kind")
+_LASTING: dict[int, tuple[Any, int]] = {}
+_KEPT_KINDS: set[type] = set()  # of tuples that keep their number
+_NUMBERS: dict[
+    tuple[Any, ...], int
+] = {}  # of what decides the machine code, each time the same
 
 
 def lasting(arg: Any) -> Any:
     """A tuple that lives as long as the process: what decides the machine code is made out once."""
-    _LASTING[id(arg)] = (arg, _key(arg))
+    _LASTING[id(arg)] = (arg, _number(arg))
     return arg
 
 
-def _key(arg: Any) -> Any:
-    """What of an argument decides the machine code, quick to make and to compare."""
-    kind = type(arg)
-    if kind is np.ndarray:
-        return (arg.dtype, arg.ndim, arg.flags.num & _FLAGS)
-    if isinstance(arg, tuple):
-        if (known := _LASTING.get(id(arg))) is not None:
-            return known[1]
-        return (kind, *[of if (of := type(item)) in _PLAIN else _key(item) for item in arg])
-    if isinstance(arg, np.void):
-        return (kind, _dtype(arg))
-    return (kind, arg.dtype) if isinstance(arg, np.ndarray) else kind
+def keeps_kinds(kind: type[Kind]) -> type[Kind]:
+    """A kind of tuples with attributes: each keeps what decides the machine code once it was made out."""
+    _KEPT_KINDS.add(kind)
+    return kind
+
+
+def _number(arg: tuple[Any, ...]) -> int:
+    """The number of what of a tuple decides the machine code."""
+    of: list[Any] = [type(arg), len(arg)]
+    _add_kinds(arg, of)
+    return _NUMBERS.setdefault(tuple(of), len(_NUMBERS))
+
+
+def _add_kinds(args: tuple[Any, ...], of: list[Any]) -> None:
+    """Add what of some arguments decides the machine code, quick to make and to compare.
+
+    One after the other, and not one within the other: that takes half as long. What begins an argument tells
+    how much belongs to it.
+    """
+    for arg in args:
+        kind = type(arg)
+        if kind in _PLAIN:
+            of.append(kind)
+        elif kind is np.ndarray:
+            of += (arg.dtype, arg.ndim, arg.flags.num & _FLAGS)
+        elif kind in _KEPT_KINDS:
+            if not hasattr(arg, "number_of_kinds"):
+                arg.number_of_kinds = _number(arg)
+            of.append(arg.number_of_kinds)
+        elif isinstance(arg, tuple):
+            if (known := _LASTING.get(id(arg))) is not None:
+                of.append(known[1])
+            else:
+                of += (kind, len(arg))
+                _add_kinds(arg, of)
+        else:
+            of.append(kind)
+            if isinstance(arg, np.void):
+                of.append(_dtype(arg))
+            elif isinstance(arg, np.ndarray):
+                of.append(arg.dtype)
 
 
 _dtype = np.generic.dtype.__get__  # type: ignore[attr-defined]  # a record looks among its fields first

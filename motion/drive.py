@@ -65,15 +65,25 @@ def as_rows(conditions: Sequence[Condition]) -> NDArray[np.float64]:
 
 
 @njit(cache=True, inline="always")
+def limited(value, least, most):  # type: ignore[no-untyped-def]
+    """A value within limits. It seldom is not, and a branch that is not taken keeps no later step waiting."""
+    if least <= value <= most:
+        return value
+    return min(max(value, least), most)
+
+
+@njit(cache=True, inline="always")
 def drive_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s):  # type: ignore[no-untyped-def]
     """Speed of the screw after one period, mm/s."""
     change = (demand_mm_s - speed_mm_s) * gain
-    return speed_mm_s + min(max(change, -largest_change_mm_s), largest_change_mm_s)
+    return speed_mm_s + limited(change, -largest_change_mm_s, largest_change_mm_s)
 
 
 @njit(cache=True, inline="always")
 def conditioned_step(speed_mm_s, demand_mm_s, gain, largest_change_mm_s, condition):  # type: ignore[no-untyped-def]
     """Speed of the screw after one period, mm/s, with what is wrong with the drive."""
     left = demand_mm_s * condition[0]
-    wanted = left - min(max(left, -condition[1]), condition[1]) + condition[2]
+    if condition[1] != 0.0:
+        left -= min(max(left, -condition[1]), condition[1])
+    wanted = left + condition[2]
     return drive_step(speed_mm_s, wanted, gain, largest_change_mm_s) * condition[3]

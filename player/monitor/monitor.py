@@ -34,6 +34,7 @@ from morfax.motion.faults import FollowingFault
 from morfax.player.monitor.chart import Chart
 
 DEMAND, SPEED, COUNTED, FAULTY, LARGEST, SHARE = range(6)  # columns of the state of an axis
+NEARLY = 1 - 1e-9  # of the largest share: beyond it the exact one is made; rounding is 1e-15
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,12 +91,15 @@ class FollowingLimit:
 
     def limit_mm(self, speed_mm_s: float) -> float:
         """The limit at a speed of the demand, mm."""
-        return float(allowed_mm(speed_mm_s, self.rows, self.beyond_s, self.tolerance_mm))
+        return float(allowed_mm(speed_mm_s, self.rows, self.tolerance_mm))
 
     @property
     def rows(self) -> Array:
-        """The table as the kernel takes it: (n, 2), mm/s and mm."""
-        return np.array(self.points, np.float64).reshape(-1, 2)
+        """The table as the kernel takes it: (n, 3), mm/s, mm, and the slope behind that in s."""
+        speeds, errors_mm = np.array(self.points, np.float64).reshape(-1, 2).T
+        return np.column_stack(
+            [speeds, errors_mm, np.r_[np.diff(errors_mm) / np.diff(speeds), self.beyond_s]]
+        )
 
 
 def learn_table(
@@ -140,9 +144,8 @@ class Monitor:
             chart.begin(self.axes)
         share = 1 - self._fade(self.limit.settle_s)
         fade = self._fade(self.limit.hold_s)
-        self._settings = np.array(
-            [rate_hz, share, fade, self.limit.beyond_s, self.limit.tolerance_mm]
-        )
+        self._settings = np.array([rate_hz, share, fade, self.limit.tolerance_mm])
+        self._table = self.limit.rows
         self._state = np.zeros((len(self.axes), 6))
         self._state[:, DEMAND] = np.nan
 
@@ -178,13 +181,11 @@ class Monitor:
         row = 0
         while row < len(demand):
             row, axis = _watch(
-                demand, actual, row, self._settings, self.limit.rows, self._state, limits
+                demand, actual, row, self._settings, self._table, self._state, limits
             )
             if axis < 0:
                 break
-            limit_mm = float(
-                allowed_mm(self._state[axis, COUNTED], self.limit.rows, *self._settings[3:])
-            )
+            limit_mm = self.limit.limit_mm(float(self._state[axis, COUNTED]))
             self._warn(
                 axis,
                 self.rows_seen + row,
@@ -247,33 +248,32 @@ class Supervised:
 
 
 @njit(cache=True, inline="always", _nrt=False)
-def allowed_mm(speed_mm_s, table, beyond_s, tolerance_mm):  # type: ignore[no-untyped-def]
+def allowed_mm(speed_mm_s, table, tolerance_mm):  # type: ignore[no-untyped-def]
     """The limit at a speed of the demand, mm; for the kernels of all controls."""
-    speed, row, last = abs(speed_mm_s), 0, len(table) - 1
-    while row < last and speed >= table[row + 1, 0]:
-        row += 1
-    slope_s = beyond_s
-    if row < last:
-        slope_s = (table[row + 1, 1] - table[row, 1]) / (table[row + 1, 0] - table[row, 0])
-    return table[row, 1] + (speed - table[row, 0]) * slope_s + tolerance_mm
+    speed, row = abs(speed_mm_s), len(table) - 1
+    while row > 0 and not speed >= table[row, 0]:
+        row -= 1
+    return table[row, 1] + (speed - table[row, 0]) * table[row, 2] + tolerance_mm
 
 
 @njit(cache=True, nogil=True, _nrt=False)
 def _watch(demand_mm, actual_mm, first, settings, table, state, limits_mm):  # type: ignore[no-untyped-def]
     """Watch from a row on; the row and the axis of the next fault, or the number of rows and -1."""
-    rate_hz, share, fade, beyond_s, tolerance_mm = settings
+    rate_hz, share, fade, tolerance_mm = settings
     for row in range(first, len(demand_mm)):
         found = -1
         for axis in range(len(state)):
-            demand = demand_mm[row, axis]
+            demand, speed = demand_mm[row, axis], state[axis, SPEED]
             before = demand if math.isnan(state[axis, DEMAND]) else state[axis, DEMAND]
-            state[axis, SPEED] += ((demand - before) * rate_hz - state[axis, SPEED]) * share
-            state[axis, DEMAND] = demand
-            state[axis, COUNTED] = max(abs(state[axis, SPEED]), state[axis, COUNTED] * fade)
-            limit = allowed_mm(state[axis, COUNTED], table, beyond_s, tolerance_mm)
+            speed += ((demand - before) * rate_hz - speed) * share
+            counted = max(abs(speed), state[axis, COUNTED] * fade)
+            limit = allowed_mm(counted, table, tolerance_mm)
             error = abs(demand - actual_mm[row, axis])
+            state[axis, DEMAND], state[axis, SPEED] = demand, speed
+            state[axis, COUNTED] = counted
             state[axis, LARGEST] = max(state[axis, LARGEST], error)
-            if limit > 0:
+            # nearly all are less than the largest, and need no division
+            if limit > 0 and error > NEARLY * limit * state[axis, SHARE]:
                 state[axis, SHARE] = max(state[axis, SHARE], error / limit)
             if len(limits_mm):
                 limits_mm[row, axis] = limit

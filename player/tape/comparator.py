@@ -21,7 +21,7 @@ evenly, so that each step of the drives has a comparison.
 
 from __future__ import annotations
 
-import math
+import numpy as np
 
 from morfax.motion.compiled import njit
 
@@ -30,7 +30,7 @@ from morfax.motion.compiled import njit
 def track_edges(reference, cycles):  # type: ignore[no-untyped-def]
     """Edges that a track has given (152), and the share since the last; `cycles`: against the reference."""
     phase = reference + cycles
-    count = math.floor(phase)
+    count = np.floor(phase)
     return count, phase - count
 
 

@@ -281,15 +281,15 @@ class Gaps:
 
 @njit(cache=True, nogil=True)
 def _mark(levels, least, steady, share, tracked, lost):  # type: ignore[no-untyped-def]
-    """Mark the rows whose level is off; `tracked` follows the others."""
-    for track in range(levels.shape[1]):
-        slow = tracked[track]
-        for row in range(len(levels)):
-            level = levels[row, track]
-            if not (
-                level >= least[track] and level >= steady * slow and level * steady <= slow
-            ):
-                lost[row, track] = True
+    """Mark the rows whose level is off; `tracked` follows the others.
+
+    All tracks row by row: each waits for its own last row, and they can wait together.
+    """
+    for row in range(len(levels)):
+        for track in range(levels.shape[1]):
+            level, slow = levels[row, track], tracked[track]
+            is_near = level >= steady * slow and level * steady <= slow
+            if level >= least[track] and is_near:
+                tracked[track] = slow + share * (level - slow)
             else:
-                slow += share * (level - slow)
-        tracked[track] = slow
+                lost[row, track] = True

@@ -20,10 +20,11 @@ class HeldRows:
 
     def __init__(self) -> None:
         self._blocks: list[Phases] = []
+        self._count = 0  # of the rows in all blocks
         self._dropped = 0  # rows of the first block
 
     def __len__(self) -> int:
-        return sum(map(len, self._blocks)) - self._dropped
+        return self._count - self._dropped
 
     @property
     def first_row(self) -> int:
@@ -35,12 +36,14 @@ class HeldRows:
         """Take the next rows."""
         if len(rows) or not self._blocks:
             self._blocks.append(rows)
+            self._count += len(rows)
 
     def drop(self, count: int) -> None:
         """Let the first rows go."""
         self._dropped += count
         while len(self._blocks) > 1 and self._dropped >= len(self._blocks[0]):
-            self._dropped -= len(self._blocks.pop(0))
+            gone = len(self._blocks.pop(0))
+            self._dropped, self._count = self._dropped - gone, self._count - gone
 
     def cut(self, first: int, last: int) -> Phases:
         """The rows from `first` to before `last`, as far as there are any."""
@@ -72,8 +75,16 @@ class HeldRows:
         """The place of one axis between two rows, straight from one to the next, cycles."""
         at = min(max(at, 0.0), len(self) - 1.0)
         low = int(at)
+        row = low + self._dropped
+        for block in self._blocks:
+            if row + 1 < len(block.cycles):
+                before, after = block.cycles[row : row + 2, axis].tolist()
+                return float(before + (at - low) * (after - before))
+            if row < len(block.cycles):
+                break  # between this block and the next
+            row -= len(block.cycles)
         return between(self.axis(axis, low, low + 2), at - low)
 
     def become(self, rows: Phases) -> None:
         """Hold these rows in place of all."""
-        self._blocks, self._dropped = [rows], 0
+        self._blocks, self._dropped, self._count = [rows], 0, len(rows)

@@ -50,7 +50,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
+from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step, limited
 from morfax.motion.ramp import positions_mm
 from morfax.player.monitor.monitor import FollowingLimit, learn_table
 from morfax.player.tape.comparator import compared, track_edges
@@ -261,17 +261,19 @@ def _follow(cycles, reference, wheels, scale, network, drive, conditions, state,
     for row in range(len(cycles)):
         # the reference since the wheels' last whole turn; motor 116 turns them by it
         told = (reference[0] + row) * reference[1]
-        turned = math.floor(told / wheels.sectors)
+        turned = np.floor(told / wheels.sectors)
         phase = told - turned * wheels.sectors
         wheel_turned = phase / wheels.sectors
         for axis in range(len(state)):
-            position, speed, demand, lead, error, sector, count = state[axis]
+            position, speed = state[axis, POSITION], state[axis, SPEED]
+            demand, lead = state[axis, DEMAND], state[axis, LEAD]
+            error, count = state[axis, ERROR], state[axis, COUNT]
             moved_mm[row, axis] = position
             # 1. the cell's edges (141, 157), the tape's (152), and how far they are apart (153, 158)
             share = 0.0
             if wheels.is_lit:
                 seen, share = last_edge(position, wheel_turned, axis, wheels)
-                count += edges_since(seen, int(sector), wheels.sectors)
+                count += edges_since(seen, state[axis, SECTOR], wheels.sectors)
                 state[axis, SECTOR], state[axis, COUNT] = seen, count
             tape_count, tape_share = track_edges(phase, cycles[row, axis])
             tape = tape_count + turned * wheels.sectors, tape_share
@@ -283,12 +285,12 @@ def _follow(cycles, reference, wheels, scale, network, drive, conditions, state,
             lead_now = lead_pole * lead + now - lead_zero * error  # amplifier 161
             demand += gain * (lead_now - zero * lead)  # integrator 159
             # what the motor can answer: its current,
-            given = min(max(demand, speed - reach), speed + reach)
-            given = min(max(given, -top), top)  # and its speed
+            given = limited(demand, speed - reach, speed + reach)
+            given = limited(given, -top, top)  # and its speed
             demand += back * (given - demand)
             # motor 163, tacho
             speed_now = conditioned_step(speed, given, drive[0], drive[1], conditions[axis])
-            speed_now = min(max(speed_now, -top), top)
+            speed_now = limited(speed_now, -top, top)
             state[axis, POSITION] = position + (speed + speed_now) / 2 * dt_s
             state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = (
                 speed_now,

@@ -2,7 +2,7 @@
 
 Signals in: the tape's frames in blocks. Signals out: Motion in blocks at the motion rate, sample 0 at the
 start of the tape, standstill included; a fault of the tape or a drive comes after the last sample that was
-still right. One block of tape is held at a time.
+still right. A few blocks of tape are held at a time: a file is read ahead of the drives (ahead.py).
 
 The reference track turns the sector wheels through the synchronous motor 116, so the machine's clock is the
 tape: a tape that runs fast or flutters makes the machine run fast or flutter along the same path, and the
@@ -21,6 +21,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
+from itertools import islice
 from os import PathLike
 from typing import Any, BinaryIO
 
@@ -28,14 +29,16 @@ import numpy as np
 
 from morfax.motion.arrays import Array, moved
 from morfax.motion.drive import SOUND
-from morfax.motion.faults import LockFault
+from morfax.motion.faults import Fault, LockFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import Supervised
+from morfax.player.tape.ahead import ReadAhead
 from morfax.player.tape.bare import NOT_VOUCHED
+from morfax.player.tape.lock_faults import Stood, ended_elsewhere, out_of_range
 from morfax.player.tape.phase_lock import Drives, PhaseLock, Reference, following_limit
-from morfax.player.tape.reader import TapeReader
-from morfax.player.tape.sector_wheel import THRESHOLD, SectorWheel
-from morfax.player.tape.setting import Setting
+from morfax.player.tape.reader import Read, TapeReader
+from morfax.player.tape.sector_wheel import SectorWheel
+from morfax.player.tape.setting import Setting, check_resumption
 from morfax.player.tape.track_order import END_CYCLES, found_order
 from morfax.recorder.sound.pipe import PipeSource, Samples
 from morfax.recorder.sound.source import FileSource, Source
@@ -98,9 +101,9 @@ def play(
         with Tape.of(opened(), reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
     setting = Setting(settings or PhaseLock(), tuple(zero_mm), override, wheel or SectorWheel())
-    _check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
+    check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
     playback = TapePlayback(open_tape, fmt, frames, setting, acceleration_mm_s2, resume_at_s)
-    playback.found_order = found
+    playback.found_order, playback.reads_ahead = found, True
     if found is None:
         playback.reader.begun = check
     return playback
@@ -125,20 +128,6 @@ def play_live(source: Source, *, closed: bool = False, **by_hand: Any) -> TapePl
 def _ending(fmt: TapeFormat, closed: bool) -> TapeFormat:
     """The format with the end of a closed program, if it states none."""
     return replace(fmt, end_mm=fmt.start_mm) if closed and fmt.end_mm is None else fmt
-
-
-def _check_resumption(
-    resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float
-) -> None:
-    """Raise ValueError for a tape time at which a tape cannot be resumed."""
-    if not 0 <= resume_at_s < duration_s:
-        raise ValueError(
-            f"the tape cannot be resumed at {resume_at_s:g} s; it lasts from 0 to {duration_s:.3f} s"
-        )
-    if resume_at_s and start_mm is None:
-        raise ValueError(
-            f"where the machine stands at {resume_at_s:g} s must be said; give the place (--from X,Y,Z)"
-        )
 
 
 class TapePlayback(Supervised):
@@ -173,12 +162,16 @@ class TapePlayback(Supervised):
         )
         self._zero_mm = setting.zeros_mm(fmt.axes)
         self._rows = 0
+        self.reads_ahead = False
         self.start_mm: Array = np.array(fmt.start_mm, dtype=np.float64) + self._zero_mm
         self.reader = TapeReader(
             open_tape, fmt, self.start_mm, self.acceleration_mm_s2, resume_at_s
         )
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
+        self._bridged: int | None = (
+            None  # how many dropouts lie before what was played; None: all
+        )
         self.cell_edges: Array = np.zeros(len(fmt.axes))
         self.found_order: tuple[int, ...] | None = None
         self.notes: tuple[str, ...] = ()  # a bare tape gives one when its first block is read
@@ -191,7 +184,7 @@ class TapePlayback(Supervised):
     @property
     def bridged(self) -> dict[tuple[float, str], float]:
         """Dropouts bridged in the last run: tape time in s and axis, and length in s."""
-        return self.reader.bridged
+        return dict(islice(self.reader.bridged.items(), self._bridged))
 
     @property
     def duration_s(self) -> float:
@@ -214,7 +207,7 @@ class TapePlayback(Supervised):
         drives.conditions = self.conditions
         rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
         monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
-        for phases, bearings, gap in self.reader.read(lambda: self.end_mm.tolist()):
+        for phases, bearings, gap in self._read():
             self.notes = () if self.reader.is_checked else (NOT_VOUCHED,)
             found = (
                 bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
@@ -238,6 +231,28 @@ class TapePlayback(Supervised):
                 raise found[1]
         self._check_end()
 
+    def _read(self) -> Iterator[Read]:
+        """What the reader gives, read ahead if it may be."""
+        ahead = ReadAhead[tuple[Read, int]]()
+
+        def stands_mm() -> Sequence[float]:
+            if self.reads_ahead:
+                ahead.wait_for_use()
+            return self.end_mm.tolist()
+
+        def made() -> Iterator[tuple[Read, int]]:
+            for read in self.reader.read(stands_mm):
+                yield read, len(self.reader.bridged)
+
+        try:
+            for read, bridged in ahead.blocks(made) if self.reads_ahead else made():
+                self._bridged = bridged
+                yield read
+        except Fault:  # of the tape: a fault of the drives does not come by here
+            self._bridged = None
+            raise
+        self._bridged = None
+
     def _motion(self, places_mm: Array, first_row: int) -> Motion:
         """A block of positions: X, Y, Z and further axes of the tape; an axis without a track stands at 0."""
         rate_hz, names = self.rate_hz, self.format.axes
@@ -250,31 +265,10 @@ class TapePlayback(Supervised):
 
     def _out_of_range(self, drives: Drives, row: int) -> LockFault:
         """The fault of fault circuit 162: a drive that could not follow."""
-        error_mm, drive = drives.error_mm, self.settings.drive
+        error_mm = drives.error_mm
         axis = int(np.argmax(np.where(np.isnan(error_mm), np.inf, np.abs(error_mm))))
-        name, time_s = self.format.axes[axis], row / self.rate_hz
-        error_cycles, position_mm = (
-            float(error_mm[axis]) * self.format.cycles_per_mm,
-            float(self.end_mm[axis]),
-        )
-        why = (
-            f"the tape asks for more than {drive.acceleration_mm_s2:g} mm/s² or "
-            f"{drive.top_speed_mm_s:g} mm/s: play it slower, or record it smoother"
-        )
-        if not self.setting.wheel.is_lit:
-            why = (
-                f"its pick-up gives no signal: the lamp has {self.setting.wheel.light:.0%} of its light, and"
-                f" the trigger needs {THRESHOLD:.0%}"
-            )
-        return LockFault(
-            f"the drive of {name.upper()} lost its lock at {time_s:.3f} s, position "
-            f"{position_mm:.3f} mm: error "
-            f"{error_cycles:+.2f} cycles, allowed ±{self.settings.range_cycles:g}; {why}",
-            axis=name,
-            time_s=time_s,
-            error_cycles=error_cycles,
-            position_mm=position_mm,
-        )
+        stood = self._stood(axis, row / self.rate_hz, float(error_mm[axis]))
+        return out_of_range(stood, self.setting)
 
     def _check_end(self) -> None:
         """Compare the machine's end with the tape's; raises LockFault beyond a quarter of a cycle."""
@@ -284,16 +278,14 @@ class TapePlayback(Supervised):
         self.end_error_mm = self.end_mm - np.array(fmt.end_mm) - self._zero_mm
         axis = int(np.argmax(np.abs(self.end_error_mm)))
         error_mm = float(self.end_error_mm[axis])
-        position_mm = float(self.end_mm[axis])
-        if abs(error_mm) * fmt.cycles_per_mm <= END_CYCLES:
-            return
-        raise LockFault(
-            f"{fmt.axes[axis].upper()} ends at {position_mm:.3f} mm, {error_mm:+.3f} mm from the "
-            "end that the tape "
-            f"states; allowed ±{END_CYCLES * fmt.mm_per_cycle:g} mm; cycles were lost, or it is cut "
-            "short: get another",
-            axis=fmt.axes[axis],
-            time_s=self._rows / fmt.motion_rate_hz,
-            error_cycles=error_mm * fmt.cycles_per_mm,
-            position_mm=position_mm,
+        if abs(error_mm) * fmt.cycles_per_mm > END_CYCLES:
+            time_s = self._rows / fmt.motion_rate_hz
+            raise ended_elsewhere(self._stood(axis, time_s, error_mm), fmt)
+
+    def _stood(self, axis: int, time_s: float, error_mm: float) -> Stood:
+        """Where the machine stands on an axis that is off."""
+        error_cycles, position_mm = (
+            error_mm * self.format.cycles_per_mm,
+            float(self.end_mm[axis]),
         )
+        return Stood(self.format.axes[axis], time_s, error_cycles, position_mm)

@@ -59,7 +59,7 @@ def count_turns(phase, gains, state, cycles, surprise):  # type: ignore[no-untyp
     """
     for k in range(phase.shape[1]):
         for axis in range(len(state)):
-            place, speed, bend = state[axis]
+            place, speed, bend = state[axis, 0], state[axis, 1], state[axis, 2]
             if math.isnan(place):  # the first row of the tape
                 place, speed, bend = phase[axis, k], 0.0, 0.0
             place, speed = place + speed + bend, speed + 2 * bend

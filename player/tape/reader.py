@@ -157,7 +157,7 @@ class TapeReader:
             wrong = watch.wrong_reference(held[-1], time_s) if watched else None
             if wrong is not None:
                 raise wrong
-            yield out, bearings, watch.first_fault(out, stands_mm()) or fault
+            yield out, bearings, watch.first_fault(out, stands_mm) or fault
         rest = _certain(gaps, phases.cut(len(phases), len(phases)), last=True)
         out, fault = warrant.feed(rest, stands_mm, last=True)
         yield out, bearings, fault

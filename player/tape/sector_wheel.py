@@ -50,6 +50,7 @@ class Wheels(NamedTuple):
     turns_per_mm: float
     wobble_turns: float
     is_lit: bool
+    is_even: bool  # every edge stands in its place: nobody has to look where
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +94,10 @@ class SectorWheel:
         late *= self.division_mm / width_mm
         edges = np.arange(-1.0, screw.sectors + 2) + np.pad(late, ((0, 0), (1, 2)), mode="wrap")
         wobble_turns = self.eccentricity_mm / (TWO_PI * self.radius_mm)
-        return Wheels(edges, screw.sectors, 1 / screw.pitch_mm, wobble_turns, self.is_lit)
+        is_even = not late.any()
+        return Wheels(
+            edges, screw.sectors, 1 / screw.pitch_mm, wobble_turns, self.is_lit, is_even
+        )
 
 
 def screw_for(mm_per_cycle: float) -> LeadScrew:
@@ -109,16 +113,21 @@ def last_edge(position_mm, turned, axis, wheels):  # type: ignore[no-untyped-def
     at = turned + arm
     if wheels.wobble_turns != 0.0:
         at += wheels.wobble_turns * math.sin(TWO_PI * arm)
-    passed = (at - math.floor(at)) * wheels.sectors
-    sector = int(passed)
-    edge, following = wheels.edges[axis, sector + 1], wheels.edges[axis, sector + 2]
-    if passed < edge:  # this edge comes late: the one before it is the last
-        sector -= 1
-        edge, following = wheels.edges[axis, sector + 1], edge
-    elif passed >= following:  # the next one came early
-        sector += 1
-        edge, following = following, wheels.edges[axis, sector + 2]
-    return sector, (passed - edge) / (following - edge)
+    passed = (at - np.floor(at)) * wheels.sectors
+    sector = np.floor(passed)
+    if wheels.is_even:
+        share = passed - sector
+    else:
+        place = int(sector) + 1
+        edge, following = wheels.edges[axis, place], wheels.edges[axis, place + 1]
+        if passed < edge:  # this edge comes late: the one before it is the last
+            sector -= 1
+            edge, following = wheels.edges[axis, place - 1], edge
+        elif passed >= following:  # the next one came early
+            sector += 1
+            edge, following = following, wheels.edges[axis, place + 2]
+        share = (passed - edge) / (following - edge)
+    return sector, share
 
 
 @njit(cache=True, inline="always")

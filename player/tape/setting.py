@@ -56,3 +56,17 @@ class Setting:
                 f"a zero of {len(self.zero_mm)} places does not fit; the tape has {len(axes)} axes"
             )
         return np.array([*self.zero_mm, *[0.0] * (len(axes) - len(self.zero_mm))])
+
+
+def check_resumption(
+    resume_at_s: float, start_mm: Sequence[float] | None, duration_s: float
+) -> None:
+    """Raise ValueError for a tape time at which a tape cannot be resumed."""
+    if not 0 <= resume_at_s < duration_s:
+        raise ValueError(
+            f"the tape cannot be resumed at {resume_at_s:g} s; it lasts from 0 to {duration_s:.3f} s"
+        )
+    if resume_at_s and start_mm is None:
+        raise ValueError(
+            f"where the machine stands at {resume_at_s:g} s must be said; give the place (--from X,Y,Z)"
+        )

@@ -29,6 +29,7 @@ from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.band_filter import translating_taps
 from morfax.player.tape.discriminator import Frames, Phases
 from morfax.player.tape.standstill import ALLOWED_CYCLES, Bearings, track_name
+from morfax.player.tape.warrant import StandsMm
 from morfax.recorder.tape.format import TapeFormat
 
 MOMENTS = 64  # in a block
@@ -130,18 +131,16 @@ class Watch:
         turned = np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz
         return np.asarray(hz + (turned - np.round(turned)) * rate_hz)
 
-    def first_fault(
-        self, phases: Phases, positions_mm: Sequence[float]
-    ) -> tuple[int, Fault] | None:
+    def first_fault(self, phases: Phases, stands_mm: StandsMm) -> tuple[int, Fault] | None:
         """The first row that skew or shaking make uncertain, with its fault."""
         found = [
             f
-            for f in (self.skewed(phases, positions_mm), self.unsteady(phases, positions_mm))
+            for f in (self.skewed(phases, stands_mm), self.unsteady(phases, stands_mm))
             if f is not None
         ]
         return min(found, key=lambda one: one[0], default=None)
 
-    def skewed(self, phases: Phases, positions_mm: Sequence[float]) -> tuple[int, Fault] | None:
+    def skewed(self, phases: Phases, stands_mm: StandsMm) -> tuple[int, Fault] | None:
         """The first row with an axis too fast for the skew of its track, and the fault."""
         if (
             not self.takes_skew or len(phases) < 2 or not self._format.dwell_s
@@ -171,12 +170,10 @@ class Watch:
             axis=name,
             time_s=time_s,
             error_cycles=float(speed[row, axis] * skew_s[axis]),
-            position_mm=positions_mm[axis],
+            position_mm=stands_mm()[axis],
         )
 
-    def unsteady(
-        self, phases: Phases, positions_mm: Sequence[float]
-    ) -> tuple[int, Fault] | None:
+    def unsteady(self, phases: Phases, stands_mm: StandsMm) -> tuple[int, Fault] | None:
         """The first row of a window in which the phase of an axis shakes, and the fault."""
         window = shake_rows(self._format.motion_rate_hz)
         whole = len(phases) // window * window
@@ -201,7 +198,7 @@ class Watch:
             axis=name,
             time_s=time_s,
             error_cycles=float(shakes[at, axis]),
-            position_mm=positions_mm[axis],
+            position_mm=stands_mm()[axis],
         )
 
 

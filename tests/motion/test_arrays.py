@@ -9,7 +9,7 @@ from morfax.motion.arrays import between, bounds, median, moved
 
 
 def test_rows_are_moved_as_numpy_moves_them() -> None:
-    rows, by = np.random.default_rng(1).normal(size=(7, 3)), np.array([1.0, -2.0, 0.25])
+    rows, by = np.random.default_rng(1).normal(size=(150, 3)), np.array([1.0, -2.0, 0.25])
     assert (moved(rows, by) == rows + by).all()
     assert (moved(rows[::2], by, 0.05) == rows[::2] * 0.05 + by).all()
 

@@ -6,14 +6,15 @@ import json
 import os
 import subprocess
 import sys
+from itertools import combinations
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
-from morfax.motion import machine_code
-from morfax.motion.compiled import Kernel, hear, njit
+from morfax.motion import compiled, machine_code
+from morfax.motion.compiled import Kernel, hear, keeps_kinds, njit
 from morfax.motion.drive import drive_step
 
 PART = """
@@ -178,3 +179,54 @@ def test_a_slice_of_another_shape_is_refused_and_one_that_fits_is_filled() -> No
 def _put(out, values):  # type: ignore[no-untyped-def]
     """Put an array into a slice of another."""
     out[1:3] = values
+
+
+class _Fields(NamedTuple):
+    values: np.ndarray
+    place: float
+
+
+@keeps_kinds
+class Kept(_Fields):
+    """A tuple that keeps what of it decides the machine code."""
+
+
+def kinds(*args: Any) -> tuple[Any, ...]:
+    """What of some arguments decides the machine code."""
+    of: list[Any] = []
+    compiled._add_kinds(args, of)
+    return tuple(of)
+
+
+def test_arguments_that_need_other_machine_code_are_told_apart() -> None:
+    row, table = np.zeros(3), np.zeros((3, 3))
+    groups = [
+        (1.0, 2.0, 3.0),
+        ((1.0, 2.0), 3.0),
+        (1.0, (2.0, 3.0)),
+        ((1.0,), (2.0, 3.0)),
+        ((1.0, 2.0), (3.0,)),
+        ((1.0, 2.0, 3.0),),
+        (((1.0, 2.0), 3.0),),
+        (_Fields(row, 1.0), 2.0),
+        (Kept(row, 1.0), 2.0),
+        (Kept(table, 1.0), 2.0),
+        (Kept(row.astype(np.float32), 1.0), 2.0),
+        (row, row),
+        (row, table[:, 0]),
+        (table, table),
+        (table, table.T),
+        (1, 2.0, 3.0),
+        (None, 2.0),
+    ]
+    assert all(kinds(*one) != kinds(*other) for one, other in combinations(groups, 2))
+    assert kinds(Kept(row, 1.0)) == kinds(Kept(row + 1, 2.0))
+    assert kinds((row, 1.0)) == kinds((row[:2], 2.0))
+
+
+def test_a_tuple_that_keeps_its_kinds_gives_them_to_no_other() -> None:
+    one = Kept(np.zeros(3), 1.0)
+    kept = kinds(one)
+    assert kinds(one) == kept
+    assert kinds(one._replace(place=2.0)) == kept
+    assert kinds(one._replace(values=np.zeros((2, 2)))) != kept

@@ -30,12 +30,14 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.long_array import blocks, released
 from morfax.tracer.marks import dots, sizes
 from morfax.tracer.marks.head_path import HeadPath
 from morfax.tracer.marks.ticks import Base, SideStroke, crossing_mm, felt
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
 
+Bits = NDArray[np.uint8]  # eight to a byte
 SPACING_PX = 0.5  # how closely the cells look along the path
 TOUCHES_DOT = 3.0  # widths: a tick nearer to a dot is the dot's own ink
 
@@ -160,13 +162,13 @@ def _strokes(view: View, path: HeadPath) -> list[SideStroke]:
 
 
 def _of_side(
-    view: View, path: HeadPath, side: int, rows: Array, dark: NDArray[np.bool_]
+    view: View, path: HeadPath, side: int, rows: Array, dark: Bits
 ) -> list[SideStroke]:
     """The strokes of one side, from where the cells of its rows see ink."""
     least_mm, most_mm = sizes.SEEN[0] * view.width_mm, 2 * sizes.SEEN[1] * view.width_mm
     found, feet_mm = list[SideStroke](), list[float]()  # the feet in their order
     for away, ink in zip(rows, dark, strict=True):
-        for begin, end in _pulses(ink):
+        for begin, end in _pulses(ink, len(path.places)):
             if not least_mm < (end - begin) * path.step_mm < most_mm:
                 continue
             i = (begin + end) // 2
@@ -186,23 +188,29 @@ def _is_among(view: View, foot_mm: float, feet_mm: list[float]) -> bool:
     )
 
 
-def _pulses(dark: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """First and last number + 1 of each run of true values."""
-    edges = np.flatnonzero(np.diff(np.r_[False, dark, False].astype(np.int8)))
+def _pulses(dark: Bits, count: int) -> Iterator[tuple[int, int]]:
+    """First and last number + 1 of each run of ones among so many bits."""
+    ones = np.zeros(count + 2, np.uint8)
+    ones[1:-1] = np.unpackbits(dark, count=count)
+    edges = np.flatnonzero(np.diff(ones))
     yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
 
 
-def _are_dark(view: View, path: HeadPath, away_mm: Array) -> NDArray[np.bool_]:
+def _are_dark(view: View, path: HeadPath, away_mm: Array) -> Bits:
     """Where cells that run beside a path, so far to its left, see ink: a row for each cell."""
-    out = np.empty((len(away_mm), len(path.places)), bool)
-    _look_beside(
-        view.cells, path.places, path.along, np.asarray(away_mm, float), view.level, out
-    )
-    return out
+    packed, done = list[Bits](), 0
+    for places in blocks(path.places, every=8):  # whole bytes
+        along = path.along[done : done + len(places)]
+        dark = np.empty((len(away_mm), len(places)), bool)
+        _look_beside(view.cells, places, along, np.asarray(away_mm, float), dark)
+        packed.append(np.packbits(dark, axis=1))
+        released(along)
+        done += len(places)
+    return np.concatenate(packed, axis=1)
 
 
 @njit(cache=True, _nrt=False)
-def _look_beside(cells, places, along, away_mm, level, out):  # type: ignore[no-untyped-def]
+def _look_beside(cells, places, along, away_mm, out):  # type: ignore[no-untyped-def]
     """Fill `out`: all cells at one place, then at the next, so that tiles of a large sheet are made
     once.
     """
@@ -210,7 +218,7 @@ def _look_beside(cells, places, along, away_mm, level, out):  # type: ignore[no-
         for row in range(len(away_mm)):
             x = places[k, 0] - away_mm[row] * along[k, 1]
             y = places[k, 1] + away_mm[row] * along[k, 0]
-            out[row, k] = photocell.darkness_at(cells, x, y) > level
+            out[row, k] = photocell.darkness_at(cells, x, y) > cells.level
 
 
 # dots
@@ -221,7 +229,7 @@ def _dots(view: View, path: HeadPath) -> list[Mark]:
     beside_mm = 0.75 * sizes.DOT_LEAST_WIDTHS * view.width_mm
     left, right = _are_dark(view, path, np.array([beside_mm, -beside_mm]))
     found: list[Mark] = []
-    for begin, end in _pulses(left & right):
+    for begin, end in _pulses(left & right, len(path.places)):
         middle = (begin + end - 1) // 2
         beside = _beside_dot(view, path, begin, end)
         centre = dots.disc(beside, path.places[middle], path.along[middle])

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from morfax.motion.compiled import njit
+from morfax.motion.compiled import keeps_kinds, njit
 from morfax.tracer.drawing.blocks import BLOCK_PX
 from morfax.tracer.drawing.contrast import FAINT
 from morfax.tracer.drawing.drawing import Darkness, Drawing
@@ -45,16 +45,21 @@ MOSTLY = 0.6  # of the tiles: the whole sheet at once takes less
 LEAST_SPREAD_PX = 0.2  # a smaller aperture changes no pixel by more than a scanner's noise
 
 
-class Cells(NamedTuple):
-    """What the cells see of a sheet: the darkness behind their aperture, (rows, columns) float32, on pixels
-    of `pitch_mm`; and the darkness at which they see an edge. That of a large sheet is empty: it is made
-    where the cells look, in `tiles`.
-    """
+class _Seen(NamedTuple):
+    """The fields of `Cells`."""
 
     darkness: Darkness
     pitch_mm: float
     level: float
     tiles: aperture.MadeTiles = aperture.NONE
+
+
+@keeps_kinds
+class Cells(_Seen):
+    """What the cells see of a sheet: the darkness behind their aperture, (rows, columns) float32, on pixels
+    of `pitch_mm`; and the darkness at which they see an edge. That of a large sheet is empty: it is made
+    where the cells look, in `tiles`.
+    """
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -25,12 +25,12 @@ WAYS = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])
 def spokes(view: View, place: Array, reach_mm: float, changes: int = 2) -> Array:
     """Where ink and paper change first, second … along each spoke, (SPOKES, changes) mm; NaN beyond reach."""
     out = np.full((SPOKES, changes), math.nan)
-    _changes(view.cells, place, WAYS, reach_mm, out)
+    changes_along(view.cells, place, WAYS, reach_mm, out)
     return out
 
 
 @njit(cache=True, _nrt=False)
-def _changes(cells, place, ways, reach_mm, out):  # type: ignore[no-untyped-def]
+def changes_along(cells, place, ways, reach_mm, out):  # type: ignore[no-untyped-def]
     """Fill `out` with the first changes along each of some ways from a place, mm."""
     step = STEP_PX * cells.pitch_mm
     last_mm = reach_mm - step  # the sample after this is the last within reach

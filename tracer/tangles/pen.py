@@ -29,6 +29,7 @@ from morfax.tracer.sensing.photocell import darkness_at
 PIECES = 6  # straight pieces that a bend is drawn with
 STEEPEST = 0.6  # cosine: a bend that leaves further aside of its chord reaches no further ahead
 SPECK_PX = 1.5  # from the middle of a speck to the ink beside it
+NARROW_RAD = math.radians(3)  # a tip as narrow as this is a tick
 INKED = 3.0  # softnesses from its edge, ink is whole or none: erfc is within 1e-5 of that
 
 
@@ -171,6 +172,26 @@ def on_paper_mm(cells, lines, count):  # type: ignore[no-untyped-def]
             ):
                 total += length / steps
     return total
+
+
+@njit(cache=True)
+def tips(drawn, vertices):  # type: ignore[no-untyped-def]
+    """At how many vertices strands go back on themselves."""
+    found = at = 0
+    for k in range(len(drawn.ends)):
+        x, y = drawn.ends[k, 0, 0], drawn.ends[k, 0, 1]
+        for i in range(at, at + drawn.counts[k]):
+            here_x, here_y = vertices[i, 0], vertices[i, 1]
+            after_x, after_y = drawn.ends[k, 1, 0], drawn.ends[k, 1, 1]
+            if i + 1 < at + drawn.counts[k]:
+                after_x, after_y = vertices[i + 1, 0], vertices[i + 1, 1]
+            turned = math.atan2(after_y - here_y, after_x - here_x)
+            turned -= math.atan2(here_y - y, here_x - x)
+            turned -= math.tau * round(turned / math.tau)
+            found += abs(turned) > math.pi - NARROW_RAD
+            x, y = here_x, here_y
+        at += drawn.counts[k]
+    return found
 
 
 @njit(cache=True)

@@ -12,12 +12,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.sensing.leg import turn
 from morfax.tracer.tangles import pen
 
 Pair = tuple[int, int]
@@ -25,7 +23,7 @@ Pair = tuple[int, int]
 # Chosen by trial on the test drawings; VERTEX is a misfit, STROKE and DOUBLED are vertices.
 VERTEX = 0.03  # what a vertex costs: a wrong stretch of 3 % of the line's width
 STROKE = 2.5
-DOUBLED, DOUBLED_RAD = 4.0, math.radians(3)  # a tip as narrow as this is a tick
+DOUBLED = 4.0  # a vertex at which a strand goes back on itself: a tick
 NONE = np.empty((0, 2))
 
 
@@ -60,6 +58,17 @@ class Redrawing:
     def with_strand(self, k: int, vertices: Array) -> Redrawing:
         """The redrawing with other vertices in one strand."""
         return replace(self, vertices=(*self.vertices[:k], vertices, *self.vertices[k + 1 :]))
+
+    def moved(self, vertices: Array, misfit: float, cost: float) -> Redrawing:
+        """The redrawing with other places for its vertices, strand after strand, and then for its strokes."""
+        parts, at = list[Array](), 0
+        for part in (*self.vertices, *self.strokes):
+            parts.append(vertices[at : at + len(part)])
+            at += len(part)
+        strands = len(self.vertices)
+        return Redrawing(
+            self.pairs, tuple(parts[:strands]), tuple(parts[strands:]), misfit, cost
+        )
 
     def without_own(self) -> Redrawing:
         """The redrawing without the strand of the incoming leg."""
@@ -107,10 +116,3 @@ def with_more(way: Redrawing, tip: Array, foot: Array, piece: int) -> list[Redra
             more.append(way.with_strand(k, np.vstack([v[:at], *vertices, v[at:]])))
         break
     return more
-
-
-def doubled(places: Array) -> int:
-    """At how many vertices of a strand it goes back on itself."""
-    steps = np.diff(places, axis=0)
-    headings = np.arctan2(steps[:, 1], steps[:, 0])
-    return sum(abs(turn(a, b)) > math.pi - DOUBLED_RAD for a, b in pairwise(headings))

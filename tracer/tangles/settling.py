@@ -18,7 +18,14 @@ import math
 import numpy as np
 
 from morfax.motion.compiled import njit
-from morfax.tracer.tangles.pen import PIECES, ink_at, most_pieces, pieces
+from morfax.tracer.tangles.pen import (
+    PIECES,
+    ink_at,
+    most_pieces,
+    on_paper_mm,
+    pieces,
+    tips,
+)
 
 # Chosen by trial on the test drawings.
 NUDGE_MM = 0.01  # by which a vertex is moved to see what that changes
@@ -149,3 +156,12 @@ def settle(seen, drawn, vertices, rounds):  # type: ignore[no-untyped-def]
         if best > before * (1 - LEAST_GAIN):
             break
     return best
+
+
+@njit(cache=True)
+def weighed(seen, cells, drawn, vertices, rounds):  # type: ignore[no-untyped-def]
+    """Settle the vertices; the squares of what is still wrong, the length on paper in mm, and narrow tips."""
+    wrong = settle(seen, drawn, vertices, rounds)
+    lines = np.empty((4, most_pieces(drawn, vertices)))
+    count = pieces(drawn, vertices, lines)
+    return wrong, on_paper_mm(cells, lines, count), tips(drawn, vertices)

@@ -17,7 +17,7 @@ for a tick.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -36,7 +36,6 @@ from morfax.tracer.tangles.redrawing import (
     VERTEX,
     Pair,
     Redrawing,
-    doubled,
     matchings,
     with_more,
 )
@@ -90,10 +89,10 @@ class Sketch:
 
     def _drawn(self, way: Redrawing) -> tuple[pen.Drawn, Array]:
         """A redrawing as the pen takes it, and its vertices (n, 2)."""
-        ends = np.array([[self.poses[a], self.poses[b]] for a, b in way.pairs])
+        ends = self.poses[np.array(way.pairs, np.int64).reshape(-1, 2)]
         counts = np.array([len(v) for v in way.vertices], np.int64)
-        vertices = np.vstack([NONE, *way.vertices, *way.strokes])
-        return pen.Drawn(ends.reshape(-1, 2, 3), counts, len(way.strokes)), vertices
+        vertices = np.concatenate([NONE, *way.vertices, *way.strokes])
+        return pen.Drawn(ends, counts, len(way.strokes)), vertices
 
     def _pieces(self, way: Redrawing) -> Array:
         """The straight pieces (4, n) of a redrawing."""
@@ -104,27 +103,14 @@ class Sketch:
     def settled(self, way: Redrawing, rounds: int = ALL) -> Redrawing:
         """The redrawing with its vertices moved to where they explain the ink best."""
         drawn, vertices = self._drawn(way)
-        left = float(settling.settle(self.ink, drawn, vertices, rounds))
-        strands = len(drawn.counts)
-        parts = np.split(vertices, np.cumsum([*drawn.counts, *[2] * drawn.strokes]))
-        moved = replace(way, vertices=tuple(parts[:strands]), strokes=tuple(parts[strands:-1]))
-        misfit = left * self.unit + self._on_paper(moved)
-        return replace(moved, misfit=misfit, cost=misfit + VERTEX * self._effort(moved))
-
-    def _on_paper(self, way: Redrawing) -> float:
-        """How much of a redrawing lies on paper, in widths: no place about the ink would show it."""
-        lines = np.ascontiguousarray(self._pieces(way))
-        on_paper_mm = float(pen.on_paper_mm(self.view.cells, lines, lines.shape[1]))
-        return on_paper_mm / (2 * self.ink.half_mm)
-
-    def _effort(self, way: Redrawing) -> float:
-        """What a redrawing costs by its vertices and strokes, in vertices."""
+        cells = self.view.cells
+        wrong, paper_mm, tips = settling.weighed(self.ink, cells, drawn, vertices, rounds)
+        # what lies on paper, in widths: no place about the ink would show it
+        misfit = wrong * self.unit + paper_mm / (2 * self.ink.half_mm)
         # a leg that is left over has its stroke
         effort = STROKE * (len(way.strokes) - len(self.poses) % 2)
-        for (a, b), vertices in zip(way.pairs, way.vertices, strict=True):
-            strand = np.vstack([self.poses[a, :2], vertices, self.poses[b, :2]])
-            effort += len(vertices) + DOUBLED * doubled(strand)
-        return effort
+        effort += sum(map(len, way.vertices)) + DOUBLED * tips
+        return way.moved(vertices, misfit, misfit + VERTEX * effort)
 
     def plainest(self, pairs: tuple[Pair, ...]) -> Redrawing:
         """The legs joined with no vertex, with one where they meet, or with those where their ink ends."""

@@ -113,6 +113,18 @@ def test_the_largest_share_of_a_limit_is_the_largest_error_over_the_limit() -> N
     assert watch.largest_share == pytest.approx([0.7])
 
 
+def test_the_largest_share_is_exact_whichever_row_has_it() -> None:
+    rng = np.random.default_rng(2)
+    demand = np.cumsum(rng.normal(0, 2e-3, (4000, 2)), axis=0)
+    actual = demand + rng.normal(0, 4e-3, demand.shape)
+    limit = FollowingLimit.table([(0, 0.0), (5, 0.02), (9, 0.1)], 0.02)
+    watch = Monitor("xy", 1000, limit, stop=False)
+    watch.watch(demand, actual)
+    speeds = np.abs(np.diff(demand, axis=0, prepend=demand[:1])) * 1000
+    limits = np.vectorize(limit.limit_mm)(speeds)
+    assert (watch.largest_share == (np.abs(demand - actual) / limits).max(axis=0)).all()
+
+
 def test_two_axes_that_fail_at_once_are_both_told() -> None:
     watch = Monitor("xy", 1.0, stop=False)
     watch.watch(np.zeros((4, 2)), np.full((4, 2), 9.0))
@@ -228,9 +240,7 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
         results.append((actual, [(fault.axis, fault.time_s) for fault in watch.warnings]))
     assert np.abs(results[0][0] - results[1][0]).max() < 1e-9
     assert results[0][1] == results[1][1] != []
-    assert allowed_mm(3.5, limit.rows, 0.0, 0.01) == allowed_mm.py_func(
-        3.5, limit.rows, 0.0, 0.01
-    )
+    assert allowed_mm(3.5, limit.rows, 0.01) == allowed_mm.py_func(3.5, limit.rows, 0.01)
 
 
 def test_a_speed_counts_on_while_the_drive_catches_up_after_a_stop() -> None:

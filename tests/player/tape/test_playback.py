@@ -17,7 +17,9 @@ from morfax.motion.contour import distance
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.motion.motion import Motion, join
 from morfax.motion.ramp import positions_mm
+from morfax.player.tape.ahead import BLOCKS_AHEAD
 from morfax.player.tape.playback import TapePlayback, play
+from morfax.player.tape.reader import BLOCK_FRAMES
 from morfax.recorder.tape.tape import TapeFormat, record
 from tests.player.carriers import (
     CYCLES_PER_MM,
@@ -34,6 +36,7 @@ from tests.player.carriers import (
 )
 
 SECONDS = 1.5
+BYTES_A_ROW = 3 * 8 + 3 * 4 + 4 * 4  # cycles and surprise of three axes, levels of four tracks
 
 
 def tape(file: Path, frames: np.ndarray, rate_hz: int = RATE_HZ) -> Path:
@@ -253,11 +256,13 @@ def test_a_tape_of_a_moment_is_a_fault(tmp_path: Path) -> None:
 
 def test_memory_does_not_grow_with_the_tape(tmp_path: Path) -> None:
     peaks = []
-    for seconds in (6, 24):
+    for seconds in (6, 48):
         file = tape(tmp_path / f"{seconds}.wav", tracks(swing, seconds))
         # a first one may compile kernels, and the tests' runner has a thread beside: the least counts
         peaks.append(min(peak_of_playing(file) for _ in range(4)))
-    assert peaks[1] < 1.1 * peaks[0]
+    # how far the reader is ahead of the drives is chance; the positions of 42 s more would be 6 MB
+    ahead = BLOCKS_AHEAD * BLOCK_FRAMES * MOTION_RATE_HZ / RATE_HZ * BYTES_A_ROW
+    assert peaks[1] < 1.1 * peaks[0] + ahead
     assert peaks[0] < 20e6  # bytes: a few blocks of 1 MB
 
 

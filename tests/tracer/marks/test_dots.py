@@ -68,6 +68,26 @@ def test_a_speck_of_paper_in_a_dot_is_no_line_that_leaves_it() -> None:
     assert found is not None and math.dist(found, AT) < WITHIN_MM
 
 
+@pytest.mark.parametrize("across_mm", [0.5, 0.9, 1.8, 3.0, 5.0])
+@pytest.mark.parametrize("beyond_mm", [0.0, 8.0])
+def test_no_place_about_which_there_is_a_round_is_passed_over(
+    across_mm: float, beyond_mm: float
+) -> None:
+    line = polyline((4, 12), (24 + beyond_mm, 12))
+    view = seen(inked(line, seed=5, specks=[dot((24.0, 12.2), across_mm)]))
+    leg = leg_of(view.feel(np.array([20.0, 12.0]), 0.0, 5.0), True, view.leg_mm)
+    rounds, inked_mm = list[float](), list[float]()
+    for along_mm in (dots.AHEAD * view.width_mm).tolist():
+        if not view.dark(leg.at(along_mm)):
+            break
+        inked_mm.append(along_mm)
+        if dots._disc(view, leg.at(along_mm)) is not None:
+            rounds.append(along_mm)
+    told = [along_mm for along_mm, _ in dots._rounds_ahead(view, leg)]
+    assert set(rounds) <= set(told) <= set(inked_mm)
+    assert across_mm > 0.5 or len(told) <= 1  # a plain line: nearly nowhere
+
+
 def test_a_line_goes_on_from_a_dot_only_along_its_heading() -> None:
     turned = inked(polyline((4, 12), AT, (24, 20)), seed=5, specks=[dot(AT, 1.8)])
     through = inked(polyline((4, 12), (34, 12)), seed=5, specks=[dot(AT, 1.8)])

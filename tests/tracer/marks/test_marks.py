@@ -14,7 +14,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from morfax.motion import long_array
+from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.marks import marks as marks_along_path
+from morfax.tracer.marks.head_path import HeadPath
 from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
 from tests.tracer.marked import trace, trace_lines
 
@@ -246,3 +251,23 @@ def test_a_tick_near_a_corner_is_a_mark_of_its_own_side_only() -> None:
     sides = polyline((4, 4), (14, 20), (24, 4))
     stroke = tick((16.2, 16.5), math.degrees(math.atan2(-16, 10)))
     assert off_mm(marks(sides, stroke, width_mm=0.8), (16.1875, 16.5))[0] < STANDS_WITHIN_MM
+
+
+def test_of_a_long_path_the_cells_beside_it_hold_a_block_at_a_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    angles = np.linspace(0, 6, 5000)
+    positions = 16 + 10 * np.column_stack([np.cos(angles), np.sin(angles)])
+    drawing = inked(CIRCLE, tick((26, 16), before_mm=2, beyond_mm=2), seed=7)
+    view = view_of(Sheet.of(drawing), None, 0.5)
+    away_mm = np.array([-1.0, 0.0, 1.0])
+    path = HeadPath(positions, 0.02)
+    whole = marks_along_path._are_dark(view, path, away_mm)
+    monkeypatch.setattr(long_array, "IN_MEMORY_BYTES", 16 * 500)
+    monkeypatch.setattr(long_array, "BLOCK_ROWS", 301)
+    given_back = list[int]()
+    monkeypatch.setattr(marks_along_path, "released", lambda rows: given_back.append(len(rows)))
+    path = HeadPath(positions, 0.02)
+    assert (marks_along_path._are_dark(view, path, away_mm) == whole).all()
+    assert sum(given_back) == len(path.places) and max(given_back) <= 301
+    assert whole.nbytes < len(away_mm) * (len(path.places) / 8 + 1)

@@ -122,3 +122,18 @@ def test_a_line_goes_into_a_blunt_tip_where_its_inks_run_together(
     assert apart.path_to_reference.p95_mm < 30 * UM
     assert apart.hausdorff_mm < 0.4 * width_mm
     assert run.length_mm == pytest.approx(length_mm(BLUNT), abs=2 * width_mm)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "is_tip"), [(0.5, True), (2.9, True), (3.1, False), (90, False)]
+)
+def test_a_vertex_is_a_tip_where_the_pen_goes_back_on_itself(
+    degrees: float, is_tip: bool
+) -> None:
+    """Two strands: the first bends at its second vertex, the other has none."""
+    away = 5 * np.array([-math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
+    vertices = np.array([[2.0, 1.0], [7.0, 1.0]])
+    ends = np.zeros((2, 2, 3))
+    ends[0, 0, :2], ends[0, 1, :2] = (0.0, 1.0), vertices[1] + away
+    drawn = pen.Drawn(ends, np.array([2, 0]), 0)
+    assert pen.tips(drawn, vertices) == pen.tips.py_func(drawn, vertices) == is_tip
