@@ -85,6 +85,7 @@ class Sheet:
     are_solid: NDArray[np.bool_]
     window: Window | None = None
     has_references: bool = True  # small crosses and rings may be reference points
+    bare_rings: bool = False  # rings are, whatever the line from them leads to
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
