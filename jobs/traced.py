@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
 from morfax.jobs import trace_figures, zero
-from morfax.jobs.hollow_lines import HollowLines
+from morfax.jobs.stub_lines import StubLines
+from morfax.jobs.two_lines import TwoLines
 from morfax.jobs.zero import ZeroOnSheet
 from morfax.motion.faults import MotionFault
 
@@ -32,7 +33,7 @@ MARKED = 30  # of the places that the head left out, the longest are marked in t
 PALE_MARKED = 10  # of the pale lines: a plan has many
 REACHED_MM = 0.0125  # half a step of a plotter: so far below 0 a place is written as 0
 SHEET = ZeroOnSheet("sheet")
-NOT_HOLLOW = HollowLines()
+NOT_TWO, NO_STUBS = TwoLines(), StubLines()
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +47,8 @@ class Traced:
     cutter: Cutter | None = None
     left: Left | None = None  # by the cutter
     led: WhoLed | None = None  # who led the head along the lines
-    hollow: HollowLines = NOT_HOLLOW  # lines that may be two
+    two: TwoLines = NOT_TWO  # lines that may be two side by side
+    stubs: StubLines = NO_STUBS  # along which lines go out and back
     on_edges: bool = False  # of filled shapes, which have no line's width
 
     @property
@@ -87,7 +89,7 @@ class Traced:
         stops_mm |= {f"unexplained {k}": place.place_mm for k, place in beside}
         lost_mm = enumerate(self.trace.lost_outlines[:MARKED], 1)
         stops_mm |= {f"lost outline {k}": lost.place_mm for k, lost in lost_mm}
-        stops_mm |= self.hollow.marked_mm
+        stops_mm |= self.two.marked_mm | self.stubs.marked_mm
         if self.left is None:
             return stops_mm
         lines_mm = {
@@ -140,7 +142,8 @@ class Traced:
             **self._figures_of_lines(),
             "unexplained": trace_figures.unexplained(trace) or None,
             "lost_outlines": trace_figures.lost_outlines(trace) or None,
-            **self.hollow.figures(),
+            **self.two.figures(),
+            **self.stubs.figures(),
             "leads": trace_figures.leads(trace) or None,
             "stops": trace_figures.stops(trace) or None,
             "tabs": trace_figures.tabs(trace) or None,

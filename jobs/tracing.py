@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 from morfax.jobs import correction_settings
 from morfax.jobs.contour_remarks import of_around, of_contouring, of_order
 from morfax.jobs.depths import of_tabs
-from morfax.jobs.hollow_lines import HollowLines
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.remarks_on_edges import of_picture_edge
 from morfax.jobs.remarks_on_reference import of_reference
 from morfax.jobs.skips import gap_across_skips
+from morfax.jobs.stub_lines import StubLines
 from morfax.jobs.traced import Traced
+from morfax.jobs.two_lines import TwoLines
 from morfax.jobs.who_led import WhoLed
 from morfax.jobs.wrong_use import WrongUse
 from morfax.jobs.zero import ZeroOnSheet
@@ -77,8 +78,9 @@ class Tracing:
         # 1. the head follows
         listener.compiling("the head", ("motion", "tracer", "recorder"))
         followed = self._followed(drawing, listener)
-        led, hollow = WhoLed.along(followed), HollowLines.along(drawing, followed)
-        for text in (*self._remarks(drawing, followed, led), *hollow.remarks()):
+        led, two = WhoLed.along(followed), TwoLines.along(drawing, followed)
+        stubs, said = StubLines.along(followed), self._remarks(drawing, followed, led)
+        for text in (*said, *two.remarks(), *stubs.remarks()):
             listener.warning(text)
         # 2. the zero of the program
         zero = ZeroOnSheet.of(self.settings, drawing, followed)
@@ -92,7 +94,8 @@ class Tracing:
             listener.warning(text)
         several = self.settings.line.are_several
         on_edges = bool(drawing.edges_mm) or (drawing.both and followed.ink is None)
-        return Traced(beside, thin(beside), several, zero, cutter, left, led, hollow, on_edges)
+        path = thin(beside)
+        return Traced(beside, path, several, zero, cutter, left, led, two, stubs, on_edges)
 
     def _remarks(self, drawing: Drawing, followed: Trace, led: WhoLed | None) -> Iterator[str]:
         """What is to be said of the way that the head has gone."""

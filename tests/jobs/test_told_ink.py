@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -105,20 +106,50 @@ PLATE = polyline((5, 5), (70, 5), (70, 45), (5, 45), (5, 5))
 HOLE_AND_SLIT = (arc((25.0, 25.0), 4.0), polyline((32, 25), (60, 25)))
 
 
-def test_a_ring_that_is_taken_for_a_reference_point_is_told_and_marks_off_cuts_it() -> None:
-    """A hole of 8 mm with a slit that leads away from it is what a drawn program begins with, too."""
-    drawing = inked(PLATE, *HOLE_AND_SLIT, seed=1)
-    contours = TraceSettings(LineSettings(lines="contours"))
+CONTOURS = TraceSettings(LineSettings(lines="contours"))
+
+
+def marked(marks: Literal["auto", "on", "off"]) -> TraceSettings:
+    """Contours, where the operator says what marks are."""
+    return replace(CONTOURS, program=replace(CONTOURS.program, marks=marks))
+
+
+@pytest.mark.parametrize("times", [0.5, 1.0, 2.0])
+def test_a_hole_near_an_open_line_is_cut_at_any_size_and_told_with_what_makes_it_a_reference_point(
+    times: float,
+) -> None:
+    """A hole of 4 to 16 mm with a slit beside it: of these, 4 and 8 mm are a reference point's size."""
+    lines = [times * line for line in (PLATE, *HOLE_AND_SLIT)]
+    drawing, heard = inked(*lines, width_mm=0.5 * times, seed=1), Heard()
+    traced = Tracing.prepared(CONTOURS).trace(drawing, heard)
+    by_number = sorted(traced.trace.lines, key=lambda line: line.number)
+    assert [line.ending for line in by_number] == ["closed", "ended", "closed"]
+    assert traced.trace.reference_mm is None
+    told = [text for text in heard.said if "give --marks on" in text]
+    assert len(told) == (times < 2)
+    if told:
+        assert (
+            f"the ring at {25 * times:.1f},{25 * times:.1f} mm is cut as a hole, line 3"
+            in told[0]
+        )
+        program = Tracing.prepared(marked("on")).trace(drawing, Heard())
+        assert program.trace.reference_mm == pytest.approx((25 * times, 25 * times), abs=0.05)
+
+
+def test_a_ring_whose_line_leads_to_a_contour_is_told_as_reference_point_and_marks_off_cuts_it() -> (
+    None
+):
+    drawing = inked(
+        arc((25.0, 25.0), 4.0), polyline((32, 25), (50, 25)), PLATE + np.array([45, 0]), seed=1
+    )
     heard = Heard()
-    traced = Tracing.prepared(contours).trace(drawing, heard)
-    assert len(traced.trace.lines) == 2
+    traced = Tracing.prepared(CONTOURS).trace(drawing, heard)
+    assert traced.trace.reference_mm == pytest.approx((25, 25), abs=0.05)
     (told,) = [text for text in heard.said if "the ring at 25.0,25.0 mm" in text]
-    assert "line 2 is run from it with the tool up" in told and "give --marks off" in told
-    off = replace(contours, program=replace(contours.program, marks="off"))
+    assert "give --marks off" in told
     heard = Heard()
-    traced = Tracing.prepared(off).trace(drawing, heard)
-    assert [line.ending for line in traced.trace.lines].count("closed") == 2
-    assert len(traced.trace.lines) == 3 and not any("the ring" in text for text in heard.said)
+    traced = Tracing.prepared(marked("off")).trace(drawing, heard)
+    assert len(traced.trace.lines) == 2 and not any("the ring" in text for text in heard.said)
 
 
 def test_a_cross_that_a_program_begins_with_is_not_told() -> None:

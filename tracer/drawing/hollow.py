@@ -20,7 +20,7 @@ path is right. Two lines of which the scan shows one flat top are not told from 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -37,7 +37,7 @@ FEWEST_PIECES = 2  # in a row: one alone is where a line crosses, or a wall's en
 APART_PX = 2.0  # stations: pixels so far apart have noise of their own
 OFFSETS = np.arange(-8, 9) / 16  # of the line's width, to the left
 BESIDE = 2 / 16  # of the width: the dark rows are further from the path
-PALER = 0.06  # of the ink's darkness; the middle of a line of one pen is paler by 0.02 at most
+PALER = 0.05  # of the ink's darkness; the middle of a line of one pen is paler by 0.02 at most
 CERTAIN = 4.0  # standard deviations of a piece's mean
 
 
@@ -55,25 +55,37 @@ def hollow(seen: Seen, places: Array, width_mm: float, pitch_mm: float) -> Hollo
     """The hollow stretches of a path through places (n, 2) mm, along ink of a width on pixels of a pitch, mm;
     None if there are none.
     """
-    piece_mm = max(PIECE_MM, PIECE_PX * pitch_mm)
-    count = int(piece_mm / (APART_PX * pitch_mm))
-    shares = (np.arange(count) + 0.5) / count
     apart = [np.empty(0)]
-    pieces = int(length_mm(places) / piece_mm)
-    for first in range(0, pieces, AT_ONCE):
-        numbers = np.arange(first, min(first + AT_ONCE, pieces))
-        at_mm = piece_mm * (numbers[:, None] + shares).ravel()
-        dark = seen(*_stations(places, at_mm), width_mm * OFFSETS)
-        apart.append(_apart(dark.reshape(len(numbers), count, -1)))
+    for dark in rows_of(seen, places, width_mm * OFFSETS, pitch_mm):
+        apart.append(_apart(dark))
     apart_mm = width_mm * np.concatenate(apart)
     ends = np.flatnonzero(np.diff(np.r_[False, np.isfinite(apart_mm), False].astype(np.int8)))
     rows = [(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= FEWEST_PIECES]
     if not rows:
         return None
     first, last = max(rows, key=lambda row: row[1] - row[0])
+    piece_mm = pieces_mm(pitch_mm)
     x, y = at_lengths(places, np.array([0.5 * (first + last) * piece_mm]))[0].tolist()
     hollow_mm = piece_mm * sum(b - a for a, b in rows)
     return Hollow(hollow_mm, (x, y), float(np.median(apart_mm[first:last])))
+
+
+def pieces_mm(pitch_mm: float) -> float:
+    """How long the pieces of a path are."""
+    return max(PIECE_MM, PIECE_PX * pitch_mm)
+
+
+def rows_of(seen: Seen, places: Array, across_mm: Array, pitch_mm: float) -> Iterator[Array]:
+    """Darkness (pieces, stations, rows) along the pieces of a path, some at a time, in rows across it."""
+    piece_mm = pieces_mm(pitch_mm)
+    count = int(piece_mm / (APART_PX * pitch_mm))
+    shares = (np.arange(count) + 0.5) / count
+    pieces = int(length_mm(places) / piece_mm)
+    for first in range(0, pieces, AT_ONCE):
+        numbers = np.arange(first, min(first + AT_ONCE, pieces))
+        at_mm = piece_mm * (numbers[:, None] + shares).ravel()
+        dark = seen(*_stations(places, at_mm), across_mm)
+        yield dark.reshape(len(numbers), count, -1)
 
 
 def _stations(places: Array, at_mm: Array) -> tuple[Array, Array]:
@@ -99,7 +111,10 @@ def _apart(dark: Array) -> Array:
     at_right, at_left, at_middle = (
         np.take_along_axis(dark, row[:, None], axis=2)[:, :, 0] for row in (right, left, middle)
     )
-    paler = np.minimum(at_right, at_left) - at_middle
-    certain = CERTAIN * paler.std(axis=1) / math.sqrt(dark.shape[1])
-    is_hollow = paler.mean(axis=1) >= np.maximum(PALER * mean.max(axis=1), certain)
+    # at each station the lesser of two is the less by their noise: so the means are compared
+    sides = np.minimum(at_right.mean(axis=1), at_left.mean(axis=1))
+    spread = (np.minimum(at_right, at_left) - at_middle).std(axis=1)
+    certain = CERTAIN * spread / math.sqrt(dark.shape[1])
+    paler = sides - at_middle.mean(axis=1)
+    is_hollow = paler >= np.maximum(PALER * mean.max(axis=1), certain)
     return np.where(is_hollow, OFFSETS[left[:, 0]] - OFFSETS[right[:, 0]], math.nan)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 
 # All limits below were chosen by trial on drawings scanned at 5 sizes, 7 angles and 3 resolutions.
-ALIKE = 0.02  # lengths within this share are equal
+ALIKE = 0.015  # lengths within this share are equal
 AS_NEAR = 0.04  # of the ink's reach from its middle: distances within this are equal
 LOPSIDED = 0.02  # of the ink's third moment without signs: less shows no side
 BEFORE = math.radians(

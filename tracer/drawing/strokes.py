@@ -29,6 +29,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
+from morfax.tracer.drawing.weighing import Weight, weighed_mm
 
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
@@ -85,6 +86,8 @@ class Sheet:
     are_solid: NDArray[np.bool_]
     window: Window | None = None
     has_references: bool = True  # small crosses and rings may be reference points
+    bare_rings: bool = False  # rings are, whatever the line from them leads to
+    weights: dict[int, Weight] = field(default_factory=dict, repr=False, compare=False)
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
@@ -133,10 +136,8 @@ class Sheet:
         weights = (runs.end - runs.begin).astype(float)
         sums = [np.bincount(runs.patch, weights * column, runs.count) for column in places_mm.T]
         middles_mm = np.column_stack(sums)[patches] / runs.areas[patches][:, None]
-        order = longest_first(
-            self.one_pen_mm()[patches], middles_mm, Ink.of(places_mm, weights)
-        )
-        return patches[order]
+        lengths_mm = weighed_mm(self, patches, self.one_pen_mm()[patches])
+        return patches[longest_first(lengths_mm, middles_mm, Ink.of(places_mm, weights))]
 
     def one_pen_mm(self) -> Array:
         """Lengths of the patches, mm, by one width for all that one pen may have drawn: a scan measures a

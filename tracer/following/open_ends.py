@@ -25,7 +25,7 @@ from morfax.tracer.head.stance import Stance
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.marks.reference import Reference, references
-from morfax.tracer.sensing.leg import Leg, leg_of, turn
+from morfax.tracer.sensing.leg import leg_of, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end, strokes_on
 from morfax.tracer.sensing.view import View
 
@@ -66,14 +66,22 @@ def at_ends(
     about_mm = 0.5 * view.leg_mm + 4 * view.width_mm
     about_mm += LEAD_MM + NAMED_MM if ends else 0.0
     drawn = references(sheet, view, stroke, about_mm)
-    for place_mm, lead in _named_first(drawn, reference_mm):
-        if lead is not None and stroke.is_at(lead.end_mm):
-            local = view.like(lead.end_mm, lead.heading_rad)
-            return [Stance(lead.end_mm, lead.heading_rad, local, True, place_mm)]
-        from_it = from_reference(place_mm, ends)
-        if from_it:
+    for found in _named_first(drawn, reference_mm):
+        from_it = _from_drawn(view, stroke, found, ends)
+        if from_it and (reference_mm is not None or found.is_sure(sheet, stroke.patch)):
             return from_it
     return ends
+
+
+def _from_drawn(
+    view: View, stroke: Stroke, found: Reference, ends: list[Stance]
+) -> list[Stance]:
+    """The stances on a line at a reference point: at the lead line drawn from it, or at an end near it."""
+    lead = found.lead
+    if lead is None or not stroke.is_at(lead.end_mm):
+        return from_reference(found.place_mm, ends)
+    local = view.like(lead.end_mm, lead.heading_rad)
+    return [Stance(lead.end_mm, lead.heading_rad, local, True, found.place_mm)]
 
 
 def stances_at(view: View, places: Iterable[Array], gap_mm: float) -> Iterator[Stance]:
@@ -111,17 +119,17 @@ def _leading_away(
 
 def _named_first(
     found: Iterator[Reference], named_mm: tuple[float, float] | None
-) -> Iterator[tuple[tuple[float, float], Leg | None]]:
-    """Places of reference points and the lead lines drawn from them, those near the named point first.
+) -> Iterator[Reference]:
+    """Reference points, those near the named point first.
 
     A point that is the named one has the place that the operator gave.
     """
     if named_mm is None:
-        yield from ((reference.place_mm, reference.lead) for reference in found)
+        yield from found
         return
     for reference in sorted(found, key=lambda r: math.dist(named_mm, r.place_mm)):
         is_named = math.dist(named_mm, reference.place_mm) < NAMED_MM
-        yield named_mm if is_named else reference.place_mm, reference.lead
+        yield replace(reference, place_mm=named_mm) if is_named else reference
 
 
 def from_reference(place_mm: tuple[float, float], ends: list[Stance]) -> list[Stance]:

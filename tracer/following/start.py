@@ -16,7 +16,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from morfax.motion.faults import Fault, LineFault
+from morfax.tracer.drawing.coarse import finer_dpi
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.narrow import PARTED, narrow_strip_of
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.open_ends import at_ends, stances_at
 from morfax.tracer.following.plain_places import (
@@ -89,8 +91,7 @@ def _stances(
         is_clean = True
         yield stance
     if not is_clean:
-        is_solid = bool(sheet.are_solid[stroke.patch])
-        raise _nowhere_clean(view.width_mm, is_solid, settings.line_width_mm)
+        raise _nowhere_clean(sheet, stroke, view.width_mm, settings.line_width_mm)
 
 
 def _ends(
@@ -185,11 +186,22 @@ def _ends_near(
     return list(stances_at(view, near, gap_mm))
 
 
-def _nowhere_clean(width_mm: float, is_solid: bool, told_width_mm: float | None) -> LineFault:
+def _nowhere_clean(
+    sheet: Sheet, stroke: Stroke, width_mm: float, told_width_mm: float | None
+) -> LineFault:
     """The fault of a line on which the head can nowhere be put down."""
-    edge = "follow the edges of a filled shape with --edge, " if is_solid else ""
+    drawing, is_solid = sheet.drawing, bool(sheet.are_solid[stroke.patch])
+    why, edge = "", "follow the edges of a filled shape with --edge, " if is_solid else ""
+    gap = narrow_strip_of(drawing, stroke.middles_mm, width_mm)
+    if gap is not None:
+        (x, y), dpi = gap.place_mm, finer_dpi(drawing.pitch_mm * drawing.finer, PARTED)
+        why = (
+            f": at most two pixels of paper part two lines along {gap.length_mm:.0f} mm, as at "
+            f"{x:.1f},{y:.1f} mm"
+        )
+        edge = f"scan at {dpi} dpi or more, "
     give = "give" if told_width_mm is None else "give another"
     return LineFault(
-        f"no clean stretch of line {width_mm:.2f} mm wide to start on; {edge}follow all the ink with --lines "
-        f"all, {give} --line-width, or --start X,Y at a plain stretch"
+        f"no clean stretch of line {width_mm:.2f} mm wide to start on{why}; {edge}follow all the ink with "
+        f"--lines all, {give} --line-width, or --start X,Y at a plain stretch"
     )

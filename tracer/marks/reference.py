@@ -10,8 +10,12 @@ A cross: a ring of cells sees arms square to each other that end alike, four of 
 line. Its place is where the middle lines of the arms meet. A ring: spokes from its middle meet paper, then
 ink as wide as a line, then paper again; its place is the middle of the circle through them.
 
-Source: patent ES 361967, section on use: a reference point, normally outside the contour. Questions: the
-patent says neither how it is drawn nor how large it is. Chosen: 1.5 to 10 mm across.
+A cross is nothing but a reference point. A ring is a hole of the part as well: of itself it is a reference
+point only where the line that begins at it leads to a contour, or the operator says that a program is drawn.
+
+Source: patent ES 361967, section on use: a reference point, normally outside the contour, and a lead line
+from it to the contour. Questions: the patent says neither how it is drawn nor how large it is. Chosen: 1.5 to
+10 mm across.
 """
 
 from __future__ import annotations
@@ -57,6 +61,17 @@ class Reference:
     place_mm: tuple[float, float]
     kind: Literal["cross", "ring"]
     lead: Leg | None = None
+
+    def is_sure(self, sheet: Sheet, patch: int) -> bool:
+        """Whether it is one for a line of a patch that begins at it: a cross, or a ring if the patch goes
+        round a contour besides.
+        """
+        if self.kind == "cross" or sheet.bare_rings:
+            return True
+        return any(
+            size_mm > LARGEST_MM or math.dist(middle_mm, self.place_mm) > LEAST_MM
+            for middle_mm, size_mm, _ in _inside(sheet, patch)
+        )
 
 
 def references(
@@ -133,18 +148,28 @@ def _is_square(high: Any, wide: Any) -> Any:
 
 def _holes(sheet: Sheet, patch: int) -> Iterator[Array]:
     """Middles of the small round holes in a patch of ink."""
+    for middle_mm, size_mm, is_square in _inside(sheet, patch):
+        if size_mm <= LARGEST_MM and is_square:
+            yield middle_mm
+
+
+def _inside(sheet: Sheet, patch: int) -> Iterator[tuple[Array, float, bool]]:
+    """The areas that a patch of ink goes round: middle and longer side, mm, and whether they are about as
+    high as wide; smaller ones than a reference point are flaws of the ink.
+    """
     chosen = np.arange(sheet.patches.count) == patch
     top, bottom, left, right = sheet.patches.box(chosen)
     if (bottom - top) * (right - left) > MOST_PX:
         return
     pitch, rows = sheet.drawing.pitch_mm, sheet.drawing.darkness.shape[0]
     ink = sheet.patches.painted(chosen, top, bottom, left, right)
-    contours, _ = cv2.findContours(ink, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    for contour in contours:
+    contours, levels = cv2.findContours(ink, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    for contour, level in zip(contours, levels[0] if len(contours) else (), strict=True):
         x, y, wide, high = cv2.boundingRect(contour)
-        if LEAST_MM <= max(wide, high) * pitch <= LARGEST_MM and _is_square(high, wide):
+        size_mm, has_ink_about = max(wide, high) * pitch, level[3] >= 0
+        if has_ink_about and size_mm >= LEAST_MM:
             middle_px = left + x + 0.5 * wide, rows - top - y - 0.5 * high
-            yield np.array(middle_px) * pitch
+            yield np.array(middle_px) * pitch, size_mm, bool(_is_square(high, wide))
 
 
 def _crosses(view: View, tips_mm: Array) -> Iterator[Reference]:

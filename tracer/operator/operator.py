@@ -78,8 +78,13 @@ class Operator:
             return self.marks == "on"
         has_reference = any(line.reference_mm is not None for line in lines)
         are_dots = all(line.is_dot for line in lines)
+        return has_reference or are_dots or self.means_program
+
+    @property
+    def means_program(self) -> bool:
+        """Whether the operator says that a program is drawn, whatever the drawing shows."""
         named = self.reference_mm is not None or self.card.is_about_stops
-        return has_reference or are_dots or named
+        return self.marks == "on" or (self.marks == "auto" and named)
 
     def actions(self, lines: Sequence[Line]) -> list[list[Action]]:
         """The actions along each of several lines, in the order in which the lines are cut.

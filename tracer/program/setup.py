@@ -28,6 +28,8 @@ class Setup:
     def __post_init__(self) -> None:
         if self.operator.marks == "off":
             object.__setattr__(self, "sheet", replace(self.sheet, has_references=False))
+        elif self.operator.means_program and not self.sheet.bare_rings:
+            object.__setattr__(self, "sheet", replace(self.sheet, bare_rings=True))
 
     def after(self, before_mm: float, total_mm: float) -> Setup:
         """The set-up for one of several lines: its progress counts on from those before, of their total."""

@@ -33,7 +33,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.following.open_ends import from_reference, stances_at
 from morfax.tracer.following.plain_places import aperture_for, stance_near, view_of
 from morfax.tracer.following.start import put_down
-from morfax.tracer.marks.reference import references
+from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.program import selection
 from morfax.tracer.program.selection import Contour
 from morfax.tracer.program.setup import Setup
@@ -117,10 +117,9 @@ def survey(setup: Setup) -> Survey:
     contours, _ = selection.plan(sheet, "contours")
     letters = lettering(sheet)
     # 1. patches that are lines
-    crosses_mm = _references_mm(setup)
+    drawn = _references(setup)
     seen = [
-        _of_patch(setup, contour, view, crosses_mm)
-        for contour, view in _viewed(setup, contours)
+        _of_patch(setup, contour, view, drawn) for contour, view in _viewed(setup, contours)
     ]
     entries = {entry.patch: entry for entry in _with_references(seen, contours)}
     # 2. dots that stand alone
@@ -152,22 +151,26 @@ def _viewed(setup: Setup, contours: list[Contour]) -> Iterator[tuple[Contour, Vi
         yield contour, replace(view, width_mm=width_mm)
 
 
-def _references_mm(setup: Setup) -> list[Place]:
+def _references(setup: Setup) -> list[Reference]:
     """The crosses and rings that stand alone, each of which a line may begin at."""
     widths_mm = setup.sheet.widths_mm[selection.lines_of(setup.sheet)]
     if not len(widths_mm):
         return []
     view = view_of(setup.sheet, setup.settings.aperture_mm, float(np.median(widths_mm)))
-    return [reference.place_mm for reference in references(setup.sheet, view)]
+    return list(references(setup.sheet, view))
 
 
-def _of_patch(setup: Setup, contour: Contour, view: View, crosses_mm: list[Place]) -> Entry:
+def _of_patch(setup: Setup, contour: Contour, view: View, drawn: list[Reference]) -> Entry:
     """What a patch looks like, but for what it goes round: "several" with more than two ends, "closed" with
     none.
     """
     sheet, stroke = setup.sheet, contour.stroke
     ends = list(stances_at(view, stroke.ends_mm(), setup.settings.gap_mm))
-    begins_at = [place for place in crosses_mm if from_reference(place, ends)]
+    begins_at = [
+        found.place_mm
+        for found in drawn
+        if from_reference(found.place_mm, ends) and found.is_sure(sheet, stroke.patch)
+    ]
     starts_mm = contour.starts_mm()
     return Entry(
         contour.number,

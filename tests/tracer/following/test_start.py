@@ -194,7 +194,8 @@ def test_where_nothing_is_clean_the_way_that_the_message_advises_follows_the_lin
     way = polyline((8, 20), (62, 32))
     drawing = inked(way, way + 0.88 * across_mm, dpi=150, seed=1)
     drawing = Drawing(cv2.GaussianBlur(drawing.darkness, (0, 0), 0.7), drawing.pitch_mm)
-    with pytest.raises(LineFault, match=r"no clean stretch .* with --lines all, give --line"):
+    said = r"no clean stretch .* two pixels of paper part two lines along 5\d mm.*; scan at 300 dpi or more"
+    with pytest.raises(LineFault, match=said + ".* with --lines all, give --line"):
         next(put_down(drawing))
     ends = sorted(len(line.xy_mm) > 1 and line.length_mm for line in trace_ink(drawing).lines)
     assert ends == pytest.approx([math.hypot(12, 54)] * 2, abs=0.5)

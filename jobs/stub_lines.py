@@ -1,0 +1,62 @@
+"""Stubs: traced lines that go out along a tick, a burr or a drop of ink and come back.
+
+Signals in: the lines as the head followed them. Signals out: figures, a remark, and the places that a picture
+marks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from morfax.tracer.program.program import Trace
+    from morfax.tracer.program.stubs import Stub
+
+MARKED = 10  # of the places that a picture marks
+
+
+@dataclass(frozen=True, slots=True)
+class StubLines:
+    """The stubs along which lines go out and back, by the lines' numbers, the longest first."""
+
+    of_lines: tuple[tuple[int, Stub], ...] = ()
+
+    @classmethod
+    def along(cls, trace: Trace) -> StubLines:
+        """The stubs of the lines that the head followed; edges and drawn programs have none."""
+        from morfax.tracer.program.stubs import stubs
+
+        if trace.ink is not None or trace.operator.reads_marks(trace.lines):
+            return cls()
+        lines = [line for line in trace.lines if line.roughness_mm is None and not line.on_edge]
+        found = [(line.number, stub) for line in lines for stub in stubs(line)]
+        return cls(tuple(sorted(found, key=lambda row: -row[1].out_mm)))
+
+    def figures(self) -> dict[str, Any]:
+        """Each stub's line, where its way turns back, and how far out that is."""
+        rows = [
+            {"of_line": number, "stub_place_mm": stub.place_mm, "stub_mm": stub.out_mm}
+            for number, stub in self.of_lines
+        ]
+        return {"stubs": rows or None}
+
+    def remarks(self) -> Iterator[str]:
+        """That a line goes out along a stub, which may be no part of it."""
+        if not self.of_lines:
+            return
+        number, stub = self.of_lines[0]
+        (x, y), others = stub.place_mm, len(self.of_lines) - 1
+        more = f", and so at {others} more place{'s' if others > 1 else ''}" if others else ""
+        yield (
+            f"line {number} goes out {stub.out_mm:.1f} mm at {x:.1f},{y:.1f} mm along a short stub and comes "
+            f"back{more}: if that is a tick or a burr, rub it out, on the sheet or by `morfax correct "
+            "--rub`; if ticks stop the machine, give --marks on"
+        )
+
+    @property
+    def marked_mm(self) -> dict[str, tuple[float, float]]:
+        """The places that a picture marks, by name."""
+        longest = self.of_lines[:MARKED]
+        return {f"stub {k}": stub.place_mm for k, (_, stub) in enumerate(longest, 1)}

@@ -1,0 +1,122 @@
+"""Broad lines: stretches of a path whose ink is twice as wide as the sheet's pen draws.
+
+    pieces    3 mm each or 24 pixels, all along the path
+    width     of a piece's ink: its darkness added up across the path. Neither the lens nor the paper between
+              two lines changes that, so two lines have twice the width of one, however near they are.
+
+        width │ ______                        two lines nearer to each other than the scan can part
+              │       ╲______________         the pen's own width, elsewhere on the sheet
+
+Signals: the darkness of a sheet and a path, sheet mm, in, and the widths that the sheet's ink shows; out the
+pen's width, and how much of the path is as wide as two of its lines, where the longest stretch of that is,
+and how wide it is there, mm.
+
+Source: our own. Questions: a pen twice as broad leaves such ink, too, and the scan shows no difference.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.median import median
+from morfax.motion.polyline import at_lengths
+from morfax.tracer.drawing.hollow import FEWEST_PIECES, Seen, rows_of
+
+# All limits below were chosen by trial on pairs of lines, and on line art.
+ACROSS = np.arange(-24, 25) / 16  # of the line's width, to the left
+INK = 0.5  # of the darkest: a place on the path that is paler is not on its ink
+PAPER = 0.2  # of the darkest: there ink has ended, and what is darker again is another line's
+TWO = (1.8, 2.15)  # widths of the pen
+LEAST_WIDTHS = 30.0  # widths of the pen: a shorter stretch is a blot, or where lines meet
+ALIKE = 1.15  # times the pen's width: so wide its lines look at most
+LEAST_SHARE = 0.15  # of the ink is the pen's
+PLACES = 60  # of a line that was not followed
+ABOUT_WIDTHS = 2.0  # of its middle places so near to each tell its heading
+
+
+class Broad(NamedTuple):
+    """How much of a path is as wide as two lines, mm; the middle of its longest such stretch, and how wide
+    the ink is there, mm.
+    """
+
+    length_mm: float
+    place_mm: tuple[float, float]
+    width_mm: float
+
+
+def widths_along(seen: Seen, places: Array, width_mm: float, pitch_mm: float) -> Array:
+    """The width of the ink along each piece of a path through places (n, 2) mm, along ink of about a width,
+    mm; NaN where it has no edges, as where another line crosses.
+    """
+    rows = rows_of(seen, places, width_mm * ACROSS, pitch_mm)
+    profiles = [dark.mean(axis=1) for dark in rows]
+    return width_mm * inks(np.vstack(profiles)) if profiles else np.empty(0)
+
+
+def width_of(seen: Seen, middles: Array, width_mm: float) -> float:
+    """The usual width of a line that was not followed, by places (n, 2) mm near its middle, or NaN."""
+    some = middles[:: max(1, len(middles) // PLACES)]
+    headings = np.empty(len(some))
+    for k, place in enumerate(some):
+        near = middles[np.hypot(*(middles - place).T) < ABOUT_WIDTHS * width_mm]
+        along = np.linalg.svd(near - near.mean(axis=0), full_matrices=False)[2][0]
+        headings[k] = math.atan2(along[1], along[0])
+    widths = width_mm * inks(seen(some, headings, width_mm * ACROSS))
+    known = widths[np.isfinite(widths)]
+    return median(known) if len(known) else math.nan
+
+
+def inks(profiles: Array) -> Array:
+    """The ink of profiles in rows `ACROSS` a path, widths; NaN if it does not end, or the path is off it."""
+    middle = len(ACROSS) // 2
+    left, right = profiles[:, middle:], profiles[:, middle::-1]
+    step = ACROSS[1] - ACROSS[0]
+    own = profiles[:, middle]
+    return step * (_beside(left) + _beside(right) - own)
+
+
+def _beside(outward: Array) -> Array:
+    """The darkness of each profile added up from the path outward, to where its ink ends."""
+    darkest = outward.max(axis=1, keepdims=True)
+    is_paper = outward < PAPER * darkest
+    is_own = np.cumsum(is_paper, axis=1) == 0
+    on_ink = outward[:, 0] > INK * darkest[:, 0]
+    total = np.where(is_own, outward, 0.0).sum(axis=1)
+    return np.where(is_paper.any(axis=1) & on_ink, total, np.nan)
+
+
+def pen_of(widths_mm: Array, lengths_mm: Array) -> float:
+    """The narrowest width that a good share of a sheet's ink has, mm; NaN if there is none, as of a brush."""
+    order = np.argsort(widths_mm)
+    widths, lengths = widths_mm[order], lengths_mm[order]
+    sums = np.r_[0.0, np.cumsum(lengths)]
+    last = np.searchsorted(widths, ALIKE * widths, "right")
+    shares = (sums[last] - sums[:-1]) / max(sums[-1], 1e-9)
+    enough = np.flatnonzero(shares >= LEAST_SHARE)
+    if not len(enough):
+        return math.nan
+    first = int(enough[0])
+    return float(np.average(widths[first : last[first]], weights=lengths[first : last[first]]))
+
+
+def broad(places: Array, widths_mm: Array, piece_mm: float, pen_mm: float) -> Broad | None:
+    """The stretches of a path that are as wide as two lines of a pen, by the widths of its pieces; None if
+    there are none, or the pen is not known.
+    """
+    if not pen_mm > 0:
+        return None
+    shares = widths_mm / pen_mm
+    is_broad = (shares > TWO[0]) & (shares < TWO[1])
+    ends = np.flatnonzero(np.diff(np.r_[False, is_broad, False].astype(np.int8)))
+    least = max(FEWEST_PIECES, math.ceil(LEAST_WIDTHS * pen_mm / piece_mm))
+    rows = [(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= least]
+    if not rows:
+        return None
+    first, last = max(rows, key=lambda row: row[1] - row[0])
+    x, y = at_lengths(places, np.array([0.5 * (first + last) * piece_mm]))[0].tolist()
+    broad_mm = piece_mm * sum(b - a for a, b in rows)
+    return Broad(broad_mm, (x, y), median(widths_mm[first:last]))

@@ -1,0 +1,125 @@
+"""Narrow gaps: long strips of paper between two lines that are only one or two of the scan's pixels wide, and
+paths that run over them.
+
+    ██████████████████████        Noise bridges such a strip here and there, and the head may go over a bridge
+    ▒▒▒▒░░░░▒▒▒▒▒▒░░░▒▒▒▒▒        from one line to the other. A path that keeps to its line stays half a pen's
+    ██████████████████████        width off the strip.
+
+Signals: a drawing and paths with the widths of their ink, sheet mm, in; the places where paths run over
+narrow strips of paper, and how long these are, mm, out.
+
+Source: our own. Questions: large sheets (see `large`) are not looked at; their lines have many pixels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.median import median
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.inked import INK
+
+Mask = NDArray[np.uint8]
+
+NARROW_PX = 2  # so wide a strip is bridged by noise; one of three pixels is not
+# widths of the usual line: shorter ones are where letters crowd, and two lines meet; on 53 real sheets paths
+# run over longer ones on eight, and most of these paths are astray there
+LONG_WIDTHS = 20.0
+# of a line's width from the strip: the middle of a line of two pixels is half a width off
+OVER = 0.25
+PARTED = 2.0  # times the resolution: a strip of two pixels has four, and is bridged nowhere
+
+
+class NarrowGap(NamedTuple):
+    """Where a path runs over a narrow strip of paper, and how long the strip is, mm."""
+
+    place_mm: tuple[float, float]
+    length_mm: float
+
+
+class Strips(NamedTuple):
+    """The narrow strips of a drawing: the pixels of each by its number, 0 elsewhere; their lengths, mm."""
+
+    numbers: NDArray[np.int32]
+    lengths_mm: Array
+
+    @classmethod
+    def of(cls, drawing: Drawing, width_mm: float) -> Strips | None:
+        """The strips that are long for lines of a width; None if there are none."""
+        if not isinstance(drawing.darkness, np.ndarray) or drawing.edges_mm:
+            return None
+        # 1. paper that is gone where ink is spread by a pixel, and shrunk again
+        ink = np.asarray(drawing.darkness > INK, np.uint8)
+        wide = NARROW_PX * drawing.finer + 1
+        closed = cv2.morphologyEx(ink, cv2.MORPH_CLOSE, np.ones((wide, wide), np.uint8))
+        thin: Mask = np.asarray(closed > ink, np.uint8)
+        # 2. what lies together, but for a bridge of a pixel, and is long
+        together = cv2.dilate(thin, np.ones((3, 3), np.uint8))
+        _, numbers, boxes, _ = cv2.connectedComponentsWithStats(together, connectivity=8)
+        lengths_mm = drawing.pitch_mm * np.hypot(*boxes[:, 2:4].T)
+        is_long = lengths_mm > LONG_WIDTHS * width_mm
+        is_long[0] = False  # the rest of the sheet
+        if not is_long.any():
+            return None
+        return cls(np.where(is_long[numbers] & (thin > 0), numbers, 0), lengths_mm)
+
+
+def narrow_strip_of(drawing: Drawing, places: Array, width_mm: float) -> NarrowGap | None:
+    """The longest narrow strip of paper within a width of some ink, by places (n, 2) mm near its middle."""
+    strips = Strips.of(drawing, width_mm)
+    if strips is None:
+        return None
+    near = np.zeros(strips.numbers.shape, np.uint8)
+    near[_pixels(drawing, places)] = 1
+    reach = 2 * int(width_mm / drawing.pitch_mm) + 1
+    near = np.asarray(cv2.dilate(near, np.ones((reach, reach), np.uint8)))
+    row, column = np.nonzero(near & (strips.numbers > 0))
+    if not len(row):
+        return None
+    lengths_mm = strips.lengths_mm[strips.numbers[row, column]]
+    longest = int(np.argmax(lengths_mm))
+    x, y = column[longest] + 0.5, len(near) - row[longest] - 0.5
+    return NarrowGap((x * drawing.pitch_mm, y * drawing.pitch_mm), float(lengths_mm[longest]))
+
+
+def narrow_gaps(
+    drawing: Drawing, lines: Sequence[tuple[Array, float]]
+) -> list[NarrowGap | None]:
+    """Of each path (n, 2) mm with the width of its ink, the longest narrow strip that it runs over."""
+    usual_mm = median([width_mm for _, width_mm in lines]) if lines else 0.0
+    strips = Strips.of(drawing, usual_mm) if lines else None
+    if strips is None:
+        return [None] * len(lines)
+    paper = np.asarray(strips.numbers == 0, np.uint8)
+    away_px, nearest = cv2.distanceTransformWithLabels(
+        paper, cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    number_of = np.zeros(int(nearest.max()) + 1, np.int32)
+    number_of[nearest[paper == 0]] = strips.numbers[paper == 0]
+    found = list[NarrowGap | None]()
+    for places, width_mm in lines:
+        row, column = _pixels(drawing, places)
+        over_mm = OVER * min(width_mm, usual_mm)
+        there = np.flatnonzero(away_px[row, column] * drawing.pitch_mm < over_mm)
+        if not len(there):
+            found.append(None)
+            continue
+        lengths_mm = strips.lengths_mm[number_of[nearest[row[there], column[there]]]]
+        longest = int(np.argmax(lengths_mm))
+        x, y = places[there[longest]].tolist()
+        found.append(NarrowGap((x, y), float(lengths_mm[longest])))
+    return found
+
+
+def _pixels(drawing: Drawing, places: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows and columns of the pixels in which places (n, 2) mm lie."""
+    rows, columns = drawing.darkness.shape
+    column = np.floor(places[:, 0] / drawing.pitch_mm).astype(np.int64)
+    row = np.floor(rows - places[:, 1] / drawing.pitch_mm).astype(np.int64)
+    return np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)

@@ -1,0 +1,87 @@
+"""Stubs: places where a way goes out along a short stroke and comes back beside itself, to go straight on.
+
+    ────╮╭────      a tick, a burr or a drop of ink that is shorter than a line is wide reads like a spike of
+        ││          the line itself: ink does not tell the two apart
+        ╰╯
+
+Signals: a line as it was followed in; where it turns back, and how far it goes out, mm, out.
+
+Source: our own; the operator of patent ES 361967 knows a tick by sight. Questions: a tip where two sides meet
+does not go straight on; a spike that is drawn so, and whose sides are no line apart, does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import evenly
+from morfax.tracer.following.line import Line
+
+# All limits below were chosen by trial on lines with ticks, and on outlines with tips. In widths of the line:
+STEP = 0.1  # between the places that are compared
+CLOSE = 0.75  # out and back are no further apart
+LEAST_OUT = 0.8  # a way that goes out less is a bump
+MOST_OUT = 4.0  # one that goes out further is a line
+APPROACH = 1.5  # before and after it show whether the line goes straight on, ...
+STRAIGHT_ON = math.radians(50)  # ... within this
+
+
+class Stub(NamedTuple):
+    """A stub: the place at which the way turns back, and how far out that is, mm."""
+
+    place_mm: tuple[float, float]
+    out_mm: float
+
+
+def stubs(line: Line) -> list[Stub]:
+    """The stubs on a line's way; of an open line but for those at its ends."""
+    reach = round(2 * (MOST_OUT + APPROACH) / STEP)
+    way = evenly(line.loop_mm, STEP * line.width_mm)
+    if len(way) < reach:
+        return []
+    if line.ending == "closed":
+        way = np.vstack([way, way[:reach]])
+    return list(_apart(_found(way, line.width_mm), line.width_mm))
+
+
+def _found(way: Array, width_mm: float) -> Iterator[Stub]:
+    """The stubs of a way at even steps; the same one more than once."""
+    near = round(APPROACH / STEP)
+    for out in range(round(LEAST_OUT / STEP), round(MOST_OUT / STEP) + 1):
+        feet = len(way) - 2 * out
+        # 1. where it comes back to where it was, and goes straight on
+        back = np.hypot(*(way[2 * out :] - way[:feet]).T) < CLOSE * width_mm
+        back[:near] = back[feet - near :] = False
+        first = np.flatnonzero(back)
+        before = _headings(way[first] - way[first - near])
+        after = _headings(way[first + 2 * out + near] - way[first + 2 * out])
+        turned = np.abs(np.angle(np.exp(1j * (after - before))))
+        # 2. out and back beside itself
+        for foot in first[turned < STRAIGHT_ON].tolist():
+            stroke = way[foot : foot + 2 * out + 1]
+            apart_mm = np.hypot(*(stroke - stroke[::-1]).T)
+            away_mm = np.hypot(*(stroke - 0.5 * (stroke[0] + stroke[-1])).T)
+            if apart_mm.max() < CLOSE * width_mm and away_mm.max() > LEAST_OUT * width_mm:
+                x, y = stroke[np.argmax(away_mm)].tolist()
+                yield Stub((x, y), float(away_mm.max()))
+
+
+def _headings(ways: Array) -> Array:
+    """The headings of some ways, rad."""
+    return np.asarray(np.arctan2(ways[:, 1], ways[:, 0]))
+
+
+def _apart(found: Iterator[Stub], width_mm: float) -> Iterator[Stub]:
+    """Each stub once, as far out as it was found."""
+    kept = list[Stub]()
+    for stub in sorted(found, key=lambda stub: -stub.out_mm):
+        if all(
+            math.dist(stub.place_mm, other.place_mm) > MOST_OUT * width_mm for other in kept
+        ):
+            kept.append(stub)
+            yield stub
