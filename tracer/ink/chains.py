@@ -42,7 +42,7 @@ def solved(sheet: FeltSheet) -> Junctions:
     """The junctions of a sheet. A stretch within one along which no way goes is a line of its own, or two.
 
     A stretch that turns out to be two lines that run together lies within a junction, or is too long for
-    that; then all is asked anew, for these two may be what goes along another stretch.
+    that; then what meets it there is asked anew, for these two may be what goes along another stretch.
     """
     cut = sheet.doubled.cut
     parted, two, bare = set(cut), set(cut), set[int]()
@@ -70,13 +70,19 @@ def solved(sheet: FeltSheet) -> Junctions:
                 sheet.widths_mm[stretch] = width_mm
             parted |= set(together)
             two |= too_long
-            bare = set()
+            bare -= _beside(junctions.net, too_long.union(together))
         elif more:
             two |= more & (doubled | sheet.together)
             bare |= more - two
         else:
-            break
-    return junctions
+            return junctions
+    return Junctions(net_of(sheet, two | bare), sheet.settings, known)
+
+
+def _beside(net: Net, stretches: set[int]) -> set[int]:
+    """The stretches of lines that meet some."""
+    met = {j for line in net.lines if line.stretch in stretches for j in line.junctions}
+    return {line.stretch for line in net.lines if met.intersection(line.junctions)}
 
 
 def _narrower_mm(sheet: FeltSheet, stretch: int) -> float:

@@ -79,6 +79,13 @@ class Graph:
         places = np.column_stack([self.columns + 0.5, rows - self.rows - 0.5])
         return np.asarray(places * drawing.pitch_mm)
 
+    def on_stretches(self) -> NDArray[np.bool_]:
+        """Which of its pixels are on a stretch, and no burr that was taken off."""
+        are_on = np.zeros(len(self.rows), bool)
+        for stretch in self.stretches:
+            are_on[stretch.pixels] = True
+        return are_on
+
     def at_nodes(self) -> dict[int, list[int]]:
         """The stretches (their numbers, twice if both ends) at each node."""
         at = dict[int, list[int]]()

@@ -106,9 +106,10 @@ def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> 
     near_mm = BESIDE_WIDTHS * wide_mm[patch]
     run = np.vstack([evenly(one_in(way, THINNED), EVERY_MM) for way in ways])
     is_near = Neighbours(run).nearest(places)[0] < near_mm
-    # 2. by patches
-    pixels = np.maximum(np.bincount(patch, minlength=sheet.patches.count), 1)
-    shares = np.bincount(patch, is_near, sheet.patches.count) / pixels
+    # 2. by patches; a burr of a line's edge is the middle of no line
+    are_on, count = graph.on_stretches(), sheet.patches.count
+    pixels = np.maximum(np.bincount(patch[are_on], minlength=count), 1)
+    shares = np.bincount(patch[are_on], is_near[are_on], count) / pixels
     lengths_mm, solid = _line_lengths_mm(sheet, left, usual_mm), sheet.are_solid
     are_small = lengths_mm < np.maximum(SPECK_MM, DOT_WIDTHS * sheet.widths_mm)
     specks = ~solid & ~left.letters & (shares == 0) & are_small

@@ -22,7 +22,7 @@ from morfax.motion.median import median
 from morfax.motion.neighbours import pairs_within
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS, strands
-from morfax.tracer.ink.felt import Parted
+from morfax.tracer.ink.felt import FEWEST_STATIONS, Parted, whole
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet
@@ -33,6 +33,9 @@ from morfax.tracer.sensing.view import View
 # All limits below were chosen by trial on drawings of nets.
 INNER_WIDTHS = 40.0  # a stretch between forks that is no longer may lie within a junction
 CLEAN_SHARE = 0.5  # of its length: more of it is clean line of its own
+# of a stretch: two lines run together along more of it (0.24 and more, of a letter's 0.15 and less); by trial
+STILL_SHARE = 0.2
+MET_WIDTHS = 0.5  # at the ends of a line that is clean nowhere: the ink of what it meets
 OWN_WIDTHS = 1.2  # a shorter one has no ink that is not the junction's
 COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
 # the middle of a line that hangs together with nothing: a shorter one is a speck or a dot; the larger
@@ -93,8 +96,10 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
         elif n not in own and not is_ring and _is_inner(sheet, n, min(ends)):
             same.join(*stretch.nodes)
             inner.append(n)
-        elif n in own and sheet.is_shared(n) and (two := strands(taken.stations, widths[n])):
+        elif n in own and (two := _two_lines(sheet, n)):
             kept += [(n, ([strand], [])) for strand in two]
+        elif _is_unclear(sheet, n, n in own):
+            kept.append((n, ([_all_felt(sheet, n, ends)], [])))
         else:
             kept.append((n, taken.parted))
     # 2. the others are lines
@@ -122,7 +127,7 @@ def _is_inner(sheet: FeltSheet, number: int, fewest: int) -> bool:
     length_mm, width_mm = sheet.measured[number].length_mm, sheet.widths_mm[number]
     if length_mm > INNER_WIDTHS * width_mm:
         return False
-    clean_mm = sum(run.length_mm for run in sheet.taken(number).clean)
+    clean_mm = sheet.taken(number).clean_mm
     # a short stretch of two lines tells too little of either
     is_two = number in sheet.together and length_mm < LEAST_WIDTHS * width_mm
     if not is_two and clean_mm > CLEAN_SHARE * length_mm:
@@ -130,6 +135,42 @@ def _is_inner(sheet: FeltSheet, number: int, fewest: int) -> bool:
     # one that ends in no other is the tip of two lines that run together, or a stub
     shared = sheet.is_shared(number)
     return shared if fewest == 1 else shared or length_mm < 3 * width_mm
+
+
+def _two_lines(sheet: FeltSheet, number: int) -> list[Run]:
+    """The two lines that share a stretch of its own; none if it is one line's.
+
+    Of ink that is not known to be that of two lines less lies still where a single line swells.
+    """
+    if not sheet.is_shared(number):
+        return []
+    two = strands(sheet.taken(number).stations, sheet.widths_mm[number])
+    is_known = number in sheet.together or number in sheet.doubled.stations
+    least_mm = 0.0 if is_known else STILL_SHARE * sheet.measured[number].length_mm
+    return two if two and two[0].length_mm > least_mm else []
+
+
+def _is_unclear(sheet: FeltSheet, number: int, is_own: bool) -> bool:
+    """Whether most of a line is not as wide as it is taken to be, and yet is no ink that others share.
+
+    No way goes along a stretch of its own, and narrower ink is one line's: a letter's strokes swell.
+    """
+    measured = sheet.measured[number]
+    is_one = is_own or measured.width_mm < sheet.widths_mm[number]
+    is_felt = measured.known > CLEAN_SHARE
+    return (
+        is_one and is_felt and sheet.taken(number).clean_mm < CLEAN_SHARE * measured.length_mm
+    )
+
+
+def _all_felt(sheet: FeltSheet, number: int, meeting: list[int]) -> Run:
+    """What was felt along a stretch, clean or not, but for the ink of what it meets at its ends."""
+    felt = sheet.felt[number]
+    off = round(MET_WIDTHS * sheet.measured[number].width_mm / felt.view.step_mm)
+    first, last = (off if count > 1 else 0 for count in meeting)
+    if len(felt) - first - last < FEWEST_STATIONS:
+        first = last = 0
+    return whole(sheet.taken(number).stations.part(first, len(felt) - last))
 
 
 class _Same:

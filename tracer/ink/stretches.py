@@ -64,6 +64,11 @@ class Taken:
     _whole: Run | None = None
 
     @property
+    def clean_mm(self) -> float:
+        """The length of its clean runs."""
+        return sum(run.length_mm for run in self.clean)
+
+    @property
     def parted(self) -> Parted:
         """Its clean runs, or all of it as one where it is clean nowhere; and what was felt between them."""
         if self.clean:

@@ -45,10 +45,9 @@ from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on drawings of nets.
 NODES_MM = 0.25  # between the felt places that a course goes through
-ONTO_MM, ONTO_SHARE = (
-    0.3,
-    0.4,
-)  # from the last of them onto a leg: so far, or this share of its run
+ONTO_MM, ONTO_SHARE = 0.3, 0.4  # from the last onto a leg: so far, or this share of its run
+# a way round half a circle to its chord, and mm: so far along a run the head may be from where it was
+ROUND, SLACK_MM = 1.6, 1.0
 LEAST_MM = 0.15  # a shorter way before that is none
 NEAR_MM = 2.0  # a head further from a leg's end is before it, however the line has come round
 BEYOND_LEADS = 0.5  # leads: a piece that is no longer beyond its lead is run from memory
@@ -95,10 +94,7 @@ def stroke_along(
     if chain.closed:
         pieces = _cut_open(pieces)
     first, last = pieces[0].run, pieces[-1].run
-    begins, ends = (
-        (first.places_mm[0], first.headings_rad[0]),
-        (last.places_mm[-1], last.headings_rad[-1]),
-    )
+    begins, ends = _stands_at(first, 0), _stands_at(last, -1)
     if not chain.closed:
         begin, end = chain.links[0], chain.links[-1]
         back_mm = junctions.end_mm(Side(begin.line, begin.back))
@@ -152,6 +148,7 @@ class InkHead:
     settings: Settings
     told: Told | None = None
     at: int = 0  # the station at which it left off following the newest run
+    from_mm: float = 0.0  # the travel when its station was asked for last
 
     def set_out(self, run: Run, place_mm: Array, heading_rad: float) -> None:
         """Stand at the beginning of a stroke, aimed along it."""
@@ -162,6 +159,7 @@ class InkHead:
     def follow(self, run: Run) -> None:
         """Follow a run, from about its first station, up to the lead before its end."""
         at, view, carriage = 0, run.view, self.carriage
+        self.from_mm = carriage.travel_mm
         while True:
             self.at = at = self._station(run, at)
             left_mm = (len(run) - 1 - at) * view.step_mm - carriage.tuning.lead_mm
@@ -279,8 +277,10 @@ class InkHead:
         """The station of a run, from one on, at which the head stands."""
         place, _ = self.carriage.stands()
         away = np.hypot(*(run.places_mm[at:] - place).T)
-        # the nearest of those before the run comes by again
-        near = int(np.argmin(away[: 1 + round((away[0] + 12.0) / run.view.step_mm)]))
+        # the nearest of those to which it can have come: a small loop ends where it begins
+        come_mm = max(self.carriage.travel_mm - self.from_mm, ROUND * away[0]) + SLACK_MM
+        self.from_mm = self.carriage.travel_mm
+        near = int(np.argmin(away[: 1 + round(come_mm / run.view.step_mm)]))
         return at + near
 
 
