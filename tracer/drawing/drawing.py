@@ -240,7 +240,7 @@ class Drawing:
         slit = grain.slit_for(in_lines, width_px, pitch[0])
         if slit is not None:
             behind = grain.behind(slit, np.asarray(darkness))
-            if grain.mends(np.asarray(darkness), behind):
+            if grain.mends(np.asarray(darkness), behind, in_lines):
                 darkness, notes = behind, (*notes, grain.note(slit, pitch[0]))
         finer = coarse.times_finer(darkness, width_px)
         if finer > 1:
