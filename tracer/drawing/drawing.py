@@ -78,8 +78,9 @@ class Drawing:
     `flattening` is how well a photograph was made flat; `corrected` what the operator has put right, and
     `bare` the drawing before its ink was put right. The pixels of a coarse scan are made so many times
     `finer`. Of `both` solid areas are as dark as lines (see `shapes_among_lines`). Lines look `seen_px` wide
-    on the picture's own pixels, which are paper or ink alone if it `is_hard`. `paper_noise` is the standard
-    deviation of the paper's darkness, where that was measured before bare paper was made 0.
+    on the picture's own pixels, which are paper or ink alone if it `is_hard`; a `grainy` one is seen through
+    a slit. `paper_noise` is the standard deviation of the paper's darkness, where that was measured before
+    bare paper was made 0.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -97,6 +98,7 @@ class Drawing:
     both: bool = False
     seen_px: float = math.inf
     is_hard: bool = False
+    grainy: bool = False
     paper_noise: float | None = None
 
     def times_at(self, place_mm: NDArray[np.float64]) -> float:
@@ -239,10 +241,11 @@ class Drawing:
         if seen_px < coarse.SEEN_PX:
             notes = (*notes, coarse.note(seen_px, pitch[0]))
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
-        slit = grain.slit_for(in_lines, width_px, pitch[0])
+        slit, grainy = grain.slit_for(in_lines, width_px, pitch[0]), False
         if slit is not None:
             behind = grain.behind(slit, np.asarray(darkness))
-            if grain.mends(np.asarray(darkness), behind, in_lines):
+            grainy = grain.mends(np.asarray(darkness), behind, in_lines)
+            if grainy:
                 darkness, notes = behind, (*notes, grain.note(slit, pitch[0]))
         finer = coarse.times_finer(darkness, width_px)
         if finer > 1:
@@ -259,5 +262,6 @@ class Drawing:
             finer=finer,
             seen_px=seen_px,
             is_hard=hard,
+            grainy=grainy,
             paper_noise=paper_noise,
         )

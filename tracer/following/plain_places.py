@@ -61,7 +61,8 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
         sheet.seen.clear()
         cells = photocell.behind_aperture(sheet.drawing, aperture_mm, window=sheet.window)
         sheet.seen[aperture_mm] = cells
-    return View(sheet.seen[aperture_mm], width_mm, parted=sheet.drawing.finer)
+    cells, drawing = sheet.seen[aperture_mm], sheet.drawing
+    return View(cells, width_mm, parted=drawing.finer, grainy=drawing.grainy)
 
 
 def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:

@@ -141,6 +141,8 @@ def test_a_marker_that_is_dry_in_a_quarter_of_its_line_is_seen_through_the_slit(
     levels = np.where(np.arange(wet.shape[1]) * PITCH_MM > 33, dry, wet)
     darkness = np.asarray((235 - levels) / (BLACK_LEVELS * FAINT), np.float32)
     assert grain.LEAST_OF_SOME < within(darkness).grain < grain.LEAST_GRAIN
-    run = trace(opened(levels)).lines[0]
+    drawing = opened(levels)
+    run = trace(drawing).lines[0]
+    assert drawing.grainy and not opened(wet).grainy
     assert run.ending == "closed"
     assert distance(run.xy_mm[::4], line).path_to_reference.max_mm < 0.15
