@@ -62,7 +62,7 @@ def finer(darkness: Darkness, times: int, seen_px: float = math.inf) -> Darkness
     touch by their corners only: such ink is as dark as before.
     """
     soft = np.asarray(cv2.GaussianBlur(darkness, (0, 0), APERTURE_PX), np.float32)
-    if seen_px < SEEN_PX and _is_hard(darkness):
+    if seen_px < SEEN_PX and is_hard(darkness):
         soft /= _left_of(darkness, soft)
     larger = cv2.resize(soft, None, fx=times, fy=times, interpolation=cv2.INTER_LANCZOS4)
     return np.asarray(larger, np.float32)
@@ -87,7 +87,7 @@ def note(seen_px: float, pitch_mm: float) -> str:
     )
 
 
-def _is_hard(darkness: Darkness) -> bool:
+def is_hard(darkness: Darkness) -> bool:
     """Whether pixels are paper or ink, and hardly any lies between: no lens has softened the lines."""
     not_paper = darkness[darkness > 1 - FULL]
     return bool(np.mean(not_paper < FULL) < BETWEEN)

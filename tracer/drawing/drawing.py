@@ -78,8 +78,9 @@ class Drawing:
     `flattening` is how well a photograph was made flat; `corrected` what the operator has put right, and
     `bare` the drawing before its ink was put right. The pixels of a coarse scan are made so many times
     `finer`. Of `both` solid areas are as dark as lines (see `shapes_among_lines`). Lines look `seen_px` wide
-    on the picture's own pixels. `paper_noise` is the standard deviation of the paper's darkness, where that
-    was measured before bare paper was made 0.
+    on the picture's own pixels, which are paper or ink alone if it `is_hard`; a `grainy` one is seen through
+    a slit. `paper_noise` is the standard deviation of the paper's darkness, where that was measured before
+    bare paper was made 0.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -96,6 +97,8 @@ class Drawing:
     finer: int = 1
     both: bool = False
     seen_px: float = math.inf
+    is_hard: bool = False
+    grainy: bool = False
     paper_noise: float | None = None
 
     def times_at(self, place_mm: NDArray[np.float64]) -> float:
@@ -237,10 +240,12 @@ class Drawing:
             pale_mm = deepened(darkness, pitch[0], paper_noise, shapes)
         if seen_px < coarse.SEEN_PX:
             notes = (*notes, coarse.note(seen_px, pitch[0]))
-        slit = grain.slit_for(in_lines, width_px, pitch[0])
+        hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
+        slit, grainy = grain.slit_for(in_lines, width_px, pitch[0]), False
         if slit is not None:
             behind = grain.behind(slit, np.asarray(darkness))
-            if grain.mends(np.asarray(darkness), behind):
+            grainy = grain.mends(np.asarray(darkness), behind, in_lines)
+            if grainy:
                 darkness, notes = behind, (*notes, grain.note(slit, pitch[0]))
         finer = coarse.times_finer(darkness, width_px)
         if finer > 1:
@@ -256,5 +261,7 @@ class Drawing:
             notes=notes,
             finer=finer,
             seen_px=seen_px,
+            is_hard=hard,
+            grainy=grainy,
             paper_noise=paper_noise,
         )

@@ -164,12 +164,22 @@ class Attempts:
         return self._with_other_turns(stance, run) if tries else run
 
     def _from_end(self, run: Followed, other: Followed) -> Followed:
-        """An open line from end to end; or the other way round, if that closes and the end is an overrun."""
-        back = self.run(turned_round(run.positions_mm[-1], run.heading_rad, run.view))
+        """An open line from end to end; or the other way round, if that closes and the end is an overrun.
+
+        Where the head cannot set out from the one end, as on a few pixels that bend, it does from the other.
+        """
+        back = self._back_from(run)
         beyond_mm = back.travel_mm - other.travel_mm
         if other.ending == "closed" and not 0 < beyond_mm < OVERRUN_MM:
             return other
-        return max(run, back, key=lambda r: r.travel_mm)
+        found = max(run, back, key=lambda r: r.travel_mm)
+        if other.ending == "ended" and found.travel_mm < other.travel_mm:
+            found = max(other, self._back_from(other), key=lambda r: r.travel_mm)
+        return found
+
+    def _back_from(self, run: Followed) -> Followed:
+        """The run back from where another has ended."""
+        return self.run(turned_round(run.positions_mm[-1], run.heading_rad, run.view))
 
     def _through_tips(self, stance: Stance, run: Followed) -> Followed | None:
         """A run that goes back from tips in which two lines end, if the run without that ended in such a tip.

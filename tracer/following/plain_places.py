@@ -35,6 +35,11 @@ from morfax.tracer.sensing.view import View
 # All limits below were chosen by trial on the test drawings.
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
 LEAST_APERTURE_MM, LARGEST_APERTURE_MM = 0.1, 0.24
+# a finer cell sees the steps of large pixels, and not the line: so many of the scan's own pixels, and no more
+# than so much of the line's width, which would pale. The second pair is for pixels that are paper or ink
+# alone, with steps that no lens has softened. By trial on outlines of 1 to 4 pixels, grey and of two levels
+STEPS_PX, STEPS_WIDTHS = 1.3, 0.45
+HARD_STEPS_PX, HARD_STEPS_WIDTHS = 1.4, 1.0
 EDGE_APERTURE_PX = 2.8  # on an edge: a spot of 0.7 pixels, standard deviation
 PLACES = 80  # tried along a line
 ABOUT_WIDTHS = 2.0  # to either side of a place that was asked for, places are tried
@@ -56,7 +61,8 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
         sheet.seen.clear()
         cells = photocell.behind_aperture(sheet.drawing, aperture_mm, window=sheet.window)
         sheet.seen[aperture_mm] = cells
-    return View(sheet.seen[aperture_mm], width_mm, parted=sheet.drawing.finer)
+    cells, drawing = sheet.seen[aperture_mm], sheet.drawing
+    return View(cells, width_mm, parted=drawing.finer, grainy=drawing.grainy)
 
 
 def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:
@@ -73,7 +79,12 @@ def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:
 def aperture_for(drawing: Drawing, width_mm: float) -> float:
     """The aperture of the cells for a line of a width, mm."""
     least_mm = LEAST_APERTURE_MM / drawing.enlarged
-    return min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
+    usual_mm = min(max(APERTURE * width_mm, least_mm), LARGEST_APERTURE_MM)
+    steps_px, widths = STEPS_PX, STEPS_WIDTHS
+    if drawing.is_hard:
+        steps_px, widths = HARD_STEPS_PX, HARD_STEPS_WIDTHS
+    steps_mm = steps_px * drawing.finer * drawing.pitch_mm
+    return max(usual_mm, min(steps_mm, widths * width_mm))
 
 
 def local_view(view: View, place: Array) -> View:

@@ -46,6 +46,9 @@ from morfax.tracer.sensing.view import View
 KEEPS_WIDTHS, KEEPS_PX = 0.02, 0.2
 # ... but a line of few pixels, whose pixels were parted, may be seen so far off: the smaller of these
 KEEPS_FINE_WIDTHS, KEEPS_FINE_MM = 0.12, 0.017
+# grain moves the middle of a pencil's or dry pen's ink by 3 to 5 % of its width (standard deviation), over
+# more of the line than its stations show: twice that
+KEEPS_GRAINY_WIDTHS = 0.08
 KEEPS_ROUGH = 3.0  # standard deviations of a rough line's middle, as its width shows them
 # at its end it has to head as the way does: ink beside the line turns it before it is off the way. Few pixels
 # turn it by 0.2 at the most, the ticks that led it astray by 0.4 to 0.6 (664 stretches, 90 to 300 dpi)
@@ -107,7 +110,8 @@ def keeps_mm(view: View, seen: Array) -> float:
     Both edges are as rough as each other, so that the middle is half as rough as the width.
     """
     fine_mm = min(KEEPS_FINE_WIDTHS * view.width_mm, KEEPS_FINE_MM)
-    by_view_mm = max(KEEPS_WIDTHS * view.width_mm, KEEPS_PX * view.pitch_mm, fine_mm)
+    widths = KEEPS_GRAINY_WIDTHS if view.grainy else KEEPS_WIDTHS
+    by_view_mm = max(widths * view.width_mm, KEEPS_PX * view.pitch_mm, fine_mm)
     return max(by_view_mm, KEEPS_ROUGH * rough_mm(seen))
 
 

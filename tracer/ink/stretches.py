@@ -168,7 +168,7 @@ class _Seen:
     """The sheet through its cells, made once for each aperture of some."""
 
     def __init__(self, drawing: Drawing, apertures_mm: Array) -> None:
-        self._parted = drawing.finer
+        self._parted, self._grainy = drawing.finer, drawing.grainy
         self._cells = {
             mm: photocell.behind_aperture(drawing, mm)
             for mm in np.unique(apertures_mm).tolist()
@@ -176,7 +176,8 @@ class _Seen:
 
     def view(self, guide_mm: Array, width_mm: float, aperture_mm: float) -> View:
         """How the head sees a line along a guide."""
-        view = View(self._cells[aperture_mm], width_mm, parted=self._parted)
+        cells = self._cells[aperture_mm]
+        view = View(cells, width_mm, parted=self._parted, grainy=self._grainy)
         some = guide_mm[:: max(1, len(guide_mm) // 50)]
         dark = median(view.darkness_along(some))
         if length_mm(guide_mm) > LEAST_WIDTHS * width_mm:

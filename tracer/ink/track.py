@@ -162,8 +162,8 @@ class InkHead:
         self.from_mm = carriage.travel_mm
         while True:
             self.at = at = self._station(run, at)
-            left_mm = (len(run) - 1 - at) * view.step_mm - carriage.tuning.lead_mm
-            if left_mm < BEYOND_LEADS * carriage.tuning.lead_mm:
+            left_mm = self._left_mm(run, at)
+            if self._is_at_end(run, at):
                 return
             if run.is_strand:
                 at = self._along(run, at, math.floor(left_mm / view.step_mm), view)
@@ -189,7 +189,17 @@ class InkHead:
         at = self._station(run, at)
         if self._slowly(run, view, at):
             return view, self._station(run, at)
+        if self._is_at_end(run, at):
+            return view, at
         return view, self._along(run, at, self._past(run, view, at), view)
+
+    def _left_mm(self, run: Run, at: int) -> float:
+        """How far the head may go by its cell from a station of a run: up to its lead before the end, mm."""
+        return (len(run) - 1 - at) * run.view.step_mm - self.carriage.tuning.lead_mm
+
+    def _is_at_end(self, run: Run, at: int) -> bool:
+        """Whether what is left of a run from a station is run with what follows it, from memory."""
+        return self._left_mm(run, at) < BEYOND_LEADS * self.carriage.tuning.lead_mm
 
     def _past(self, run: Run, view: View, at: int) -> int:
         """How many stations lead past what stopped the cell: a leg's, or fewer past a stub."""

@@ -44,7 +44,7 @@ class View:
     `usual_mm` is the line's width as a rule, where the width here differs. What the head sees is `enlarged`
     times as large as on the drawing. `on_edge`: it is the edge of a filled shape, dark to one side, and the
     width is that of a line which would be as fine. `parted`: so many of the sheet's pixels lie side by side
-    in one of the scan's.
+    in one of the scan's. `grainy`: the ink is that of a pencil or a dry pen, seen through a slit.
     """
 
     cells: Cells
@@ -53,6 +53,7 @@ class View:
     enlarged: float = 1.0
     on_edge: bool = False
     parted: int = 1
+    grainy: bool = False
 
     @property
     def pitch_mm(self) -> float:

@@ -130,3 +130,19 @@ def test_small_bends_pressed_harder_and_softer_are_no_grain() -> None:
     found = trace_ink(drawing)
     assert len(found.lines) == len([*zigzags, *small, *large])
     assert found.ink is not None and found.ink.followed_share > 0.99
+
+
+def test_a_marker_that_is_dry_in_a_quarter_of_its_line_is_seen_through_the_slit() -> None:
+    """The grain of all its ink is 12 %. Without the slit the head followed a shred of the dry part, 0.42 mm
+    beside its middle; a sixth of the width is what the grain takes off one edge.
+    """
+    line = arc((22.0, 22.0), 16.0)
+    wet, dry = (pencilled(line, share, 1, width_mm=0.9) for share in (0.08, 0.6))
+    levels = np.where(np.arange(wet.shape[1]) * PITCH_MM > 33, dry, wet)
+    darkness = np.asarray((235 - levels) / (BLACK_LEVELS * FAINT), np.float32)
+    assert grain.LEAST_OF_SOME < within(darkness).grain < grain.LEAST_GRAIN
+    drawing = opened(levels)
+    run = trace(drawing).lines[0]
+    assert drawing.grainy and not opened(wet).grainy
+    assert run.ending == "closed"
+    assert distance(run.xy_mm[::4], line).path_to_reference.max_mm < 0.15

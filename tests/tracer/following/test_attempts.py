@@ -128,3 +128,20 @@ def test_stations_lead_where_the_slow_cell_is_left_out() -> None:
         led = done.led.lengths_mm(done.positions_mm)
         assert done.went_slowly is not by_stations
         assert (led[CELL] > led[STATIONS]) is not by_stations
+
+
+def test_a_head_that_cannot_set_out_from_one_end_of_a_line_does_from_the_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The end of an engraved arc of one pixel bends: 33 of 450 mm were kept as the line."""
+    there, other_way = run("ended", 33), run("ended", 417)
+    other_way = replace(other_way, positions_mm=other_way.positions_mm * [-1, 1])
+    from_end, from_other = run("lost", 0), run("ended", 450)
+
+    def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
+        if stance.place_mm[0] == STANCE.place_mm[0]:
+            return there if math.cos(stance.heading_rad) > 0 else other_way
+        return from_end if stance.place_mm[0] > 0 else from_other
+
+    monkeypatch.setattr(Attempts, "run", known)
+    assert Attempts(DRAWING, Settings(), 100.0).all_of_it(STANCE) is from_other

@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
+from morfax.motion.contour import distance
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import plain_places
-from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
+from morfax.tracer.following.plain_places import (
+    aperture_for,
+    places_of,
+    plainest_first,
+    view_of,
+)
+from morfax.tracer.program.trace import trace
 from tests.tracer.inked import arc, inked, polyline
 
+TWO_PX_DPI = 102.0  # a line of 0.5 mm is two pixels wide
 WAVE_MM = np.linspace(0.0, 24.0, 400)
 LINES = {
     "circle": [arc((12, 12), 4.0)],
@@ -47,3 +62,32 @@ def test_a_place_is_made_out_only_when_it_is_asked_for(monkeypatch: pytest.Monke
     )
     assert next(plainest_first(view, places_of(stroke, None))) is not None
     assert len(made_out) == 1
+
+
+def test_cells_are_no_finer_than_large_pixels_but_no_spot_hides_a_thin_line() -> None:
+    """At 300 dpi a third of the width is wider than the steps; at 100 dpi lines of 2 pixels are seen through
+    0.9 pixels, and hard ones through 1.4.
+    """
+    fine, coarse = inked(*LINES["circle"]), inked(*LINES["circle"], dpi=100)
+    hard = replace(coarse, is_hard=True)
+    assert aperture_for(fine, 0.5) == pytest.approx(0.15)
+    assert aperture_for(coarse, 0.5) == pytest.approx(0.45 * 0.5)
+    assert aperture_for(hard, 0.5) == pytest.approx(1.4 * coarse.pitch_mm)
+    # the pixels that count are the scan's own
+    finer = replace(hard, pitch_mm=0.5 * hard.pitch_mm, finer=2)
+    assert aperture_for(finer, 0.5) == aperture_for(hard, 0.5)
+
+
+def test_a_scan_of_two_levels_is_followed_within_half_a_pixel() -> None:
+    """Cells finer than the pixels followed their steps into a bend, 0.32 mm (1.3 pixels) off."""
+    turns = np.linspace(0, math.tau, 2000)
+    radii = 14 + 2 * np.cos(3 * turns)
+    lobes = 22 + np.column_stack([radii * np.cos(turns), radii * np.sin(turns)])
+    ink = inked(lobes, dpi=TWO_PX_DPI).darkness
+    levels = np.where(ink > 0.5, 0, 255).astype(np.uint8)
+    scan = Scan(Path("two.png"), levels, Stated((TWO_PX_DPI, TWO_PX_DPI)))
+    drawing = Drawing.of(scan, Scale())
+    assert drawing.is_hard
+    run = trace(drawing).lines[0]
+    off_mm = distance(run.xy_mm[::4], lobes).path_to_reference.max_mm
+    assert off_mm < 0.5 * drawing.finer * drawing.pitch_mm

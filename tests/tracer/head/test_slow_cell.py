@@ -8,6 +8,7 @@ the path of a hole of 0.85 mm is not the cell's.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -141,6 +142,16 @@ def test_a_rough_line_may_be_seen_further_off(head: Follower) -> None:
     assert keeps_mm(head.view, seen) == pytest.approx(3 * 20 * UM, rel=0.15)
     seen[:, 2] = 0.5
     assert keeps_mm(head.view, seen) == pytest.approx(17 * UM, abs=1 * UM)
+
+
+def test_a_cell_on_a_dry_marker_may_go_beside_what_was_felt_by_8_percent_of_its_width(
+    head: Follower,
+) -> None:
+    """Its stations show the grain of a slit, and not how far that moves the ink's middle over some mm."""
+    seen = np.column_stack([np.zeros((400, 2)), np.full(400, 1.2)])
+    dry = replace(head.view, width_mm=1.2, grainy=True)
+    assert keeps_mm(dry, seen) == pytest.approx(96 * UM)
+    assert keeps_mm(replace(dry, grainy=False), seen) == pytest.approx(24 * UM)
 
 
 def test_tight_bends_are_the_cell_s() -> None:
