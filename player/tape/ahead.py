@@ -24,6 +24,7 @@ from typing import Generic, TypeVar
 Block = TypeVar("Block")
 # of a megabyte each: one is made while another waits, as no block takes just as long as the next
 BLOCKS_AHEAD = 2
+NAME = "reading ahead"  # of the thread
 # for the tape to be closed when nobody asks any more; a block takes some ms
 LONGEST_END_S = 1.0
 
@@ -51,7 +52,7 @@ class ReadAhead(Generic[Block]):
 
     def blocks(self, make: Callable[[], Iterator[Block]]) -> Iterator[Block]:
         """The blocks that `make` gives; raises what it raises."""
-        thread = threading.Thread(target=self._run, args=(make,), daemon=True)
+        thread = threading.Thread(target=self._run, args=(make,), name=NAME, daemon=True)
         thread.start()
         try:
             while True:
