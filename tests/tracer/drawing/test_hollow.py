@@ -35,7 +35,8 @@ def rings(apart_mm: float, dpi: float, seed: int = 1) -> Drawing:
 
 
 @pytest.mark.parametrize(
-    ("apart_mm", "dpi"), [(0.75, 120.0), (0.65, 150.0), (0.6, 200.0), (0.6, 300.0)]
+    ("apart_mm", "dpi"),
+    [(0.75, 120.0), (0.65, 150.0), (0.6, 200.0), (0.6, 300.0), (0.6, 100.0)],
 )
 def test_a_path_between_two_lines_is_told_with_their_distance(
     apart_mm: float, dpi: float
