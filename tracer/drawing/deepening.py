@@ -30,13 +30,13 @@ from morfax.tracer.drawing.noise import Noise, measured
 
 Darkness = NDArray[np.float32]
 
-INK = 0.5
+INK, SURELY = 0.5, 0.6  # of ink's darkness: paler ink is that of a pale line in noise
 SPOT_PX = 1.0  # standard deviation of the spot behind which lines are told from noise
 # of ink's darkness behind that spot. Paler are what shines through a sheet and a JPEG's rims; chosen
 LEAST = 0.15
-# of ink's darkness: the noise of spots is up to 0.011 on scans, 0.013 to 0.03 on photographs of crumpled and
-# of squared paper and of boards; by trial on half of the fetched sheets
-MOST_NOISE = 0.012
+# times the noise of spots: so far a pale line stands out from paper. That noise is up to 0.011 on scans,
+# 0.013 to 0.03 on photographs of crumpled and of squared paper and of boards; by trial
+ABOVE_NOISE = 12.5
 STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that tell its noise
 ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
 # percentiles one standard deviation apart: stains and rims of ink are on one side, lines on few places
@@ -76,12 +76,13 @@ def deepened(
     noise = measured(darkness, pitch_mm, paper_noise)
     if not math.isfinite(noise.softness_px):
         return 0.0
-    if noise_of_spots(darkness) > MOST_NOISE:
+    level = max(LEAST, ABOVE_NOISE * noise_of_spots(darkness))
+    if level > INK:
         return 0.0
     rim_px = RIM_PX + math.ceil(SPOTS * noise.softness_px)
-    length_px = 0.0
+    length_px, shortest_px = 0.0, max(LEAST_PX, LEAST_MM / pitch_mm)
     for _ in range(ROUNDS):
-        pale = pale_ink(darkness, SPOT_PX, LEAST, rim_px)
+        pale = pale_ink(darkness, level, rim_px, shortest_px)
         if shapes.any():
             pale &= 1 - shaded(shapes, pale.shape)
         lines = _lines(pale, darkness, noise, pitch_mm)
@@ -100,15 +101,23 @@ def deepened_note(pale_mm: float) -> str:
     )
 
 
-def pale_ink(darkness: Darkness, spot_px: float, level: float, rim_px: int) -> Mask:
-    """Where a sheet is darker than a level behind a spot, and is no ink, nor so near to ink as its rim."""
-    pale = np.zeros(darkness.shape, np.uint8)
-    halo = rim_px + math.ceil(4 * spot_px)
-    for top, bottom, rows in strips(pale.shape, halo=halo, pixels=FEW_PX):
-        soft = cv2.GaussianBlur(darkness[rows], (0, 0), spot_px)
-        inked = cv2.dilate((soft > INK).view(np.uint8), _disc(rim_px))
-        own = slice(top - rows.start, bottom - rows.start)
-        pale[top:bottom] = ((soft > level) & (inked == 0))[own]
+def pale_ink(darkness: Darkness, level: float, rim_px: int, shortest_px: float) -> Mask:
+    """Where a sheet is darker than a level behind a spot, and is no ink, nor so near to ink as its rim.
+
+    Shorter patches that are hardly ink are places at which a pale line is a little darker.
+    """
+    pale, inked = np.zeros((2, *darkness.shape), np.uint8)
+    for top, bottom, rows in strips(pale.shape, halo=math.ceil(4 * SPOT_PX), pixels=FEW_PX):
+        soft = cv2.GaussianBlur(darkness[rows], (0, 0), SPOT_PX)[top - rows.start :]
+        soft = soft[: bottom - top]
+        pale[top:bottom] = soft > level
+        inked[top:bottom] = (soft > INK).view(np.uint8) + (soft > SURELY)
+    _, labels, boxes, _ = cv2.connectedComponentsWithStats(inked, connectivity=8)
+    is_ink = boxes[:, 2:4].max(axis=1) >= shortest_px
+    is_ink[labels[inked > 1]] = True
+    is_ink[0] = False
+    inked = is_ink[labels].view(np.uint8)
+    pale &= 1 - np.asarray(cv2.dilate(inked, _disc(rim_px)), np.uint8)
     return pale
 
 

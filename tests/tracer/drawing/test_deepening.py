@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.polyline import nearest_mm
+from morfax.tracer.drawing.deepening import ABOVE_NOISE, LEAST, noise_of_spots
 from morfax.tracer.drawing.drawing import Drawing, Reading
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
@@ -81,6 +82,21 @@ def test_on_grained_paper_nothing_is_made_darker() -> None:
     """As on a photograph: grain would be lines."""
     drawing = read(0.3, grain=0.07)
     assert not any("less than half as dark" in note for note in drawing.notes)
+
+
+@pytest.mark.parametrize("pale", [0.3, 0.45])
+def test_on_a_board_a_line_that_stands_out_from_its_grain_is_followed(pale: float) -> None:
+    """A pen that grows paler towards a corner. (Nothing was made darker on such a sheet.)"""
+    noise = noise_of_spots(np.asarray(read(pale, grain=0.025, all_ink=False).darkness))
+    assert LEAST < ABOVE_NOISE * noise < 0.25
+    off = off_mm(read(pale, grain=0.025), WAVE)
+    assert np.sqrt(np.mean(off[30:-30] ** 2)) < 15 * UM and off.max() < 0.25
+
+
+def test_a_line_that_noise_makes_ink_here_and_there_is_one_line() -> None:
+    """Patches of ink in it were told from it with their rims, and broke it into pieces."""
+    off = off_mm(read(0.45, grain=0.018), WAVE)
+    assert np.sqrt(np.mean(off[30:-30] ** 2)) < 10 * UM and off.max() < 0.25
 
 
 def test_where_all_the_ink_is_not_asked_for_pale_lines_stay_pale() -> None:
