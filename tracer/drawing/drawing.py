@@ -234,10 +234,13 @@ class Drawing:
         if edges:
             notes = (*notes, border_note(edges))
         # 3. grain, of lines as they are drawn, pale lines, and too large pixels
-        in_lines, width_px, seen_px = within(darkness, paper_noise)
-        pale_mm = 0.0
+        lines, pale_mm = within(darkness, paper_noise), 0.0
+        in_lines = lines.grain
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
             pale_mm = deepened(darkness, pitch[0], paper_noise, shapes)
+        if pale_mm:
+            lines = within(darkness, paper_noise)
+        width_px, seen_px = lines.width_px, lines.seen_px
         if seen_px < coarse.SEEN_PX:
             notes = (*notes, coarse.note(seen_px, pitch[0]))
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
