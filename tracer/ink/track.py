@@ -37,8 +37,8 @@ from morfax.tracer.head.state import CHANGED, MORE, Home, Mark
 from morfax.tracer.head.windows import shortest_lead_mm
 from morfax.tracer.ink.chains import Chain, Junctions, Side
 from morfax.tracer.ink.partners import way_through
+from morfax.tracer.ink.pieces import Piece, cut_open, pieces_of
 from morfax.tracer.ink.run import Run
-from morfax.tracer.ink.shared_ink import SharedInk
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
@@ -56,7 +56,6 @@ LOOKED_AT = 60  # one position in so many is held against what was felt
 SWELLS = 0.5  # the share of a change of a line's width that the head takes over at once
 SLOWLY_LEGS = 3.0  # the cell goes on by itself for so many legs, then fast again
 PAST_MM = 0.3  # stations lead beyond a stub, until its ink no longer draws the cell
-NOTHING = np.empty((0, 2))  # was felt between
 NEVER_HOME = Home(0.0, 0.0, 0.0, math.inf)
 
 Told = Callable[[float], None]
@@ -74,25 +73,14 @@ class InkStroke(NamedTuple):
     led: Led = Led()
 
 
-class Piece(NamedTuple):
-    """A clean run of a chain, and what was felt between it and the one before, (n, 2) mm.
-
-    None if other lines meet there; then what was felt along the stretches within their junction.
-    """
-
-    run: Run
-    between: Array | None
-    ink: SharedInk | None = None
-
-
 def stroke_along(
     chain: Chain, junctions: Junctions, settings: Settings, told: Told | None = None
 ) -> InkStroke:
     """Run the head along a chain; `told` hears the travel, mm."""
-    pieces = _pieces(chain, junctions)
+    pieces = pieces_of(chain, junctions)
     longest = max(pieces, key=lambda piece: len(piece.run)).run
     if chain.closed:
-        pieces = _cut_open(pieces)
+        pieces = cut_open(pieces)
     first, last = pieces[0].run, pieces[-1].run
     begins, ends = _stands_at(first, 0), _stands_at(last, -1)
     if not chain.closed:
@@ -115,29 +103,6 @@ def stroke_along(
     return InkStroke(
         way_mm, length_mm(way_mm), chain.closed, longest.view.width_mm, head.carriage.led
     )
-
-
-def _pieces(chain: Chain, junctions: Junctions) -> list[Piece]:
-    """The clean runs of a chain in the order and the sense in which they are run."""
-    pieces = list[Piece]()
-    for link in chain.links:
-        line = junctions.net.lines[link.line]
-        there = junctions.at(Side(link.line, link.back))
-        alone = len(there.sides) == 2
-        runs = [run.turned_round() for run in line.runs[::-1]] if link.back else line.runs
-        parted = [places[::-1] for places in line.parted[::-1]] if link.back else line.parted
-        pieces.append(Piece(runs[0], NOTHING if alone else None, there.crossing.ink))
-        pieces += [Piece(run, places) for run, places in zip(runs[1:], parted, strict=True)]
-    return pieces
-
-
-def _cut_open(pieces: list[Piece]) -> list[Piece]:
-    """The pieces of a closed chain from the middle of its longest run round to there."""
-    k = max(range(len(pieces)), key=lambda n: len(pieces[n].run))
-    run, between, ink = pieces[k]
-    middle = len(run) // 2
-    later, sooner = run.part(middle, len(run)), run.part(0, middle + 1)
-    return [Piece(later, NOTHING), *pieces[k + 1 :], *pieces[:k], Piece(sooner, between, ink)]
 
 
 @dataclass

@@ -93,19 +93,16 @@ def trace_lines(
         unexplained=unexplained(setup, lines) if which == "contours" else (),
         letters=_letters(setup.sheet, lines) if which == "contours" else (),
         letters_out=found.letters_out,
-        small_rings=_rings_left_out(setup, which, lines),
+        small_rings=_rings_out(setup, which, lines),
         unclear=found.unclear,
     )
 
 
-def _rings_left_out(
-    setup: Setup, which: Which, lines: Sequence[Line]
-) -> tuple[SmallPatch, ...]:
+def _rings_out(setup: Setup, which: Which, lines: Sequence[Line]) -> tuple[SmallPatch, ...]:
     """Closed lines that are too short to be contours; of a drawn program none, which has rings as marks."""
-    edges = setup.sheet.drawing.edges_mm
-    if not isinstance(which, str) or edges or setup.operator.reads_marks(lines):
-        return ()
-    return small_rings(setup.sheet)
+    sheet, is_drawn = setup.sheet, setup.operator.reads_marks(lines)
+    is_whole = isinstance(which, str) and not sheet.drawing.edges_mm
+    return small_rings(sheet) if is_whole and not is_drawn else ()
 
 
 def _letters(sheet: Sheet, lines: Sequence[Line]) -> tuple[int, ...]:
