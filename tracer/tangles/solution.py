@@ -185,22 +185,18 @@ def _stands(sketch: Sketch, way: Redrawing, plan: Plan | None) -> bool:
         return False
     drawn = as_drawn(plan, sketch.tangle, _width(sketch))
     planned = sketch.misfit_with(way.without_own(), drawn)
-    if planned < _as_well(sketch, way):
+    straight = goes_straight(sketch.tangle.legs[0], plan.leg)
+    grain = _grain(sketch) if len(sketch.tangle.legs) == 2 and _is_gentle(sketch, way) else 0.0
+    # 1. a corner or a step of two legs: only its vertices are in question, and only noise and the line's
+    # grain excuse more; a blot leaves more unexplained than the line beside it
+    if grain > 0.0 and way.misfit < GRAINY * grain + SLACK:
+        if planned < max(TWICE * way.misfit, GRAINY * grain) + SLACK:
+            return True
+        return straight and _leads_to(sketch, plan, 0) and _is_mark(sketch, way, plan, SLACK)
+    # 2. any other
+    if planned < way.misfit + VERTEX * (1 + len(way.own)):
         return True
-    incoming, width_mm = sketch.tangle.legs[0], _width(sketch)
-    on_line = goes_straight(incoming, plan.leg) and same_line(plan.leg, incoming, width_mm)
-    return on_line and _is_mark(sketch, way, plan)
-
-
-def _as_well(sketch: Sketch, way: Redrawing) -> float:
-    """The misfit up to which a plan explains the ink as well as a redrawing does.
-
-    At a corner or a step of two legs nothing but its vertices is in question: there only noise, and the grain
-    of the line, excuse more.
-    """
-    if len(sketch.tangle.legs) == 2 and _is_gentle(sketch, way):
-        return max(TWICE * way.misfit, GRAINY * _grain(sketch)) + SLACK
-    return way.misfit + VERTEX * (1 + len(way.own))
+    return straight and _is_mark(sketch, way, plan, LEAST_MISFIT)
 
 
 def _grain(sketch: Sketch) -> float:
@@ -214,7 +210,7 @@ def _grain(sketch: Sketch) -> float:
 
 
 def _is_gentle(sketch: Sketch, way: Redrawing) -> bool:
-    """Whether a strand between two legs is a corner or a step: it turns back on itself nowhere."""
+    """Whether a strand between two legs turns back on itself nowhere."""
     ends = sketch.poses[:, :2]
     steps = np.diff(np.vstack([ends[:1], way.own, ends[1:2]]), axis=0)
     headings = [
@@ -251,10 +247,11 @@ def _is_as_good(way: Redrawing, other: Redrawing) -> bool:
     return like and way.cost < other.cost + DOUBTFUL
 
 
-def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan) -> bool:
+def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan, slack: float) -> bool:
     """Whether what is drawn beside a straight plan may be a mark or a blot.
 
-    It is no longer than a mark, and no stroke of the line explains it better.
+    It is no longer than a mark, and no stroke of the line explains it better. `slack`: what a tick may leave
+    unexplained beyond that.
     """
     beside_mm = aside_mm(way.own, plan.stretches)
     if beside_mm >= longest_mm(sketch.view):
@@ -263,7 +260,7 @@ def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan) -> bool:
         return True
     bare = Redrawing(way.pairs, tuple(NONE for _ in way.pairs))
     marked = sketch.improved(bare, marks_only=True)
-    if _ticked(sketch, way, marked, bare) < MARK_AS_GOOD * way.misfit + SLACK:
+    if _ticked(sketch, way, marked, bare) < MARK_AS_GOOD * way.misfit + slack:
         return True
     if beside_mm < _width(sketch):
         return marked.misfit < TWICE * way.misfit
