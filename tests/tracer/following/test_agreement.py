@@ -103,6 +103,27 @@ def test_the_head_hears_its_cell_on_a_small_coarse_circle(radius_mm: float, seed
     assert run.ending == "closed"
 
 
+@pytest.mark.parametrize(
+    ("radius_mm", "width_mm", "dpi", "seed"),
+    [
+        (1.72, 0.7, 120.0, 0),
+        (0.99, 0.7, 200.0, 0),
+        (0.74, 0.5, 300.0, 3),
+        (0.82, 0.7, 300.0, 3),
+    ],
+)
+def test_a_hole_tighter_than_the_cell_s_lead_is_no_contradiction(
+    radius_mm: float, width_mm: float, dpi: float, seed: int
+) -> None:
+    """The cell looks ahead along the heading, and stands beside a line that turns away by 34 degrees or more:
+    three such stops were taken for a broken cell, and the hole was lost half-way.
+    """
+    run = trace(inked(arc((8.1, 8.2), radius_mm), width_mm=width_mm, dpi=dpi, seed=seed))
+    assert run.ending == "closed"
+    off_mm = np.hypot(*(run.xy_mm - (8.1, 8.2)).T) - radius_mm
+    assert np.abs(off_mm).max() < 0.5 * 25.4 / dpi
+
+
 @pytest.mark.parametrize("broken", [None, "inverted", "noisy"])
 def test_the_standing_head_hears_in_one_kernel_what_it_heard_sweep_by_sweep(
     broken: str | None, monkeypatch: pytest.MonkeyPatch
