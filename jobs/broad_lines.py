@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from morfax.jobs.numbered import and_so
+
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
     from morfax.tracer.drawing.broad import Broad
@@ -84,8 +86,7 @@ class BroadLines:
         if not self.of_lines:
             return
         number, worst = max(self.of_lines, key=lambda row: row[1].length_mm)
-        (x, y), others = worst.place_mm, len(self.of_lines) - 1
-        more = f", and so {'is' if others == 1 else 'are'} {others} more" if others else ""
+        (x, y), more = worst.place_mm, and_so(len(self.of_lines) - 1, "is", "are")
         off_mm = 0.5 * (worst.width_mm - self.pen_mm)
         yield (
             f"line {number} is {worst.width_mm:.2g} mm wide along {worst.length_mm:.0f} mm, about "

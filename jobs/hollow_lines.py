@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from morfax.jobs.numbered import and_so
+
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.drawing.hollow import Hollow
@@ -64,8 +66,7 @@ class HollowLines:
         if not self.of_lines:
             return
         number, worst = max(self.of_lines, key=lambda row: row[1].length_mm)
-        (x, y), others = worst.place_mm, len(self.of_lines) - 1
-        more = f", and so {'is' if others == 1 else 'are'} {others} more" if others else ""
+        (x, y), more = worst.place_mm, and_so(len(self.of_lines) - 1, "is", "are")
         yield (
             f"line {number} is paler in its middle than at its sides along {worst.length_mm:.0f} mm, about "
             f"{x:.1f},{y:.1f} mm{more}: if two lines {worst.apart_mm:.2g} mm apart are drawn there, the path "

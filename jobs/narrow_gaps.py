@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from morfax.jobs.numbered import and_so
+
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.drawing.narrow import NarrowGap
@@ -61,8 +63,7 @@ class NarrowGaps:
         if not self.of_lines:
             return
         number, gap = self.of_lines[0]
-        (x, y), others = gap.place_mm, len(self.of_lines) - 1
-        more = f", and so {'does' if others == 1 else 'do'} {others} more" if others else ""
+        (x, y), more = gap.place_mm, and_so(len(self.of_lines) - 1, "does", "do")
         yield (
             f"line {number} runs over the paper between two lines at {x:.1f},{y:.1f} mm{more}: that is at "
             f"most two pixels ({self.wide_mm:.2g} mm) wide along {gap.length_mm:.0f} mm, and the path may go "

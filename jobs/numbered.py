@@ -11,6 +11,11 @@ def numbered(what: str, numbers: list[int]) -> str:
     return f"{listed(what, numbers)} {'is' if len(numbers) == 1 else 'are'}"
 
 
+def and_so(others: int, one: str, several: str) -> str:
+    """That something holds of so many others too, by the verb for one or several; nothing without others."""
+    return f", and so {one if others == 1 else several} {others} more" if others else ""
+
+
 def listed(what: str, numbers: list[int]) -> str:
     """Things by their numbers: all of a few; of many how many there are, and the first."""
     if len(numbers) == 1:

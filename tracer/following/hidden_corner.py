@@ -47,6 +47,6 @@ def hides_corner(view: View, felt: FeltCorner) -> bool:
     )
     # 2. less will do where the legs meet at a clear angle
     corner = Corner.of(incoming, outgoing)
-    meets = corner is not None and corner.nearest_mm > view.step_mm
-    is_clear = meets and corner is not None and corner.deflection_rad > SLIGHT
-    return near > (WORSE_AT_ANGLE if is_clear else WORSE) * min(usual)
+    if corner is None or corner.nearest_mm <= view.step_mm or corner.deflection_rad <= SLIGHT:
+        return near > WORSE * min(usual)
+    return near > WORSE_AT_ANGLE * min(usual)

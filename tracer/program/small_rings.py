@@ -44,10 +44,9 @@ class SmallPatch(NamedTuple):
 
 def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
     """The closed lines of a sheet that are too short to be contours, and no lettering; the largest first."""
-    patches, pitch_mm = sheet.patches, sheet.drawing.pitch_mm
-    across_mm = patches.longer_sides * pitch_mm
-    small = across_mm > LEAST_WIDTHS * np.median(sheet.widths_mm[lines_of(sheet)])
-    small[[*lines_of(sheet), *lettering(sheet)]] = False
+    lines, across_mm = lines_of(sheet), sheet.patches.longer_sides * sheet.drawing.pitch_mm
+    small = across_mm > LEAST_WIDTHS * np.median(sheet.widths_mm[lines])
+    small[[*lines, *lettering(sheet)]] = False
     chosen = np.flatnonzero(small)
     chosen = chosen[np.argsort(-across_mm[chosen], kind="stable")][:MOST_RINGS]
     return tuple(SmallPatch.of(sheet, p) for p in chosen.tolist() if _is_ring(sheet, p))

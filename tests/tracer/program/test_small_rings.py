@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from morfax.jobs.remarks_on_ink import of_ink
+from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import Points, arc, inked, polyline
 
@@ -29,8 +30,6 @@ def test_a_hole_shorter_than_a_contour_is_told_with_its_place(diameter_mm: float
     assert "1 small closed line is left out" in said and "14.0,20.0 mm" in said
     # the advice works
     assert "--lines all" in said
-    from morfax.tracer.program.trace_ink import trace_ink
-
     all_ink = trace_ink(inked(PLATE, hole, width_mm=0.35, seed=1))
     assert [line.ending for line in all_ink.lines] == ["closed", "closed"]
 
