@@ -25,7 +25,7 @@ from morfax.batch.row import BatchRow
 from morfax.motion.motion import Motion
 from morfax.motion.motion import Path as Course
 from morfax.motion.pathfile import read_path, write_path
-from morfax.player.gcode.rs274 import read_rs274
+from morfax.player.gcode.machine_reader import read_program
 from morfax.recorder.cubics.file import read_program as read_cubic
 from morfax.recorder.gcode.machine import as_toml, machine
 from morfax.recorder.media import read_outline, record
@@ -116,7 +116,11 @@ def _texts(folder: Path) -> Iterator[tuple[str, Target]]:
 
 def _programs(folder: Path) -> Iterator[tuple[str, Target]]:
     """What a machine plays."""
-    for suffix, read in ((".steps", read_steps), (".cubic", read_cubic), (".ngc", read_rs274)):
+    for suffix, read in (
+        (".steps", read_steps),
+        (".cubic", read_cubic),
+        (".ngc", read_program),
+    ):
         whole = folder / f"right{suffix}"
         record(_course(), whole)
         # without its check sum, by which all changes would be refused alike

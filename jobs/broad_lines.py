@@ -10,9 +10,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from morfax.jobs.numbered import and_so
+from morfax.jobs.on_lines import OnLines
+from morfax.motion.by_number import and_so
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
@@ -24,14 +25,20 @@ if TYPE_CHECKING:
 
 FINER = 2.0  # times the resolution shows a gap that this one does not show
 LOOKED_AT = 12  # lines that were not followed: they only show the pen
-MARKED = 10  # of the places that a picture marks: a plan with two pens has many
 
 
 @dataclass(frozen=True, slots=True)
-class BroadLines:
-    """The broad stretches of lines by the lines' numbers, and the width of the sheet's pen, mm; and a
-    resolution that may show two lines, dpi.
+class BroadLines(OnLines):
+    """The broad stretches of lines, the longest first; the width of the sheet's pen, mm, and a resolution
+    that may show two lines, dpi.
     """
+
+    called, marked = "broad_lines", "broad line"
+    rows = (
+        ("broad_place_mm", "place_mm"),
+        ("broad_mm", "length_mm"),
+        ("broad_width_mm", "width_mm"),
+    )
 
     of_lines: tuple[tuple[int, Broad], ...] = ()
     pen_mm: float = 0.0
@@ -65,27 +72,15 @@ class BroadLines:
             if line.number not in told
             and (there := broad(line.places_mm, wide, piece_mm, pen_mm)) is not None
         ]
+        found.sort(key=lambda row: -row[1].length_mm)
         wants_dpi = coarse.finer_dpi(pitch_mm * drawing.finer, FINER)
         return cls(tuple(found), pen_mm, wants_dpi)
-
-    def figures(self) -> dict[str, Any]:
-        """Each line's broad length, where the longest stretch is, and how wide its ink is there."""
-        rows = [
-            {
-                "of_line": number,
-                "broad_place_mm": there.place_mm,
-                "broad_mm": there.length_mm,
-                "broad_width_mm": there.width_mm,
-            }
-            for number, there in self.of_lines
-        ]
-        return {"broad_lines": rows or None}
 
     def remarks(self) -> Iterator[str]:
         """That lines may be two, of which the path follows neither."""
         if not self.of_lines:
             return
-        number, worst = max(self.of_lines, key=lambda row: row[1].length_mm)
+        number, worst = self.of_lines[0]
         (x, y), more = worst.place_mm, and_so(len(self.of_lines) - 1, "is", "are")
         off_mm = 0.5 * (worst.width_mm - self.pen_mm)
         yield (
@@ -95,12 +90,6 @@ class BroadLines:
             f"{off_mm:.2g} mm or more off; scan at {self.wants_dpi} dpi, or draw them further apart; if a "
             "broader pen has drawn it, the path is right"
         )
-
-    @property
-    def marked_mm(self) -> dict[str, tuple[float, float]]:
-        """The places that a picture marks, by name."""
-        longest = sorted(self.of_lines, key=lambda row: -row[1].length_mm)[:MARKED]
-        return {f"broad line {k}": row[1].place_mm for k, row in enumerate(longest, 1)}
 
 
 def _not_followed(drawing: Drawing, seen: Seen, lines: list[Line]) -> Array:

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from morfax.jobs.numbered import and_so
+from morfax.jobs.on_lines import OnLines
+from morfax.motion.by_number import and_so
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
@@ -22,8 +23,15 @@ FINER = 2.0  # times the resolution shows a gap that this one hardly shows
 
 
 @dataclass(frozen=True, slots=True)
-class HollowLines:
-    """The hollow stretches of lines by the lines' numbers, and a resolution that may part them, dpi."""
+class HollowLines(OnLines):
+    """The hollow stretches of lines, the longest first, and a resolution that may part them, dpi."""
+
+    called, marked = "hollow_lines", "pale middle"
+    rows = (
+        ("hollow_place_mm", "place_mm"),
+        ("hollow_mm", "length_mm"),
+        ("dark_rows_apart_mm", "apart_mm"),
+    )
 
     of_lines: tuple[tuple[int, Hollow], ...] = ()
     wants_dpi: int = 0
@@ -42,30 +50,18 @@ class HollowLines:
             if not line.on_edge and not drawing.edges_mm and not line.is_dot
             if (there := hollow(seen, line.places_mm, line.width_mm, pitch_mm)) is not None
         ]
+        found.sort(key=lambda row: -row[1].length_mm)
         scanned_mm = drawing.pitch_mm * drawing.finer
         wants_dpi = coarse.finer_dpi(scanned_mm, FINER)
         if drawing.seen_px < coarse.SEEN_PX:  # the drawing's own note advises that
             wants_dpi = max(wants_dpi, coarse.wanted_dpi(scanned_mm))
         return cls(tuple(found), wants_dpi)
 
-    def figures(self) -> dict[str, Any]:
-        """Each line's hollow length, where the longest stretch is, and how far its dark rows are apart."""
-        rows = [
-            {
-                "of_line": number,
-                "hollow_place_mm": there.place_mm,
-                "hollow_mm": there.length_mm,
-                "dark_rows_apart_mm": there.apart_mm,
-            }
-            for number, there in self.of_lines
-        ]
-        return {"hollow_lines": rows or None}
-
     def remarks(self) -> Iterator[str]:
         """That lines may be two, of which the path follows neither."""
         if not self.of_lines:
             return
-        number, worst = max(self.of_lines, key=lambda row: row[1].length_mm)
+        number, worst = self.of_lines[0]
         (x, y), more = worst.place_mm, and_so(len(self.of_lines) - 1, "is", "are")
         yield (
             f"line {number} is paler in its middle than at its sides along {worst.length_mm:.0f} mm, about "
@@ -73,8 +69,3 @@ class HollowLines:
             f"runs between them; scan at {self.wants_dpi} dpi or more to part them; if the pen has left the "
             "middle paler, the path is right"
         )
-
-    @property
-    def marked_mm(self) -> dict[str, tuple[float, float]]:
-        """The places that a picture marks, by name."""
-        return {f"pale middle {k}": row[1].place_mm for k, row in enumerate(self.of_lines, 1)}

@@ -8,23 +8,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from morfax.jobs.numbered import and_so
+from morfax.jobs.on_lines import OnLines
+from morfax.motion.by_number import and_so
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.drawing.narrow import NarrowGap
     from morfax.tracer.program.program import Trace
 
-MARKED = 10  # of the places that a picture marks
-
 
 @dataclass(frozen=True, slots=True)
-class NarrowGaps:
-    """The narrow gaps that lines run over, by the lines' numbers, the longest first; the width of two pixels,
-    mm, and a resolution that parts the lines, dpi.
+class NarrowGaps(OnLines):
+    """The narrow gaps that lines run over, the longest first; the width of two pixels, mm, and a resolution
+    that parts the lines, dpi.
     """
+
+    called, marked = "narrow_gaps", "narrow gap"
+    rows = (
+        ("narrow_place_mm", "place_mm"),
+        ("narrow_mm", "length_mm"),
+    )
 
     of_lines: tuple[tuple[int, NarrowGap], ...] = ()
     wide_mm: float = 0.0
@@ -46,18 +51,6 @@ class NarrowGaps:
         wants_dpi = coarse.finer_dpi(scanned_mm, PARTED)
         return cls(tuple(found), NARROW_PX * scanned_mm, wants_dpi)
 
-    def figures(self) -> dict[str, Any]:
-        """Where each line runs over a narrow gap, and how long that is."""
-        rows = [
-            {
-                "of_line": number,
-                "narrow_place_mm": gap.place_mm,
-                "narrow_mm": gap.length_mm,
-            }
-            for number, gap in self.of_lines
-        ]
-        return {"narrow_gaps": rows or None}
-
     def remarks(self) -> Iterator[str]:
         """That lines may go over from one line to another."""
         if not self.of_lines:
@@ -69,9 +62,3 @@ class NarrowGaps:
             f"most two pixels ({self.wide_mm:.2g} mm) wide along {gap.length_mm:.0f} mm, and the path may go "
             f"over from one line to the other; scan at {self.wants_dpi} dpi or more to part the two lines"
         )
-
-    @property
-    def marked_mm(self) -> dict[str, tuple[float, float]]:
-        """The places that a picture marks, by name."""
-        longest = self.of_lines[:MARKED]
-        return {f"narrow gap {k}": gap.place_mm for k, (_, gap) in enumerate(longest, 1)}

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from morfax.jobs.numbered import numbered
 from morfax.jobs.remarks_on_ink import of_ink
+from morfax.motion.by_number import numbered
 
 if TYPE_CHECKING:
     from morfax.jobs.settings import TraceSettings

@@ -9,8 +9,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from morfax.jobs.numbered import numbered
 from morfax.jobs.remarks_on_lines import of_letters
+from morfax.motion.by_number import numbered
 
 if TYPE_CHECKING:
     from morfax.tracer.following.line import Line

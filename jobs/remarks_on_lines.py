@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from morfax.jobs.numbered import listed, numbered
+from morfax.motion.by_number import listed, numbered
 
 if TYPE_CHECKING:
     from morfax.tracer.program.survey import Survey

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from morfax.jobs.numbered import numbered
+from morfax.motion.by_number import numbered
 
 if TYPE_CHECKING:
     from morfax.jobs.settings import TraceSettings
@@ -78,7 +78,7 @@ def _of_holes(trace: Trace) -> Iterator[str]:
     """Rings that are cut as holes though a line leads away from them: the first, and how many more."""
     found = [
         (hole, line, place_mm)
-        for hole, place_mm in _small_rings(trace)
+        for hole, place_mm in _rings_like_a_reference(trace)
         for line in trace.lines
         if line.ending == "ended" and _leads_away(line, place_mm)
     ]
@@ -93,7 +93,7 @@ def _of_holes(trace: Trace) -> Iterator[str]:
     )
 
 
-def _small_rings(trace: Trace) -> Iterator[tuple[Line, Place]]:
+def _rings_like_a_reference(trace: Trace) -> Iterator[tuple[Line, Place]]:
     """The lines that are rings of a reference point's size, and their middles, mm."""
     from morfax.motion.circle import circle_through
     from morfax.tracer.marks.reference import LARGEST_MM, LEAST_MM

@@ -8,18 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from morfax.jobs.on_lines import OnLines
 
 if TYPE_CHECKING:
     from morfax.tracer.program.program import Trace
     from morfax.tracer.program.stubs import Stub
 
-MARKED = 10  # of the places that a picture marks
-
 
 @dataclass(frozen=True, slots=True)
-class StubLines:
-    """The stubs along which lines go out and back, by the lines' numbers, the longest first."""
+class StubLines(OnLines):
+    """The stubs along which lines go out and back, the longest first."""
+
+    called, marked = "stubs", "stub"
+    rows = (
+        ("stub_place_mm", "place_mm"),
+        ("stub_mm", "out_mm"),
+    )
 
     of_lines: tuple[tuple[int, Stub], ...] = ()
 
@@ -34,14 +40,6 @@ class StubLines:
         found = [(line.number, stub) for line in lines for stub in stubs(line)]
         return cls(tuple(sorted(found, key=lambda row: -row[1].out_mm)))
 
-    def figures(self) -> dict[str, Any]:
-        """Each stub's line, where its way turns back, and how far out that is."""
-        rows = [
-            {"of_line": number, "stub_place_mm": stub.place_mm, "stub_mm": stub.out_mm}
-            for number, stub in self.of_lines
-        ]
-        return {"stubs": rows or None}
-
     def remarks(self) -> Iterator[str]:
         """That a line goes out along a stub, which may be no part of it."""
         if not self.of_lines:
@@ -54,9 +52,3 @@ class StubLines:
             f"back{more}: if that is a tick or a burr, rub it out, on the sheet or by `morfax correct "
             "--rub`; if ticks stop the machine, give --marks on"
         )
-
-    @property
-    def marked_mm(self) -> dict[str, tuple[float, float]]:
-        """The places that a picture marks, by name."""
-        longest = self.of_lines[:MARKED]
-        return {f"stub {k}": stub.place_mm for k, (_, stub) in enumerate(longest, 1)}

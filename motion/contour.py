@@ -98,11 +98,6 @@ def length_mm(path: Contour) -> float:
     return sum((polyline.length_mm(run) for run in polylines(path)), 0.0)
 
 
-def closure_mm(path: Contour) -> float:
-    """Distance from the end of a run back to its start, mm; of several runs the largest."""
-    return float(max(np.hypot(*(run[-1] - run[0])) for run in polylines(path)))
-
-
 def polylines(path: Contour) -> list[Array]:
     """The (n, 2) polylines in mm that count; raises MotionFault if none does, ValueError for no contour."""
     if isinstance(path, Motion):

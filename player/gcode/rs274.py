@@ -24,12 +24,11 @@ to be as far from both.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Sequence
 
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.arc_words import OURS, ArcWords, Place, WordError
-from morfax.player.gcode.gcode_text import COMMENT, WORD, text_of
+from morfax.player.gcode.gcode_text import COMMENT, WORD
 from morfax.player.gcode.modal_groups import BLENDING, CODES, DISTANCE, MOTION, READ, UNITS
 from morfax.player.gcode.moves import (
     CLOCKWISE,
@@ -46,13 +45,6 @@ LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
 
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
-
-
-def read_rs274(
-    file: str | os.PathLike[str], start_mm: Sequence[float] | None = None
-) -> Program:
-    """Read a program; raises ProgramFault with line and word, FileFault for an unreadable file."""
-    return parse_rs274(text_of(file).split("\n"), str(file), start_mm)
 
 
 def parse_rs274(

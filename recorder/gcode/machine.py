@@ -91,11 +91,6 @@ def names() -> list[str]:
     return sorted(file.name[:-5] for file in folder.iterdir() if file.name.endswith(".toml"))
 
 
-def gcode_names() -> list[str]:
-    """Names of the built-in machines that take G-code."""
-    return [name for name in names() if not machine(name).is_hpgl]
-
-
 def as_toml(name: str) -> str:
     """The file of a built-in machine, to copy and change; raises ValueError if there is none of that name."""
     if name not in names():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from morfax.player.gcode.rs274 import read_rs274
+from morfax.player.gcode.machine_reader import read_program
 from morfax.recorder.gcode.machine import as_toml, machine, names
 from tests.console.conftest import SAMPLES, Morfax
 
@@ -58,7 +58,7 @@ def test_what_g_code_alone_has_is_refused_for_a_tape(
 def test_the_feed_that_is_asked_for_is_the_program_s(morfax: Morfax, here: Path) -> None:
     words = ("trace", SAMPLES / "bracket.png", "-o", "a.nc", "--machine", "grbl-router")
     assert morfax(*words, "--feed", "2400mm/min", "--plunge", "120mm/min").exit_code == 0
-    feeds = {move.feed_mm_s for move in read_rs274(here / "a.nc").moves if move.feed_mm_s}
+    feeds = {move.feed_mm_s for move in read_program(here / "a.nc").moves if move.feed_mm_s}
     assert feeds == {40.0, 2.0}
 
 

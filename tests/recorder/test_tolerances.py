@@ -16,7 +16,7 @@ from morfax.motion.contour import distances_mm
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.player.cubics.interpolator import CubicInterpolator
-from morfax.player.gcode.rs274 import read_rs274
+from morfax.player.gcode.machine_reader import read_program
 from morfax.player.steps.stepping import decode, pulses_of
 from morfax.recorder.cubics import file as cubic_file
 from morfax.recorder.cubics.cubics import record_cubics
@@ -76,7 +76,7 @@ def test_a_block_program_keeps_its_tolerance(tmp_path: FilePath, tolerance_um: f
     # 10 um is the default
     how = {} if tolerance_um == 10 else {"tolerance_mm": tolerance_um * UM}
     record_blocks(waves(), tmp_path / "a.ngc", **how)
-    run_mm = np.vstack(run_of(read_rs274(tmp_path / "a.ngc")))
+    run_mm = np.vstack(run_of(read_program(tmp_path / "a.ngc")))
     assert off_um(run_mm) <= tolerance_um + DRAWN_UM
 
 

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.tracer.drawing.holes import holes
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.strokes import Sheet
@@ -79,6 +80,4 @@ def _weigh(sheet: Sheet, patch: int) -> Weight:
     about = cv2.dilate(ink, np.ones((2 * TAIL_PX + 1,) * 2, np.uint8)) > 0
     dark = np.asarray(sheet.drawing.darkness[top:bottom, left:right])
     weight_mm2 = float(dark[about].sum()) * sheet.drawing.pitch_mm**2
-    _, levels = cv2.findContours(ink, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE)
-    goes_round = levels is not None and bool((levels[0, :, 3] >= 0).any())
-    return Weight(weight_mm2, not goes_round)
+    return Weight(weight_mm2, not holes(ink))

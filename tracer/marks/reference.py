@@ -25,13 +25,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.motion.median import median
+from morfax.tracer.drawing.holes import holes
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.marks.sizes import (
     ALIKE,
@@ -163,11 +163,9 @@ def _inside(sheet: Sheet, patch: int) -> Iterator[tuple[Array, float, bool]]:
         return
     pitch, rows = sheet.drawing.pitch_mm, sheet.drawing.darkness.shape[0]
     ink = sheet.patches.painted(chosen, top, bottom, left, right)
-    contours, levels = cv2.findContours(ink, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    for contour, level in zip(contours, levels[0] if len(contours) else (), strict=True):
-        x, y, wide, high = cv2.boundingRect(contour)
-        size_mm, has_ink_about = max(wide, high) * pitch, level[3] >= 0
-        if has_ink_about and size_mm >= LEAST_MM:
+    for x, y, wide, high, _ in holes(ink):
+        size_mm = max(wide, high) * pitch
+        if size_mm >= LEAST_MM:
             middle_px = left + x + 0.5 * wide, rows - top - y - 0.5 * high
             yield np.array(middle_px) * pitch, size_mm, bool(_is_square(high, wide))
 

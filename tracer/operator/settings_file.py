@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from pathlib import Path as FilePath
 
-from morfax.motion.toml_fields import Field, opened, parsed
+from morfax.motion.toml_fields import Field, opened
 from morfax.tracer.head.settings import BOUNDS, Settings, allowed, value_of
 
 CALLED = "the file of settings"
@@ -24,22 +24,13 @@ CALLED = "the file of settings"
 
 def read_changes(file: FilePath) -> dict[str, float]:
     """Settings in a file, by name; raises CardFault for a mistake, FileFault if the file cannot be read."""
-    return _changes(opened(file, CALLED, "--settings"))
-
-
-def parse_changes(text: str, name: str = "settings") -> dict[str, float]:
-    """Settings in a text, by name; raises CardFault for a mistake."""
-    return _changes(parsed(text, name, CALLED))
+    whole = opened(file, CALLED, "--settings")
+    return {name: _number(name, held) for name, held in whole.table(*BOUNDS).items()}
 
 
 def as_toml(settings: Settings) -> str:
     """All settings as a file that can be read again, each with its meaning and bounds."""
     return "".join(_line(name, value_of(settings, name)) for name in BOUNDS)
-
-
-def _changes(whole: Field) -> dict[str, float]:
-    """The settings in the file, by name."""
-    return {name: _number(name, held) for name, held in whole.table(*BOUNDS).items()}
 
 
 def _number(name: str, held: Field) -> float:

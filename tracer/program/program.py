@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from morfax.motion.by_number import listed
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion
 from morfax.tracer.operator.operator import Operator
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from morfax.tracer.program.small_rings import SmallPatch
     from morfax.tracer.program.unexplained import Unexplained
 
-MOST_NAMED = 6  # lines that a fault names by their numbers
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first comes first
 
 
@@ -168,14 +168,9 @@ class Trace:
 def _incomplete(lost: list[Line], lines: int) -> LineFault:
     """The fault of the first of several lines that were lost, with the numbers of all."""
     named = sorted(line.number for line in lost)
-    numbers = ", ".join(map(str, named[:MOST_NAMED]))
-    if len(named) > MOST_NAMED:
-        numbers = f"{numbers} and {len(named) - MOST_NAMED} more"
     first = lost[0].fault
     assert first is not None
-    are = (
-        f"line {numbers} of {lines} is" if len(lost) == 1 else f"lines {numbers} of {lines} are"
-    )
+    are = f"{listed('line', named)} of {lines} {'is' if len(lost) == 1 else 'are'}"
     rest = "no line is whole" if len(lost) == lines else "the others are cut"
     return LineFault(
         f"{are} incomplete, {rest}; line {lost[0].number}: {first}",

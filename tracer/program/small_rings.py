@@ -14,10 +14,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.tracer.drawing.holes import holes
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.program.selection import Contour, lines_of
@@ -63,9 +63,5 @@ def _is_ring(sheet: Sheet, patch: int) -> bool:
     top, bottom, left, right = sheet.patches.boxes[patch].tolist()
     own: NDArray[np.bool_] = np.zeros(sheet.patches.count, bool)
     own[patch] = True
-    ink = sheet.patches.painted(own, top - 1, bottom + 1, left - 1, right + 1)
-    paper = (ink == 0).astype(np.uint8)
-    count, _, stats, _ = cv2.connectedComponentsWithStats(paper, connectivity=4)
-    around = 1  # the first piece of paper in the first row is what is around the patch
-    within = [stats[k, cv2.CC_STAT_AREA] for k in range(1, count) if k != around]
-    return max(within, default=0) >= LEAST_HOLE_PX
+    ink = sheet.patches.painted(own, top, bottom, left, right)
+    return any(hole.paper_px >= LEAST_HOLE_PX for hole in holes(ink))

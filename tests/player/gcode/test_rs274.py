@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.faults import FileFault, ProgramFault
+from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import CLOCKWISE, COUNTER_CLOCKWISE, DWELL, LINE, RAPID, Move
-from morfax.player.gcode.rs274 import parse_rs274, read_rs274
+from morfax.player.gcode.rs274 import parse_rs274
 
 WRITTEN_MM = 1e-4  # what four decimals of a program leave
 
@@ -204,16 +205,16 @@ def test_a_file_that_is_no_text_or_not_there(tmp_path: Path) -> None:
     file = tmp_path / "part.ngc"
     file.write_bytes(b"G0 X1\nG1 \xff\x00\n")
     with pytest.raises(ProgramFault, match="line 2: this is no text"):
-        read_rs274(file)
+        read_program(file)
     with pytest.raises(FileFault, match="cannot read"):
-        read_rs274(tmp_path / "none.ngc")
+        read_program(tmp_path / "none.ngc")
 
 
 @pytest.mark.parametrize("coding", ["utf-8", "latin-1"])
 def test_comments_may_hold_any_letters(tmp_path: Path, coding: str) -> None:
     file = tmp_path / "part.ngc"
     file.write_bytes("G21 (für Grün)\nG1 X5 F600 ; längs\nM2\n".encode(coding))
-    assert read_rs274(file).moves[-1].end_mm == (5.0, 0.0, 0.0)
+    assert read_program(file).moves[-1].end_mm == (5.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -231,7 +232,7 @@ def test_outside_of_comments_all_is_ascii(tmp_path: Path, line: str, says: str) 
     file = tmp_path / "part.ngc"
     file.write_text(f"G21 (ä)\n{line}\nM2\n", "utf-8")
     with pytest.raises(ProgramFault) as caught:
-        read_rs274(file)
+        read_program(file)
     assert says in str(caught.value) and caught.value.line == 2
 
 
@@ -239,7 +240,7 @@ def test_a_byte_order_mark_is_refused_by_its_name(tmp_path: Path) -> None:
     file = tmp_path / "part.ngc"
     file.write_text("G21\nM2\n", "utf-8-sig")
     with pytest.raises(ProgramFault, match="begins with a byte-order mark"):
-        read_rs274(file)
+        read_program(file)
 
 
 @pytest.mark.parametrize(("apart_mm", "is_taken"), [(0.009, True), (0.012, False)])

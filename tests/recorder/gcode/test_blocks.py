@@ -20,8 +20,8 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion, thin
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.pathfile import read_path
+from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import LINE, Move, Program
-from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.blocks import TOLERANCE_MM, record_blocks
 from morfax.recorder.gcode.normal_equations import BREAK_RAD
@@ -109,7 +109,7 @@ def test_the_samples_need_hardly_more_than_the_fewest_segments(
     assert sum(len(chain.segments) for chain in chains) <= ASKED * FEWEST[name]
     report = record_blocks(path, tmp_path / "part.ngc")
     assert report.deviation_mm <= TOLERANCE_MM
-    there_and_back = distance(run_of(read_rs274(report.file)), path.runs())
+    there_and_back = distance(run_of(read_program(report.file)), path.runs())
     # 1 um: sagitta of what is drawn out here
     assert there_and_back.hausdorff_mm <= report.deviation_mm + 0.001
 
@@ -238,7 +238,7 @@ def test_the_tool_goes_up_and_down_by_z_and_feeds_are_those_of_the_motion(
     report = record_blocks(path, tmp_path / "part.ngc")
     moves = moves_of(report.file)
     assert moves == ["G0 Z2", "G0 X1 Y2", "G1 Z-1.5 F600", *moves[3:5], "G0 Z2"]
-    line, turn = read_rs274(report.file).moves[4:6]  # after the time for the spindle
+    line, turn = read_program(report.file).moves[4:6]  # after the time for the spindle
     assert line.end_mm == pytest.approx(
         (21, 2, -1.5), abs=0.1
     ) and line.feed_mm_s == pytest.approx(10)
@@ -270,7 +270,7 @@ def test_a_flat_arc_stays_within_the_tolerance(radius_mm: float, tmp_path: Path)
     path = path_of(arc(radius_mm, 0, turn) - np.array([radius_mm, 0]), z_mm=-1)
     report = record_blocks(path, tmp_path / "part.ngc")
     assert report.deviation_mm <= TOLERANCE_MM
-    program = read_rs274(report.file)
+    program = read_program(report.file)
     assert not any(
         move.turned_rad for move in program.moves
     )  # no centre beyond a machine's travel
@@ -334,14 +334,14 @@ def test_no_way_to_the_start_is_diagonal(z_mm: float, first: list[str], tmp_path
 def test_a_slope_is_run_with_lines(tmp_path: Path) -> None:
     points = np.array([[0, 0, 0], [10, 0, -1], [20, 5, -1.5], [20, 5, 2]], np.float64)
     report = record_blocks(MotionPath(np.arange(4.0), points), tmp_path / "part.ngc")
-    assert [move.end_mm for move in read_rs274(report.file).moves[3:]] == [
+    assert [move.end_mm for move in read_program(report.file).moves[3:]] == [
         tuple(row) for row in points[1:].tolist()
     ]
 
 
 def test_the_suffix_makes_the_medium(tmp_path: Path) -> None:
     report = record(path_of(arc(5, 0, 3)), tmp_path / "part.ngc", tolerance_mm=0.02)
-    assert read_rs274(tmp_path / "part.ngc").moves and report.bytes > 50
+    assert read_program(tmp_path / "part.ngc").moves and report.bytes > 50
 
 
 def test_what_cannot_be_recorded_leaves_no_file(tmp_path: Path) -> None:
@@ -375,7 +375,7 @@ def test_linuxcnc_takes_every_program(name: str, tmp_path: Path) -> None:
     )
     assert told.returncode == 0, told.stderr
     assert "PROGRAM_END" in told.stdout
-    moves = [move for move in read_rs274(file).moves if move.kind not in ("G0", "G4")]
+    moves = [move for move in read_program(file).moves if move.kind not in ("G0", "G4")]
     assert told.stdout.count("STRAIGHT_FEED") + told.stdout.count("ARC_FEED") == len(moves)
 
 
@@ -389,7 +389,7 @@ def test_a_bend_that_slopes_stays_within_the_tolerance(
     path = MotionPath(turn, points)
     report = record_blocks(path, tmp_path / "part.ngc", tolerance_mm=tolerance_mm)
     ends = np.array(
-        [move.end_mm for move in read_rs274(report.file).moves if move.kind == LINE]
+        [move.end_mm for move in read_program(report.file).moves if move.kind == LINE]
     )
     begins, along = ends[:-1], np.diff(ends, axis=0)
     squared = np.maximum((along**2).sum(axis=1), 1e-12)

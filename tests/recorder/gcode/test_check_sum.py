@@ -10,7 +10,6 @@ import pytest
 from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import Path as MotionPath
 from morfax.player.gcode.machine_reader import read_program
-from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.gcode.blocks import record_blocks
 from morfax.recorder.gcode.machine import machine, names
 
@@ -48,7 +47,7 @@ def test_a_changed_character_anywhere_is_a_fault(tmp_path: Path) -> None:
             continue
         file.write_text(text[:at] + new + text[at + 1 :])
         with pytest.raises(ProgramFault):
-            read_rs274(file)
+            read_program(file)
 
 
 def test_it_says_which_line_to_take_out(tmp_path: Path) -> None:
@@ -57,13 +56,13 @@ def test_it_says_which_line_to_take_out(tmp_path: Path) -> None:
     file.write_text(text)
     number = next(k for k, line in enumerate(text.splitlines(), 1) if "crc32" in line)
     with pytest.raises(ProgramFault, match=f"or take line {number} out"):
-        read_rs274(file)
+        read_program(file)
     lines = text.splitlines()
     file.write_text("\n".join([*lines[: number - 1], *lines[number:], ""]))
-    assert read_rs274(file).moves
+    assert read_program(file).moves
 
 
 def test_other_ends_of_lines_change_nothing(tmp_path: Path) -> None:
     file = program(tmp_path)
     file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
-    assert read_rs274(file).moves
+    assert read_program(file).moves

@@ -18,9 +18,8 @@ from morfax.motion.motion import Path as MotionPath
 from morfax.player.gcode.check.checked import check_lines
 from morfax.player.gcode.hpgl_reader import ABOVE_MM
 from morfax.player.gcode.machine_reader import read_program
-from morfax.player.gcode.rs274 import read_rs274
 from morfax.recorder.gcode.blocks import record_blocks
-from morfax.recorder.gcode.machine import as_toml, gcode_names, machine, names
+from morfax.recorder.gcode.machine import as_toml, machine, names
 from morfax.recorder.gcode.machine_fields import FIELDS
 from morfax.recorder.gcode.plan import Feeds
 
@@ -62,7 +61,6 @@ def program(name: str, folder: Path, feeds: Feeds | None = None) -> list[str]:
 
 
 def test_the_built_in_machines_are_these() -> None:
-    assert gcode_names() == BUILT_IN
     assert names() == sorted([*BUILT_IN, "hpgl"])
     assert machine().name == "linuxcnc"
 
@@ -95,7 +93,7 @@ def test_grbl_s_own_rules_hold(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["grbl-router", "linuxcnc"])
 def test_a_program_reads_back_to_the_part(name: str, tmp_path: Path) -> None:
     program(name, tmp_path)
-    read = read_rs274(tmp_path / f"part{machine(name).suffix}")
+    read = read_program(tmp_path / f"part{machine(name).suffix}")
     depths_mm = [move.end_mm[2] for move in read.moves]
     assert min(depths_mm) == -4.0 and read.start_mm == (10, 10, 2)
     places = {move.end_mm for move in read.moves}
@@ -281,7 +279,7 @@ def test_lines_have_numbers_and_percent_stands_first_where_the_machine_wants_it(
     assert [line.split()[0] for line in words] == [
         f"N{10 * k}" for k in range(1, len(words) + 1)
     ]
-    read = read_rs274(tmp_path / "a.nc")
+    read = read_program(tmp_path / "a.nc", machine_name=str(tmp_path / "fanuc.toml"))
     assert read.moves[-1].end_mm[:2] == (0, 0) and read.moves[-1].end_mm[2] > 0
     assert check_lines(lines, machine(str(tmp_path / "fanuc.toml"))).may_start
 

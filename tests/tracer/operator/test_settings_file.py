@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from hypothesis import given
@@ -10,12 +11,20 @@ from hypothesis import strategies as st
 
 from morfax.motion.faults import CardFault, FileFault
 from morfax.tracer.head.settings import BOUNDS, HEADS, choose
-from morfax.tracer.operator.settings_file import as_toml, parse_changes, read_changes
+from morfax.tracer.operator.settings_file import as_toml, read_changes
+
+
+def changes_in(text: str) -> dict[str, float]:
+    """What a file with a text changes."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "head.toml"
+        file.write_text(text)
+        return read_changes(file)
 
 
 @pytest.mark.parametrize("head", list(HEADS))
 def test_what_is_written_is_read_as_the_same_head(head: str) -> None:
-    assert choose(head, parse_changes(as_toml(HEADS[head]))) == HEADS[head]
+    assert choose(head, changes_in(as_toml(HEADS[head]))) == HEADS[head]
 
 
 @given(
@@ -25,7 +34,7 @@ def test_what_is_written_is_read_as_the_same_head(head: str) -> None:
 )
 def test_any_settings_go_round_to_the_last_digit(changes: dict[str, float]) -> None:
     settings = choose(changes=changes)
-    assert choose(changes=parse_changes(as_toml(settings))) == settings
+    assert choose(changes=changes_in(as_toml(settings))) == settings
 
 
 def test_every_setting_is_written_with_what_it_may_hold() -> None:
@@ -61,7 +70,7 @@ def test_every_setting_is_written_with_what_it_may_hold() -> None:
 )
 def test_a_mistake_is_refused_with_its_line(text: str, said: str) -> None:
     with pytest.raises(CardFault) as caught:
-        parse_changes(text, "head.toml")
+        changes_in(text)
     assert str(caught.value).startswith(said)
 
 

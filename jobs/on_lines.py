@@ -1,0 +1,47 @@
+"""Places on traced lines of which a report warns: a figure for each, one remark, and marks in a picture.
+
+Signals in: what was found, with the lines' numbers. Signals out: figures, and the places that a picture
+marks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+MARKED = 10  # of the places that a picture marks: a plan with two pens has many
+
+
+class Found(Protocol):
+    """What was found on a line, and where that is, sheet mm."""
+
+    @property
+    def place_mm(self) -> tuple[float, float]:
+        """Where it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class OnLines:
+    """What was found on lines, by the lines' numbers, the worst first."""
+
+    called: ClassVar[str]  # in the figures
+    marked: ClassVar[str]  # in a picture
+    rows: ClassVar[
+        tuple[tuple[str, str], ...]
+    ]  # the figures of each place, and what they are of it
+
+    of_lines: tuple[tuple[int, Found], ...] = ()
+
+    def figures(self) -> dict[str, Any]:
+        """The figures of each place."""
+        rows = [
+            {"of_line": number} | {name: getattr(found, what) for name, what in self.rows}
+            for number, found in self.of_lines
+        ]
+        return {self.called: rows or None}
+
+    @property
+    def marked_mm(self) -> dict[str, tuple[float, float]]:
+        """The places that a picture marks, by name."""
+        worst = self.of_lines[:MARKED]
+        return {f"{self.marked} {k}": found.place_mm for k, (_, found) in enumerate(worst, 1)}
