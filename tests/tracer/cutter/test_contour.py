@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
 from morfax.motion.offset import OffsetPath
-from morfax.motion.polyline import at_lengths, lengths_mm
-from morfax.tracer.cutter.contour import Beside, Cut
+from morfax.motion.polyline import APART_MM, at_lengths, evenly, lengths_mm
+from morfax.tracer.cutter.contour import Beside, Cut, heading, nearest_place, planned
 from morfax.tracer.cutter.start_places import _Path as StartPath
 from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import GuideLine
+from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.program import Trace
 from tests.tracer.inked import UM
 
 RADIUS_MM = 2.0
@@ -120,3 +123,140 @@ def test_a_corner_has_a_heading_before_and_one_after_it() -> None:
     place, before, after = path.about(1.5 * quarter)
     assert place == pytest.approx([20, 10], abs=STEP_MM)
     assert before == pytest.approx([0, 1], abs=1e-6) and after == pytest.approx(before)
+
+
+@pytest.mark.parametrize(("turned_deg", "bridged"), [(10, True), (30, False), (-30, False)])
+def test_a_contour_keeps_its_corner_where_a_guide_line_leaves_it_there(
+    turned_deg: float, bridged: bool
+) -> None:
+    """A bend of 10 degrees is bridged by a cubic; at a corner each side ends half a millimetre off it."""
+    turned = math.radians(turned_deg)
+    corner = np.array([10.0, 0.0])
+    leg = along(np.array([[0.0, 0.0], corner]))
+    after = along(
+        np.vstack([corner, corner + 10 * np.array([math.cos(turned), math.sin(turned)])])
+    )
+    out = along(np.vstack([corner, corner + np.array([0.0, 3.0])]))
+    xy_mm = np.vstack([leg, out[1:], out[::-1][1:], after[1:]])
+    tip = len(leg) + len(out) - 2
+    guide = GuideLine(len(leg) - 1, tip, 2 * tip - len(leg) + 1)
+    places = cut_of(Line(xy_mm, "ended", 0.5, 20.0, guides=(guide,))).places_mm
+    gap_mm = np.diff(lengths_mm(places)).max()
+    if bridged:
+        assert gap_mm < 0.1
+    else:
+        assert gap_mm == pytest.approx(math.cos(turned / 2), abs=2 * STEP_MM)
+
+
+def test_a_closed_contour_comes_together_within_a_millimetre_of_its_ends() -> None:
+    """It ends 20 um off its beginning: both come 10 um, the other places stay where they are."""
+    angles = np.linspace(0, math.tau, 20_000)
+    grows = 10 + 20 * UM * angles / math.tau
+    spiral = grows[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    places = cut_of(Line(spiral, "closed", 0.5, 62.8)).places_mm
+    assert places[-1] == pytest.approx(places[0], abs=1e-9)
+    assert places[0] == pytest.approx([10 + 10 * UM, 0], abs=1e-6)
+    moved_mm = np.hypot(*(places - spiral).T)
+    from_start = lengths_mm(spiral)
+    from_end = from_start[-1] - from_start
+    shares = np.clip(1 - np.minimum(from_start, from_end), 0, 1)
+    assert moved_mm == pytest.approx(10 * UM * shares, abs=1e-9)
+
+
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("radius_mm", [1.2, 10.0, 1000.0])
+def test_the_heading_of_a_circle_is_its_tangent(radius_mm: float, closed: bool) -> None:
+    """Over 1 mm to either side a circle of 1.2 mm is a cubic within 15 um, and turns by 48 degrees."""
+    turn = math.tau if closed else math.pi / 4
+    angles = np.linspace(0, turn, 200_000)
+    every = evenly(radius_mm * np.column_stack([np.cos(angles), np.sin(angles)]), APART_MM)
+    for here in (0, len(every) // 2):
+        if not closed and here == 0:
+            continue
+        angle = here * APART_MM / radius_mm
+        way = heading(every, here, closed)
+        assert way is not None and np.hypot(*way) == pytest.approx(1)
+        across = float(way @ [math.cos(angle), math.sin(angle)])
+        along_it = float(way @ [-math.sin(angle), math.cos(angle)])
+        # where the places of a closed line begin and end, two are nearer than the others
+        assert abs(across) < (0.01 if closed else 1e-3) and along_it > 0.99
+
+
+@pytest.mark.parametrize(
+    ("from_corner_mm", "has_one"),
+    [(0.0, False), (0.5, False), (0.9, False), (1.1, True), (4.0, True)],
+)
+def test_a_place_within_a_millimetre_of_a_corner_has_no_heading(
+    from_corner_mm: float, has_one: bool
+) -> None:
+    way = along(np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]]))
+    every = evenly(way, APART_MM)
+    found = heading(every, round((10 - from_corner_mm) / APART_MM), False)
+    assert (found is not None) == has_one
+    if found is not None:
+        assert found == pytest.approx([1, 0], abs=0.02)
+
+
+def test_the_nearest_place_of_a_path_is_on_a_piece_or_at_a_corner() -> None:
+    path = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 0.0], [10.0, 5.0]])  # one place twice
+    for place, away_mm, at in (
+        ((2.5, 3.0), 3.0, 0.25),
+        ((-3.0, -4.0), 5.0, 0.0),
+        ((14.0, 2.0), 4.0, 2.4),
+        ((9.0, 9.0), math.sqrt(17), 3.0),
+    ):
+        found_mm, found = nearest_place(path, np.array(place), 7)
+        assert found_mm == pytest.approx(away_mm) and found.at == pytest.approx(at)
+        assert found.path == 7
+
+
+def straight(**more: object) -> Line:
+    """A line of 10 mm to the right."""
+    return replace(Line(along(np.array([[0.0, 0.0], [10.0, 0.0]])), "ended", 0.5, 10.0), **more)  # type: ignore[arg-type]
+
+
+def test_nothing_is_cut_of_a_guide_line_without_a_tick_and_from_its_tick_on_with_one() -> None:
+    guide = straight(reference_mm=(-3.0, 0.0))
+    assert Cut.of(guide, Operator(), 1) is None
+    ticked = replace(guide, marks=(Mark("tick", (4.0, 0.0), 4.0 / STEP_MM - 0.5),))
+    cut = cut_of(ticked)
+    assert cut.first == round(4.0 / STEP_MM) and cut.down_at == 4.0 / STEP_MM - 0.5
+    assert cut.places_mm[0] == pytest.approx([4.0, 0.0], abs=STEP_MM)
+    assert cut.length_mm == pytest.approx(6.0, abs=STEP_MM) and not cut.closed
+
+
+def test_nothing_is_cut_of_a_line_that_was_never_begun() -> None:
+    assert Cut.of(replace(straight(), xy_mm=np.zeros((1, 2))), Operator(), 1) is None
+
+
+def test_stops_are_numbered_on_from_line_to_line_whether_they_are_cut_or_not() -> None:
+    ticks = tuple(Mark("tick", (x, 0.0), x / STEP_MM) for x in (2.0, 5.0))
+    lines = (
+        straight(marks=ticks),
+        replace(straight(number=2), xy_mm=np.zeros((1, 2))),
+        straight(marks=ticks[:1], number=3),
+    )
+    numbers = [(line.numbers, cut is not None) for line, cut in planned(Trace(lines))]
+    assert numbers == [((1, 2), True), ((), False), ((3,), True)]
+
+
+def test_where_the_arm_does_not_reach_a_path_the_foot_is_at_the_nearest_place() -> None:
+    """The path ends before the place: its end is the foot, 0.5 mm aside of the arm."""
+    path = np.array([[0.0, RADIUS_MM], [4.5, RADIUS_MM]])
+    beside = Beside(cut_of(straight()), True, RADIUS_MM, [OffsetPath(path, False, 0)])
+    assert beside.mm(beside.foot(np.array([5.0, 0.0]))) == pytest.approx([4.5, RADIUS_MM])
+    right = Beside(cut_of(straight()), False, RADIUS_MM, [OffsetPath(-path, False, 0)])
+    assert right.mm(right.foot(np.array([5.0, 0.0]))) == pytest.approx(
+        [0.0, -RADIUS_MM], abs=1e-6
+    )
+
+
+def test_paths_are_met_in_the_order_of_the_line_that_crosses_them() -> None:
+    low, high = (np.array([[0.0, y], [9.0, y]]) for y in (1.0, 2.0))
+    beside = Beside(
+        cut_of(straight()), True, 1.0, [OffsetPath(high, False, 0), OffsetPath(low, False, 1)]
+    )
+    met = list(beside.met(np.array([[4.5, 0.0], [4.5, 4.0]])))
+    assert [place.path for _, place in met] == [1, 0]
+    assert [at for at, _ in met] == pytest.approx([0.25, 0.5])
+    assert [place.at for _, place in met] == pytest.approx([0.5, 0.5])

@@ -358,3 +358,58 @@ def test_a_drawn_lead_line_goes_before_and_stops_and_guide_lines_come_along() ->
     assert np.all(on_guide[1:][moves][:, 2] > 0)
     # and the program ends where it began
     assert motion[-1, :2] == pytest.approx(motion[0, :2], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("asked", "plain_changes", "told_changes", "drawn_changes"),
+    [
+        (Contouring("conventional"), False, False, False),
+        (Contouring("climb"), True, False, True),
+        (Contouring("climb", mirrored=True), False, False, False),
+        (Contouring("conventional", mirrored=True), True, False, True),
+        (Contouring(start_at="corner"), True, False, False),
+        (Contouring(lead_in=Lead(2.0)), True, True, False),
+        (Contouring(lead_out=Lead(2.0)), True, True, True),
+    ],
+)
+def test_a_line_is_run_anew_only_where_it_is_cut_otherwise_than_it_was_followed(
+    asked: Contouring, plain_changes: bool, told_changes: bool, drawn_changes: bool
+) -> None:
+    """An outline followed counter-clockwise; one whose beginning and way the operator's arrow says; one with
+    a drawn lead line, which says where it begins.
+    """
+    told = closed(square(10), as_told=True)
+    for line, changes in (
+        (closed(square(10)), plain_changes),
+        (told, told_changes),
+        (drawn_lead(), drawn_changes),
+    ):
+        (made,) = cut(Trace((line,)), asked, None).lines
+        assert np.array_equal(made.xy_mm, line.xy_mm) != changes
+        if line.as_told:  # its way is the operator's
+            assert area_mm2(loop(made)) > 0
+
+
+@pytest.mark.parametrize("cutter", [None, Cutter(2.0)])
+def test_what_is_asked_of_a_drawing_without_closed_lines_is_refused_by_its_name(
+    cutter: Cutter | None,
+) -> None:
+    lines = [
+        Line(positions([(0, y), (30, y + 5)]), "ended", 0.5, 30.4, number=2) for y in (0, 9)
+    ]
+    if cutter is not None:
+        cutter = replace(cutter, side="left")
+    for asked, name in (
+        (Contouring("conventional"), "--conventional"),
+        (Contouring(lead_out=Lead(1.0)), "a lead"),
+        (Contouring(start_at="corner"), "--start-at"),
+        (Contouring("climb", Lead(1.0), by_machine=True), "a lead"),
+    ):
+        with pytest.raises(
+            MotionFault, match=f"{name} is for closed lines, and all 2 lines are"
+        ):
+            cut(Trace(tuple(lines)), asked, cutter)
+    lost = (replace(lines[0], ending="lost", fault=LineFault("lost")), lines[1])
+    cut(
+        Trace(lost), Contouring("climb"), cutter
+    )  # whether the lost line is closed is not known

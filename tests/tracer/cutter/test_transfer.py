@@ -173,6 +173,37 @@ def test_a_guide_line_is_run_raised_as_drawn_and_its_hole_is_where_it_was_drawn(
         assert made.lines[0].xy_mm[position] == pytest.approx((14, y_mm), abs=SAMPLE_MM)
 
 
+@pytest.mark.parametrize(("side", "far_mm"), [("inside", 1.0), ("outside", 5.0)])
+def test_a_guide_line_is_joined_where_it_crosses_the_way_and_else_from_the_foot(
+    side: CutterSide, far_mm: float
+) -> None:
+    """From a square's upper side 3 mm in: the way inside of it is crossed at 2 mm, never the one outside."""
+    _, _, made = beside(marked(guide=True), side)
+    line = made.lines[0]
+    (guide,) = line.guides
+    off_it = line.xy_mm[guide.leave : guide.back + 1]
+    assert np.ptp(off_it[:, 0]) < UM
+    length_mm = np.abs(np.diff(off_it[:, 1])).sum()
+    assert length_mm == pytest.approx(2 * far_mm, abs=2 * SAMPLE_MM)
+
+
+def test_a_guide_line_that_crosses_the_part_is_joined_on_its_own_side() -> None:
+    """It runs from the upper side through the part to a hole 4 mm below it: not from the lower way."""
+    way = run_through(
+        (0, 4), (10, 4), (10, 8), LEFT_TO, (14, -4), LEFT_TO, (18, 8), (18, 0), (10, 0), (10, 4 - SAMPLE_MM)
+    )  # fmt: skip
+    from_, tip = at(way, (10, 4)), at(way, (14, -4))
+    back = tip + at(way[tip:], LEFT_TO)
+    guide = GuideLine(at(way[:tip], LEFT_TO), tip, back)
+    line = Line(
+        way, "joined", 0.5, 66.0, loop_from=from_, guides=(guide,), reference_mm=(-3.0, 4.0)
+    )
+    _, stops, made = beside(line, "outside")
+    (run,) = made.lines[0].guides
+    assert made.lines[0].xy_mm[run.leave] == pytest.approx((14, 10), abs=SAMPLE_MM)
+    assert next(iter(stops.values())).place_mm == pytest.approx((14, -4), abs=SAMPLE_MM)
+
+
 def test_stops_keep_their_numbers_where_the_cutter_comes_to_them_in_another_order() -> None:
     way = run_through((4, -8), (10, 4), (10, 8), (18, 8), (18, 0), (10, 0), (10, 4 - SAMPLE_MM))
     from_ = at(
