@@ -12,11 +12,24 @@ from hypothesis import strategies as st
 from morfax.motion.contour import distance
 from morfax.motion.faults import MotionFault, ProgramFault
 from morfax.motion.motion import Path, thin
-from morfax.motion.segments import Limits
+from morfax.motion.segments import Limits, segments
 from morfax.player.cubics.cubic import play_cubic
 from morfax.player.cubics.interpolator import CubicInterpolator
-from morfax.recorder.cubics.cubics import differences, hermite, record_cubics
-from morfax.recorder.cubics.file import CubicFormat, CubicProgram, read_program, write_program
+from morfax.recorder.cubics.cubics import (
+    LIMITS,
+    _nearest_mm,
+    _samples,
+    differences,
+    hermite,
+    record_cubics,
+)
+from morfax.recorder.cubics.file import (
+    MOST_POINTS,
+    CubicFormat,
+    CubicProgram,
+    read_program,
+    write_program,
+)
 from tests.recorder.steps.test_steps import SQUARE, STAR, TOOL, circle
 
 UM = 1e-3
@@ -134,6 +147,100 @@ def test_a_motion_that_stands_is_a_program_without_words(tmp_path: FilePath) -> 
     assert thin(play_cubic(tmp_path / "a.cubic")).positions_mm[-1] == pytest.approx([1, 2, 3])
 
 
+@pytest.mark.parametrize("path", [circle(10, 10), SQUARE, STAR, TOOL])
+def test_the_interval_is_the_longest_that_the_tolerance_and_a_tenth_of_the_time_allow(
+    tmp_path: FilePath, path: Path
+) -> None:
+    """It is a half, a quarter … of 0.512 s; twice as long the program would be too far off, or too slow."""
+    report = record_cubics(path, tmp_path / "a.cubic", tolerance_mm=2 * UM)
+    interval_s = report.format.interval_s
+    halves = np.log2(0.512 / interval_s)
+    assert halves == round(halves) and 0 < halves < 7
+    legs = segments(path, LIMITS)
+    assert report.stops == len(legs) + 1
+    longest_s = 1.1 * sum(float(leg.times_s[-1]) + leg.rest_s for leg in legs)
+    assert report.intervals * interval_s <= longest_s
+    samples, off_mm = _samples(legs, path.positions_mm[0], 2 * interval_s, 2000.0)
+    assert off_mm > 2 * UM or (len(samples) - 1) * 2 * interval_s > longest_s
+
+
+def test_a_motion_s_rest_is_a_rest_of_the_program(tmp_path: FilePath) -> None:
+    """Two seconds at a corner: no word moves any axis there, and the program is as much longer."""
+    corner = np.array([[0.0, 0, 0], [10, 0, 0], [10, 0, 0], [10, 10, 0]])
+    intervals = []
+    for rest_s in (0.0, 2.0):
+        path = Path(np.array([0.0, 2.0, 2.0 + rest_s, 4.0 + rest_s]), corner)
+        path = path if rest_s else Path(path.t_s[[0, 1, 3]], corner[[0, 1, 3]])
+        report = record_cubics(path, tmp_path / "a.cubic")
+        intervals.append(report.intervals * report.format.interval_s)
+        still = ~read_program(tmp_path / "a.cubic").words.any(axis=(1, 2))
+        assert still.sum() * report.format.interval_s == pytest.approx(
+            rest_s, abs=report.format.interval_s
+        )
+    assert intervals[1] - intervals[0] == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_program_states_where_it_is_every_64_intervals_and_at_its_ends(
+    tmp_path: FilePath,
+) -> None:
+    """In the counts of the samples: within half a count of the path, 0.25 um."""
+    report = record_cubics(circle(10, 10), tmp_path / "a.cubic", tolerance_mm=0.6 * UM)
+    program = read_program(tmp_path / "a.cubic")
+    assert sorted(program.checks) == [*range(0, report.intervals, 64), report.intervals]
+    ran = CubicInterpolator(program.checks[0], report.format.points)
+    places = ran.run(program.words)[report.format.points - 1 :: report.format.points]
+    for k, stated in program.checks.items():
+        if k:
+            assert places[k - 1].tolist() == [mm * report.format.points**3 for mm in stated]
+
+
+@pytest.mark.parametrize(("points", "modulus_per_s"), [(64, 200.0), (2, 0.5 / 0.004)])
+def test_the_servo_s_time_constant_is_four_points_or_more(
+    tmp_path: FilePath, points: int, modulus_per_s: float
+) -> None:
+    """A speed modulus of 200 per second is a time constant of 5 ms."""
+    path = circle(1, 10)
+    fmt = record_cubics(path, tmp_path / "a.cubic", fmt=CubicFormat(points=points)).format
+    assert fmt.modulus_per_s == min(200.0, fmt.points / fmt.interval_s / 4)
+    assert fmt.point_rate_hz == fmt.points / fmt.interval_s
+
+
+def test_how_far_a_run_is_off_is_measured_across_the_path() -> None:
+    """Against every piece of the path one by one; the run wavers by some um."""
+    chance = np.random.default_rng(0)
+    turn = np.linspace(0, 2 * np.pi, 200)
+    places = np.column_stack([10 * np.cos(turn), 6 * np.sin(turn), 0.1 * turn])
+    run = places[chance.integers(0, 199, 500)] + chance.normal(0, 5 * UM, (500, 3))
+    steps = np.diff(places, axis=0)
+    squared = (steps**2).sum(axis=1)
+    share = ((run[:, None] - places[:-1]) * steps).sum(axis=2) / squared
+    foot = places[:-1] + np.clip(share, 0, 1)[..., None] * steps
+    every = np.sqrt(((run[:, None] - foot) ** 2).sum(axis=2))
+    assert _nearest_mm(places, run) == pytest.approx(every.min(axis=1), abs=1e-12)
+
+
+def test_a_leg_is_one_interval_at_least_and_ends_at_rest(tmp_path: FilePath) -> None:
+    """A tenth of a millimetre: the slopes at both its ends are zero, in the first and the last word."""
+    path = Path(np.array([0.0, 0.05]), np.array([[0.0, 0, 0], [0.1, 0, 0]]))
+    report = record_cubics(path, tmp_path / "a.cubic")
+    program = read_program(tmp_path / "a.cubic")
+    ran = CubicInterpolator(program.checks[0], report.format.points).run(program.words)
+    steps = np.diff(np.vstack([np.zeros((1, 3)), ran[:, :3]]), axis=0)[:, 0]
+    assert report.intervals >= 1 and steps.min() >= 0
+    assert steps[0] < 0.2 * steps.max() and steps[-1] < 0.2 * steps.max()
+    assert ran[-1, 0] / report.format.points**3 == 200  # counts
+
+
+def test_the_report_has_the_figures_of_the_program(tmp_path: FilePath) -> None:
+    report = record_cubics(SQUARE, tmp_path / "a.cubic")
+    assert report.figures == {
+        "intervals": len(read_program(tmp_path / "a.cubic").words),
+        "interval_s": report.format.interval_s,
+        "stops": 5,
+        "deviation_mm": report.deviation_mm,
+    }
+
+
 # the file
 
 
@@ -231,3 +338,38 @@ def test_a_loop_that_ends_where_it_began_is_no_further_off_there(tmp_path: FileP
             circle(10, 10, 0.9), tmp_path / "b.cubic", tolerance_mm=1 * UM
         ).format.interval_s
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most", "below", "above"),
+    [
+        ("interval_s", 1e-4, 3600.0, 0.9e-4, 3601.0),
+        ("points", 2, MOST_POINTS, 1, 2 * MOST_POINTS),
+        ("linear", 1, 64, 0, 128),
+        ("counts_per_mm", 1.0, 1e6, 0.9, 1.1e6),
+        ("modulus_per_s", 1e-9, 1e5, 0.0, 1.1e5),
+    ],
+)
+def test_a_format_is_refused_beyond_its_bounds_and_taken_at_them(
+    name: str, least: float, most: float, below: float, above: float
+) -> None:
+    for value in (least, most):
+        assert getattr(CubicFormat(**{"points": 64, name: value}), name) == value  # type: ignore[arg-type]
+    for value in (below, above):
+        with pytest.raises(ValueError, match=name):
+            CubicFormat(**{"points": 64, name: value})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("points", "digits"), [(2, 3), (64, 18), (4096, 36)])
+def test_differences_are_exact_in_three_binary_digits_for_each_doubling(
+    points: int, digits: int
+) -> None:
+    assert CubicFormat(points=points).digits == digits
+
+
+def test_a_word_fills_its_register_and_no_more(tmp_path: FilePath) -> None:
+    """63 digits, and the sign."""
+    for word, is_whole in ((2**63 - 1, True), (2**63, False)):
+        (tmp_path / "a.cubic").write_text(GOOD.replace("46000", str(word)))
+        with pytest.raises(ProgramFault, match="too large for" if is_whole else "below 2"):
+            play_cubic(tmp_path / "a.cubic")
