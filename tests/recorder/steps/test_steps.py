@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path as FilePath
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion import speed_limits
-from morfax.motion.contour import distance
+from morfax.motion.contour import distance, distances_mm
 from morfax.motion.faults import FileFault, MotionFault, ProgramFault
 from morfax.motion.motion import Path, thin
 from morfax.motion.segments import Limits, segments
@@ -158,6 +159,148 @@ def test_a_rest_is_kept(tmp_path: FilePath) -> None:
         record_steps(path, tmp_path / "a.steps").duration_s for path in (rested, SQUARE, moved)
     ]
     assert gained_s[0] - gained_s[2] > 1.0
+
+
+def test_the_report_counts_rows_vectors_and_steps(tmp_path: FilePath) -> None:
+    """A straight line of 2 mm along X, and back: 400 steps, of which no change but at 2 … 7 is a vector."""
+    report = record_steps(polyline((0, 0, 0), (2, 0, 0), (0, 0, 0)), tmp_path / "a.steps")
+    program = read_program(tmp_path / "a.steps")
+    assert report.steps == 400 and report.rows == len(program.rows)
+    axis_rows = int(np.count_nonzero(program.rows & 0b0001_0000))
+    assert report.vector_intervals == report.intervals - axis_rows
+    assert report.figures == {
+        "rows": report.rows,
+        "punched_bits": 8 * report.rows,
+        "vector_share": report.vector_intervals / report.intervals,
+        "deviation_mm": report.deviation_mm,
+    }
+    counts = record_steps(SQUARE, tmp_path / "b.steps", orders="counts")
+    assert counts.rows == counts.intervals and counts.vector_intervals == 0
+    assert counts.figures["punched_bits"] == 13 * counts.rows
+
+
+@pytest.mark.parametrize("path", [circle(10, 9), circle(2, 5), SQUARE, STAR])
+def test_a_program_takes_as_long_as_its_speeds_and_stops(
+    tmp_path: FilePath, path: Path
+) -> None:
+    """By the motors' limits for each leg; whole intervals and steps make it up to a twentieth longer."""
+    report = record_steps(path, tmp_path / "a.steps")
+    fmt = report.format
+    limits = Limits(
+        0.98 * 7 * fmt.step_mm * fmt.rate_hz,
+        fmt.step_mm * fmt.rate_hz**2,
+        spacing_mm=fmt.step_mm / 4,
+        window_mm=5 * fmt.step_mm,
+    )
+    own_s = sum(float(leg.times_s[-1]) for leg in segments(path, limits))
+    assert 0.95 * own_s < report.duration_s < 1.05 * own_s + 0.1 * report.format.interval_s
+
+
+@pytest.mark.parametrize("path", [circle(10, 9), STAR])
+def test_the_steps_lie_about_the_motion_and_not_beside_it(
+    tmp_path: FilePath, path: Path
+) -> None:
+    """Places on a grid of steps are 0.3 to 0.5 steps off a line, root mean square, at the best."""
+    report = record_steps(path, tmp_path / "a.steps")
+    playback = play_steps(tmp_path / "a.steps")
+    ends = playback.start_mm + np.cumsum(playback.pulses, axis=0) * STEP_MM
+    off_mm = distances_mm(ends[:, :2], path)
+    assert np.sqrt(np.mean(off_mm**2)) < 0.4 * STEP_MM
+    assert (
+        off_mm.max() <= report.deviation_mm + 0.25 * STEP_MM
+    )  # it is told by places a quarter apart
+
+
+@pytest.mark.parametrize(
+    ("lengths", "rows"),
+    [
+        # standstill, then one step more on each axis: X up, Y down, Z up
+        ([(1, -1, 1)], [0b0011_1001]),
+        # from (1, 0, 0) X down; then nothing changes
+        ([(1, 0, 0), (0, 0, 0), (0, 0, 0)], [0b0001_0001, 0b0001_0010, 0b0001_0000]),
+    ],
+)
+def test_an_axis_row_is_punched_as_figure_6_has_it(
+    lengths: list[tuple[int, int, int]], rows: list[int]
+) -> None:
+    fmt = StepFormat()
+    found = encode(np.array(lengths), np.zeros(len(lengths), bool), fmt)
+    assert [bin(row) for row in found] == [bin(row) for row in rows]
+    down = encode(np.array(lengths), np.ones(len(lengths), bool), fmt)
+    assert [int(row) for row in down] == [0b1000_0000 | row for row in rows]
+
+
+def test_vectors_are_punched_in_pairs_of_one_tool_and_no_second_change_of_z() -> None:
+    """Ring of two: (2, 0), (2, -1), (1, -2) … are each the next one; figure 11."""
+    ramp = [(1, 0, 0), (2, 0, 0)]
+    ring = [(2, -1, 0), (1, -2, 0), (0, -2, 0)]
+    lengths, fmt = np.array(ramp + ring), StepFormat()
+    up = np.zeros(5, bool)
+    axis = [0b0001_0001, 0b0001_0001]
+    single = encode(lengths, up, StepFormat(vectors=1)).tolist()
+    assert single == [*axis, 0b10, 0b10, 0b10]
+    # two commands in a row, and what is left over as an axis row: X down
+    assert encode(lengths, up, fmt).tolist() == [*axis, 0b1010, 0b0001_0010]
+    # the tool changes between the two: both stand alone
+    down = np.array([False, False, False, True, True])
+    assert len(encode(lengths, down, fmt)) == 4 and encode(lengths, down, fmt)[2] & 0b0001_0000
+    # Z changes with the first of a pair, and its bits stand beside the commands; not with the second
+    first, second = lengths.copy(), lengths.copy()
+    first[2:, 2], second[3:, 2] = 1, 1
+    assert encode(first, up, fmt).tolist() == [*axis, 0b0010_1010, 0b0001_0010]
+    assert len(encode(second, up, fmt)) == 4
+
+
+@pytest.mark.parametrize(
+    ("speed", "vectors"), [(2, 12), (3, 16), (4, 20), (5, 28), (6, 32), (7, 40)]
+)
+def test_a_ring_is_a_circle_of_nearly_one_speed(speed: int, vectors: int) -> None:
+    """As many vectors as the table has; each as long as the speed within half a step, one step from the
+    next; laid end to end they close.
+    """
+    ring = np.array(RINGS[speed])
+    assert len(ring) == len(set(RINGS[speed])) == vectors
+    assert np.abs(np.hypot(*ring.T) - speed).max() <= 0.5
+    assert np.abs(ring - np.roll(ring, 1, axis=0)).max() == 1
+    assert ring.sum(axis=0).tolist() == [0, 0]
+    turned = np.diff(np.unwrap(np.arctan2(ring[:, 1], ring[:, 0])))
+    assert turned.max() < 0  # towards -Y, clockwise
+
+
+@pytest.mark.parametrize(
+    ("name", "good", "bad"),
+    [
+        ("step_mm", (1e-6, 1.0), (0.0, 1.001)),
+        ("oscillator_hz", (1.0, 1e9), (0.9, 1.1e9)),
+        ("rates", ((1,) * 7, (64,) * 7), ((0, 1, 1, 1, 1, 1, 1), (65,) * 7, (1,) * 8)),
+        ("start_mm", ((-9e5, 9e5, 0.0),), ((-1e6, 0.0, 0.0), (0.0, 0.0))),
+        ("end_mm", ((-9e5, 9e5, 0.0),), ((0.0, 1e6, 0.0), (0.0,) * 4)),
+    ],
+)
+def test_a_format_is_refused_beyond_its_bounds_and_taken_at_them(
+    name: str, good: tuple[Any, ...], bad: tuple[Any, ...]
+) -> None:
+    for value in good:
+        assert getattr(StepFormat(**{name: value}), name) == value
+    for value in bad:
+        with pytest.raises(ValueError, match=name):
+            StepFormat(**{name: value})
+
+
+def test_what_a_format_asks_of_the_motors() -> None:
+    """64 pulses at 10 240 Hz are 6.25 ms; one step per interval more in each is 160² steps/s²."""
+    fmt = StepFormat()
+    assert (fmt.interval_s, fmt.rate_hz, fmt.acceleration_steps_s2) == (
+        0.00625,
+        160.0,
+        25_600.0,
+    )
+    assert StepFormat(rates=(3, 4, 5, 6, 7, 8, 10)).acceleration_steps_s2 == 3 * 25_600
+    assert (fmt.tool_bit, StepFormat(channels=5).tool_bit) == (128, 0)
+    counts = StepFormat(vectors=0, channels=13)
+    assert counts.tool_bit == 4096 and counts.holds_counts and not fmt.holds_counts
+    with pytest.raises(ValueError, match="13 for counts"):
+        StepFormat(vectors=0, channels=8)
 
 
 # the file
