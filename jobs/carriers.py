@@ -76,7 +76,8 @@ def _carriers(
     blocks: Iterable[NDArray[np.float32]], rate_hz: float, tracks: int
 ) -> list[CarrierReading]:
     """Measure the tracks window by window; a rest that is shorter than a window is left out."""
-    levels, frequencies = [np.full((1, tracks), -np.inf)], [np.full((1, tracks), np.nan)]
+    levels = [np.full((1, tracks), -np.inf)]
+    frequencies = [np.full((1, tracks), np.nan)]
     for block in blocks:
         windows = block[: len(block) // WINDOW_FRAMES * WINDOW_FRAMES].reshape(
             -1, WINDOW_FRAMES, tracks

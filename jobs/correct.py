@@ -85,7 +85,8 @@ class CorrectJob:
             if any(one.has_mm for one in self.add):
                 raise
             return SheetSize(scan.columns, scan.rows, scan.columns, scan.rows), False
-        width_mm, height_mm = scan.columns * x_mm, scan.rows * y_mm
+        width_mm = scan.columns * x_mm
+        height_mm = scan.rows * y_mm
         return SheetSize(width_mm, height_mm, scan.columns, scan.rows), True
 
     def _picture(self, scan: Scan) -> Picture:
@@ -93,7 +94,8 @@ class CorrectJob:
         from morfax.motion.files import printable
         from morfax.tracer.corrections.corrections import Picture
 
-        name, checked = printable(self.drawing.file.name), sha256_of(self.drawing.file)
+        name = printable(self.drawing.file.name)
+        checked = sha256_of(self.drawing.file)
         return Picture(name, scan.columns, scan.rows, checked, scan.page)
 
     def _taken(self, before: Corrections) -> tuple[int, ...]:
@@ -169,7 +171,8 @@ def _in_frame(one: Correction, size: SheetSize, picture: Picture) -> Correction:
     """A correction with its places in pixels of the picture that the file states."""
     from morfax.tracer.corrections.corrections import Place, Span
 
-    across, down = picture.columns / size.columns, picture.rows / size.rows
+    across = picture.columns / size.columns
+    down = picture.rows / size.rows
 
     def framed(place: Place) -> Place:
         px = size.in_pixels(place)

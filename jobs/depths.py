@@ -86,7 +86,8 @@ def equal_passes_mm(depth_mm: float, step_down_mm: float) -> tuple[float, ...]:
     """Equal passes to a depth, none higher than a step and each a whole count of Z; without the last, mm."""
     from morfax.tracer.operator.zunit import COUNTS_PER_MM
 
-    depth, step = round(depth_mm * COUNTS_PER_MM), round(step_down_mm * COUNTS_PER_MM)
+    depth = round(depth_mm * COUNTS_PER_MM)
+    step = round(step_down_mm * COUNTS_PER_MM)
     passes = max(1, -(-depth // step))
     return tuple(
         (2 * depth * k + passes) // (2 * passes) / COUNTS_PER_MM for k in range(1, passes)

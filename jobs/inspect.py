@@ -108,7 +108,8 @@ def _travels(tape: Tape, listener: Listener) -> dict[str, Figures]:
     discriminator = Discriminator(
         fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion, fmt.tracks
     )
-    low, high = np.full(len(fmt.axes), np.inf), np.full(len(fmt.axes), -np.inf)
+    low = np.full(len(fmt.axes), np.inf)
+    high = np.full(len(fmt.axes), -np.inf)
     zero: Array | None = None
     for phases in discriminate(tape.stored_blocks(BLOCK_FRAMES), discriminator):
         zero = phases.cycles[0] if zero is None else zero
@@ -118,7 +119,8 @@ def _travels(tape: Tape, listener: Listener) -> dict[str, Figures]:
         )
     if zero is None:
         return {name: {} for name in fmt.axes}
-    lowest, highest = (low - zero) / fmt.cycles_per_mm, (high - zero) / fmt.cycles_per_mm
+    lowest = (low - zero) / fmt.cycles_per_mm
+    highest = (high - zero) / fmt.cycles_per_mm
     return {
         name: {"lowest_travel_mm": float(lowest[i]), "highest_travel_mm": float(highest[i])}
         for i, name in enumerate(fmt.axes)

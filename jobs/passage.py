@@ -39,8 +39,10 @@ class Passage:
     def add(self, piece: Path) -> None:
         """Take down the next piece."""
         if self.start_mm is None:
-            self.start_s, self.start_mm = float(piece.t_s[0]), piece.positions_mm[0]
-        self.end_s, self.end_mm = float(piece.t_s[-1]), piece.positions_mm[-1]
+            self.start_s = float(piece.t_s[0])
+            self.start_mm = piece.positions_mm[0]
+        self.end_s = float(piece.t_s[-1])
+        self.end_mm = piece.positions_mm[-1]
         runs = list(piece.runs())
         if self._last_in_work_mm is not None and piece.tool[0]:
             runs.append(np.array([self._last_in_work_mm, piece.xy_mm[0]]))

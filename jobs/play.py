@@ -153,7 +153,8 @@ class PlayJob:
             playing = Playing(tape, self.by_hand, self.raw, chart, settings, self.intake)
             passage, playback, fault, path = self._played(playing, listener)
         # 3. what it ran
-        paths, charts = _marked(self.outputs, fault), _marked(self.charts, fault)
+        paths = _marked(self.outputs, fault)
+        charts = _marked(self.charts, fault)
         speeds = following.speeds_held(playback) if _has_picture(charts) else None
         figures = {
             medium.called(self.tape): self.intake.called if is_live else str(self.tape),

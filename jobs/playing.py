@@ -208,7 +208,8 @@ class Playing:
 
         by_hand = self.by_hand
         if str(self.file) != PIPE:
-            given, opener = by_hand.for_file(self.file), by_hand.opener(self.file)
+            given = by_hand.for_file(self.file)
+            opener = by_hand.opener(self.file)
             return play(self.file if opener is None else opener, **given, **self.settings)
         if by_hand.machine is not None:
             raise WrongUse("--machine is for files of G-code, not for a pipe; leave it out")

@@ -55,7 +55,8 @@ def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
     by_line = sorted(left.stretches, key=lambda stretch: stretch.line)
     for number, stretches in groupby(by_line, key=lambda stretch: stretch.line):
         uncut = list(stretches)
-        uncut_mm, of_mm = sum(stretch.length_mm for stretch in uncut), uncut[0].of_mm
+        uncut_mm = sum(stretch.length_mm for stretch in uncut)
+        of_mm = uncut[0].of_mm
         if uncut_mm > UNCUT_SHARE * of_mm:
             yield (
                 f"{uncut_mm:.0f} of {of_mm:.0f} mm of line {number} are not cut, because the cutter does not "
@@ -184,7 +185,8 @@ def _of_stems(trace: Trace) -> Iterator[str]:
     stems = [line for line in trace.lines if line.loop_from is not None and not line.is_lead]
     if not stems:
         return
-    (x, y), (u, v) = stems[0].start_mm, stems[0].place(stems[0].loop_from or 0)
+    x, y = stems[0].start_mm
+    u, v = stems[0].place(stems[0].loop_from or 0)
     others = f", and {len(stems) - 1} more such lines" if len(stems) > 1 else ""
     yield (
         f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too{others}; to have a "

@@ -88,7 +88,8 @@ def _of_areas(ink: Balance) -> Iterator[str]:
     if solids:
         are = "1 solid area is" if len(solids) == 1 else f"{len(solids)} solid areas are"
         large_mm2 = sum(area.area_mm2 for area in solids)
-        (x, y), largest_mm2 = solids[0].place_mm, solids[0].area_mm2
+        x, y = solids[0].place_mm
+        largest_mm2 = solids[0].area_mm2
         advice = (
             "an outline needs an area of 1 mm across, whole on the sheet: scan it with paper all round, or "
             "a larger print, with --scale"
@@ -239,7 +240,8 @@ def _of_unexplained(trace: Trace) -> Iterator[str]:
             "leads: look at --picture, and draw the line there"
         )
     if pale:
-        (x, y), dpi = pale[0].place_mm, pale[0].wants_dpi
+        x, y = pale[0].place_mm
+        dpi = pale[0].wants_dpi
         places = "1 place" if len(pale) == 1 else f"{len(pale)} places"
         yield (
             f"not sure that the closed line is the one drawn: the pixels are too large to tell at {places}, "

@@ -115,7 +115,8 @@ def _leads_away(line: Line, place_mm: Place) -> bool:
 
     for way in (line.places_mm, line.places_mm[::-1]):
         inward = way[: LEAD_PLACES + 1]
-        (x, y), (u, v) = way[0] - np.asarray(place_mm), inward[-1] - inward[0]
+        x, y = way[0] - np.asarray(place_mm)
+        u, v = inward[-1] - inward[0]
         away = abs(turn(math.atan2(y, x), math.atan2(v, u))) < LEADS_AWAY
         if math.hypot(x, y) < LEAD_MM and away:
             return True

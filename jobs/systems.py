@@ -129,7 +129,8 @@ class _Measuring:
             listener.progress("comparing", len(asked)) as advance,
         ):
             for done, suffix in enumerate(asked, 1):
-                what, by = MEDIA[f".{suffix}"].what, CONTROLS[f".{suffix}"].what
+                what = MEDIA[f".{suffix}"].what
+                by = CONTROLS[f".{suffix}"].what
                 listener.note(f"{NAMES[suffix]}: {what}, played by {by}")
                 try:
                     results.append(self._system(FilePath(folder) / f"part.{suffix}"))

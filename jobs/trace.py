@@ -103,7 +103,8 @@ class TraceJob:
         """Write what was traced, also by an equal tracing before this one; raises the recorders' faults."""
         source, tool = self._source(drawing), self.settings.tool.described
         unit = traced.placed(self.unit, outputs.program, source, tool)
-        written, timed = dict[str, Any](), dict[str, Any]()
+        written = dict[str, Any]()
+        timed = dict[str, Any]()
         if outputs.program is not None:
             program, report = traced.record(outputs.program, unit, listener)
             written[medium.called(outputs.program)] = str(program)

@@ -78,15 +78,18 @@ class Tracing:
         # 1. the head follows
         listener.compiling("the head", ("motion", "tracer", "recorder"))
         followed = self._followed(drawing, listener)
-        led, two = WhoLed.along(followed), TwoLines.along(drawing, followed)
-        stubs, said = StubLines.along(followed), self._remarks(drawing, followed, led)
+        led = WhoLed.along(followed)
+        two = TwoLines.along(drawing, followed)
+        stubs = StubLines.along(followed)
+        said = self._remarks(drawing, followed, led)
         for text in (*said, *two.remarks(), *stubs.remarks()):
             listener.warning(text)
         # 2. the zero of the program
         zero = ZeroOnSheet.of(self.settings, drawing, followed)
         # 3. the cutter beside the lines, or the tool along them
         beside, left = self._cut(drawing, followed, listener)
-        cutter, contouring = self.settings.tool.cutter(), self.settings.contour.contouring()
+        cutter = self.settings.tool.cutter()
+        contouring = self.settings.contour.contouring()
         if cutter is not None and left is not None:
             for text in of_cutter(beside, left, cutter):
                 listener.warning(text)
@@ -156,7 +159,8 @@ class Tracing:
         self, drawing: Drawing, followed: Trace, listener: Listener
     ) -> tuple[Trace, Left | None]:
         """The program as the tool runs it, and what a cutter leaves."""
-        cutter, contouring = self.settings.tool.cutter(), self.settings.contour.contouring()
+        cutter = self.settings.tool.cutter()
+        contouring = self.settings.contour.contouring()
         if cutter is None and not contouring.asks:
             return followed, None
         in_lost = dict[int, int]()

@@ -41,11 +41,13 @@ def swung(line: Array, closed: bool, radius_mm: float) -> Array:
     # 2. the pieces before and after each vertex
     if closed:
         vertices, after = line, ways
-        before, arms_before = np.roll(ways, 1, axis=0), np.roll(arms, 1, axis=0)
+        before = np.roll(ways, 1, axis=0)
+        arms_before = np.roll(arms, 1, axis=0)
         beside_mm = np.minimum(np.roll(lengths, 1), lengths)
     else:
         vertices, after = line[1:-1], ways[1:]
-        before, arms_before = ways[:-1], arms[:-1]
+        before = ways[:-1]
+        arms_before = arms[:-1]
         beside_mm = np.minimum(lengths[:-1], lengths[1:])
     turns = _turns(before, after)
     turns[np.abs(turns) > BACK] = -math.pi

@@ -17,7 +17,8 @@ def moved(rows: Array, by: Array, scale: float = 1.0) -> Array:
 
     numpy takes eight times as long: it goes over rows of three columns one by one.
     """
-    out, steps = np.empty(rows.shape), np.empty((ROWS_AT_ONCE, len(by)))
+    out = np.empty(rows.shape)
+    steps = np.empty((ROWS_AT_ONCE, len(by)))
     steps[:] = by
     _move(np.ascontiguousarray(rows).ravel(), steps.ravel(), scale, out.ravel())
     return out
@@ -28,9 +29,11 @@ def bounds(rows: NDArray[np.floating]) -> tuple[Array, Array]:
 
     Column by column: along the rows of two columns numpy takes thirty times as long.
     """
-    low, high = np.empty(rows.shape[1]), np.empty(rows.shape[1])
+    low = np.empty(rows.shape[1])
+    high = np.empty(rows.shape[1])
     for column, values in enumerate(rows.T):
-        low[column], high[column] = values.min(), values.max()
+        low[column] = values.min()
+        high[column] = values.max()
     return low, high
 
 

@@ -34,13 +34,17 @@ def kasa(places):  # type: ignore[no-untyped-def]
     x, y, xx, xy, yy = spread(places)
     xr, yr, rr = 0.0, 0.0, 0.0
     for i in range(len(places)):
-        dx, dy = places[i, 0] - x, places[i, 1] - y
+        dx = places[i, 0] - x
+        dy = places[i, 1] - y
         square = dx * dx + dy * dy
-        xr, yr, rr = xr + dx * square, yr + dy * square, rr + square
+        xr += dx * square
+        yr += dy * square
+        rr += square
     across = xx * yy - xy * xy
     if not across > STRAIGHT * (xx + yy) ** 2:
         return x, y, math.inf
-    a, b = 0.5 * (xr * yy - yr * xy) / across, 0.5 * (yr * xx - xr * xy) / across
+    a = 0.5 * (xr * yy - yr * xy) / across
+    b = 0.5 * (yr * xx - xr * xy) / across
     return x + a, y + b, math.sqrt(rr / len(places) + a * a + b * b)
 
 
@@ -49,9 +53,14 @@ def spread(places):  # type: ignore[no-untyped-def]
     """The middle of some places, and the sums of their squares about it: xx, xy, yy."""
     x, y, xx, xy, yy = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(places)):
-        x, y = x + places[i, 0], y + places[i, 1]
-    x, y = x / len(places), y / len(places)
+        x += places[i, 0]
+        y += places[i, 1]
+    x /= len(places)
+    y /= len(places)
     for i in range(len(places)):
-        dx, dy = places[i, 0] - x, places[i, 1] - y
-        xx, xy, yy = xx + dx * dx, xy + dx * dy, yy + dy * dy
+        dx = places[i, 0] - x
+        dy = places[i, 1] - y
+        xx += dx * dx
+        xy += dx * dy
+        yy += dy * dy
     return x, y, xx, xy, yy

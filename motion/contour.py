@@ -196,7 +196,8 @@ def _to_pieces(points, near, sampled, best):  # type: ignore[no-untyped-def]
             for first in range(max(near[n, k] - 1, 0), near[n, k] + 1):
                 if not leads_on[first]:
                     continue
-                x, y = points[n, 0] - at[first, 0], points[n, 1] - at[first, 1]
+                x = points[n, 0] - at[first, 0]
+                y = points[n, 1] - at[first, 1]
                 along_x = at[first + 1, 0] - at[first, 0]
                 along_y = at[first + 1, 1] - at[first, 1]
                 squared = along_x * along_x + along_y * along_y

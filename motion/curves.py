@@ -42,7 +42,8 @@ def _cubic(ends, slopes, out):  # type: ignore[no-untyped-def]
     for k in range(last + 1):
         t = k * step if k < last else 1.0
         h = t * t * (3.0 - 2.0 * t)
-        leaves, arrives = (1.0 - t) * (1.0 - t), 1.0 - t
+        leaves = (1.0 - t) * (1.0 - t)
+        arrives = 1.0 - t
         for i in range(2):
             slope = slopes[i] * t * leaves - slopes[2 + i] * t * t * arrives
             out[k, i] = ends[i] * (1.0 - h) + ends[2 + i] * h + slope
@@ -77,6 +78,7 @@ def speeds(
 
 def distinct(points: Array) -> Array:
     """The polyline without places that repeat the one before."""
-    keep, steps = np.ones(len(points), bool), points[1:] - points[:-1]
+    keep = np.ones(len(points), bool)
+    steps = points[1:] - points[:-1]
     keep[1:] = np.hypot(steps[:, 0], steps[:, 1]) > REPEATS_MM
     return points[keep]

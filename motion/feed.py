@@ -44,11 +44,13 @@ def run_along(
     allowed = _allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2)
     speeds = reachable(allowed, 2 * ALONG * acceleration_mm_s2 * steps)
     # 2. how far the tool has come at each period
-    t_s = np.r_[0.0, np.cumsum(2 * steps / (speeds[1:] + speeds[:-1]))]
+    mean_mm_s = (speeds[1:] + speeds[:-1]) / 2
+    t_s = np.r_[0.0, np.cumsum(steps / mean_mm_s)]
     s_mm = lengths_mm(way_mm)
     at_s = np.arange(0.0, t_s[-1], 1 / rate_hz)
     k = np.clip(np.searchsorted(t_s, at_s, side="right") - 1, 0, len(steps) - 1)
-    since, whole = at_s - t_s[k], t_s[k + 1] - t_s[k]
+    since = at_s - t_s[k]
+    whole = t_s[k + 1] - t_s[k]
     gained = 0.5 * (speeds[k + 1] - speeds[k]) * since / whole
     along = s_mm[k] + since * (speeds[k] + gained)
     # 3. standing at both ends, and averaged
@@ -93,5 +95,6 @@ def _averaged(positions_mm: Array, rate_hz: float) -> Array:
     padded = np.pad(positions_mm, ((window // 2, window // 2), (0, 0)), mode="edge")
     total = np.cumsum(np.vstack([np.zeros((1, 2)), padded - positions_mm[0]]), axis=0)
     smooth = positions_mm[0] + (total[window:] - total[:-window]) / window
-    smooth[0], smooth[-1] = positions_mm[0], positions_mm[-1]
+    smooth[0] = positions_mm[0]
+    smooth[-1] = positions_mm[-1]
     return np.asarray(smooth)

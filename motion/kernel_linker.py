@@ -47,7 +47,8 @@ class Linker:
         self._llvm = llvm
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
-        self.target, self.triple = processor.target(llvm), llvm.get_process_triple()
+        self.target = processor.target(llvm)
+        self.triple = llvm.get_process_triple()
         self.names: set[str] = set()
         dynfunc, helpers, runtime = (_extension(name) for name in EXTENSIONS)
         self._make_function, self._environment = dynfunc.make_function, dynfunc.Environment

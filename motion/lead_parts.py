@@ -52,7 +52,8 @@ def _raised(run: Array) -> Array:
             continue
         split = np.array([np.interp(cut_mm, s[moving], column[moving]) for column in run.T])
         k = int(np.searchsorted(s, cut_mm))
-        before, after = np.vstack([run[:k], split]), np.vstack([split, run[k:]])
+        before = np.vstack([run[:k], split])
+        after = np.vstack([split, run[k:]])
         (before if is_lead_in else after)[:, 3] = RAISED_MM
         run = np.vstack([before, after])
         s = lengths_mm(run[:, 1:3])

@@ -84,7 +84,8 @@ class LongArray:
 
     def since(self, count: int) -> Array:
         """The rows from one on, (n, columns)."""
-        missing, parts = len(self) - count, list[Array]()
+        missing = len(self) - count
+        parts = list[Array]()
         for part in reversed(self._newest):
             if missing > 0:
                 parts.append(part[-missing:])
@@ -134,7 +135,8 @@ class LongArray:
     def __deepcopy__(self, memo: dict[int, Any]) -> LongArray:
         """A copy that goes on by itself; the rows so far are shared."""
         copied = LongArray(self._columns)
-        copied._filed, copied._newest = list(self._filed), list(self._newest)
+        copied._filed = list(self._filed)
+        copied._newest = list(self._newest)
         copied._newest_rows = self._newest_rows
         return copied
 

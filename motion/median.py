@@ -62,5 +62,6 @@ def percentile(
 
 def medians(values: NDArray[np.floating]) -> NDArray[np.floating]:
     """The medians of numbers (…, n) along their last axis; none of them is no number."""
-    ordered, count = np.sort(values, axis=-1), values.shape[-1]
+    ordered = np.sort(values, axis=-1)
+    count = values.shape[-1]
     return 0.5 * (ordered[..., (count - 1) // 2] + ordered[..., count // 2])

@@ -75,7 +75,8 @@ class Path:
         self, rate_hz: float = MOTION_RATE_HZ, block_samples: int = BLOCK_SAMPLES
     ) -> Iterator[Motion]:
         """Stream the path as blocks at a rate, from its first time to its last."""
-        start_s, end_s = float(self.t_s[0]), float(self.t_s[-1])
+        start_s = float(self.t_s[0])
+        end_s = float(self.t_s[-1])
         samples = int(np.floor((end_s - start_s) * rate_hz + 0.5)) + 1
         for first in range(0, samples, block_samples):
             t_s = start_s + np.arange(first, min(first + block_samples, samples)) / rate_hz

@@ -80,7 +80,8 @@ def pairs_within(points: ArrayLike, reach: float) -> NDArray[np.int64]:
     """The pairs (m, 2) of points (n, 2) that are no further apart than a reach; m may be n² / 2."""
     points = np.asarray(points, np.float64)
     order = np.argsort(points[:, 0], kind="stable")
-    ordered, found = points[order], [np.empty((0, 2), np.int64)]
+    ordered = points[order]
+    found = [np.empty((0, 2), np.int64)]
     ends = np.searchsorted(ordered[:, 0], ordered[:, 0] + reach, side="right")
     for k, end in enumerate(ends.tolist()):
         away = np.hypot(*(ordered[k + 1 : end] - ordered[k]).T)
@@ -100,7 +101,8 @@ def _is_in_order(points: Array) -> bool:
 
 def _along_z(points: Array) -> NDArray[np.int64]:
     """The numbers of the points along a Z-curve: the bits of x and of y in turn make its place."""
-    low, side = points.min(axis=0), max(float(np.ptp(points, axis=0).max()), 1e-300)
+    low = points.min(axis=0)
+    side = max(float(np.ptp(points, axis=0).max()), 1e-300)
     bits = ((points - low) * ((2**BITS - 1) / side)).astype(np.uint64)
     for shift, kept in ((8, 0x00FF00FF), (4, 0x0F0F0F0F), (2, 0x33333333), (1, 0x55555555)):
         bits = (bits | (bits << np.uint64(shift))) & np.uint64(kept)
@@ -134,7 +136,8 @@ def _off(box: Array, x: float, y: float) -> float:
 @njit(cache=True, nogil=True)
 def _apart(point: Array, place: Array) -> float:
     """Square of the distance of a place from a point."""
-    x, y = point[0] - place[0], point[1] - place[1]
+    x = point[0] - place[0]
+    y = point[1] - place[1]
     return x * x + y * y
 
 
@@ -145,7 +148,8 @@ def _put(away: float, i: int, squared: Array, number: NDArray[np.int64]) -> None
     while slot > 0 and (
         away < squared[slot - 1] or (away == squared[slot - 1] and i < number[slot - 1])
     ):
-        squared[slot], number[slot] = squared[slot - 1], number[slot - 1]
+        squared[slot] = squared[slot - 1]
+        number[slot] = number[slot - 1]
         slot -= 1
     squared[slot], number[slot] = away, i
 
@@ -166,9 +170,12 @@ def _searched(
     points: Array, boxes: Array, places: Array, squared: Array, number: NDArray[np.int64]
 ) -> None:
     """Fill in squares of distances and numbers (m, k), which hold the limit and n to begin with."""
-    leaves, left = len(boxes) // 2, np.empty(2 * DEEPEST, np.int64)
+    leaves = len(boxes) // 2
+    left = np.empty(2 * DEEPEST, np.int64)
     for m in range(len(places)):
-        place, far, found = places[m], squared[m], number[m]
+        place = places[m]
+        far = squared[m]
+        found = number[m]
         # 1. what the place before found is no nearer than what this one will find
         limit = far[-1]
         if m > 0 and number[m - 1, -1] < len(points):

@@ -39,7 +39,8 @@ def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np
 
 def lies_inside(inner_mm: Array, outer_mm: Array) -> bool:
     """Whether a line begins inside another, taken for closed, and reaches less far than that one."""
-    x, y = float(inner_mm[0, 0]), float(inner_mm[0, 1])
+    x = float(inner_mm[0, 0])
+    y = float(inner_mm[0, 1])
     # two lines cannot each lie in the other: otherwise no order of cutting would do
     if not (size_mm(inner_mm) < size_mm(outer_mm)).all():
         return False

@@ -113,9 +113,12 @@ def _within_reach(points, wide_mm):  # type: ignore[no-untyped-def]
     kept, count = np.empty(len(points), np.int64), 0
     for k in range(len(points)):
         while count > 1:
-            a, b = points[kept[count - 2]], points[kept[count - 1]]
-            ux, uy = b[0] - a[0], b[1] - a[1]
-            wx, wy = points[k, 0] - a[0], points[k, 1] - a[1]
+            a = points[kept[count - 2]]
+            b = points[kept[count - 1]]
+            ux = b[0] - a[0]
+            uy = b[1] - a[1]
+            wx = points[k, 0] - a[0]
+            wy = points[k, 1] - a[1]
             if ux * wy - uy * wx <= 0 or wx * wx + wy * wy > wide_mm * wide_mm:
                 break
             count -= 1

@@ -144,7 +144,8 @@ def _z_moves(table: PathTable, points: Array, since: Array) -> _NewPoints:
     """The points of the moves of Z that the file does not have; changes `since` for the step after."""
     new = _NewPoints()
     for i in np.flatnonzero(_changes(table, points)).tolist():
-        z0, z1 = points[i, 2], points[i + 1, 2]
+        z0 = points[i, 2]
+        z1 = points[i + 1, 2]
         if z0 <= IN_WORK_BELOW_MM:  # up over the last point in the work, at the feed
             new.add(i, points[i])
         if z1 <= IN_WORK_BELOW_MM:  # over to the first point in the work, then down at the feed

@@ -52,7 +52,8 @@ class Placement:
     @property
     def matrix(self) -> Array:
         """Scale · turn · mirror, (2, 2); quarter turns are exact."""
-        cosine, sine = round(math.cos(self.turn_rad), 15), round(math.sin(self.turn_rad), 15)
+        cosine = round(math.cos(self.turn_rad), 15)
+        sine = round(math.sin(self.turn_rad), 15)
         rotation = np.array([[cosine, -sine], [sine, cosine]])
         return self.scale * rotation * np.array(_MIRRORS[self.mirror])
 

@@ -46,7 +46,8 @@ def lengths_mm(line_mm: Array) -> Array:
 def _add_up(line_mm, lengths):  # type: ignore[no-untyped-def]
     """Fill in the length up to each place, from that up to the first one on."""
     for k in range(1, len(line_mm)):
-        dx, dy = line_mm[k, 0] - line_mm[k - 1, 0], line_mm[k, 1] - line_mm[k - 1, 1]
+        dx = line_mm[k, 0] - line_mm[k - 1, 0]
+        dy = line_mm[k, 1] - line_mm[k - 1, 1]
         lengths[k] = lengths[k - 1] + math.hypot(dx, dy)
 
 
@@ -59,7 +60,8 @@ def lengths_by_blocks(line_mm: Array) -> Iterator[tuple[int, Array, Array]]:
         lengths = np.full(max(1, len(places)), come_mm)
         _add_up(np.ascontiguousarray(places, float), lengths)
         yield first, places, lengths
-        first, come_mm = first + len(places) - 1, float(lengths[-1])
+        first += len(places) - 1
+        come_mm = float(lengths[-1])
 
 
 def length_mm(line_mm: Array) -> float:
@@ -120,7 +122,8 @@ def _nearer(strip, x, y, away, best):  # type: ignore[no-untyped-def]
     for way in (-1, 1):
         i = middle if way > 0 else middle - 1
         while 0 <= i < len(strip):
-            across, along = strip[i, 0] - x, strip[i, 1] - y
+            across = strip[i, 0] - x
+            along = strip[i, 1] - y
             if away * away + along * along > best:
                 break
             best = min(best, across * across + along * along)
@@ -192,9 +195,11 @@ class Nearest:
 
 def crossings(one_mm: Array, other_mm: Array) -> Array:
     """Where two polylines cross: places of each, (n, 2), along the first; quick if all pieces are short."""
-    pieces = np.delete(np.arange(len(one_mm) + len(other_mm) - 1), len(one_mm) - 1)
-    found = crossings_of(np.ascontiguousarray(np.vstack([one_mm, other_mm])), pieces)
-    found = found[(found[:, 0] < len(one_mm)) & (found[:, 1] >= len(one_mm))] - [0, len(one_mm)]
+    both, begin = np.ascontiguousarray(np.vstack([one_mm, other_mm])), len(one_mm)
+    pieces = np.delete(np.arange(len(both) - 1), begin - 1)
+    found = crossings_of(both, pieces)
+    of_each = (found[:, 0] < begin) & (found[:, 1] >= begin)
+    found = found[of_each] - [0, begin]
     return np.asarray(found[np.argsort(found[:, 0])])
 
 
@@ -219,8 +224,10 @@ def _crossings_in(points, pieces, keys, wide):  # type: ignore[no-untyped-def]
     count = 0
     for m in range(len(pieces)):
         i = pieces[m]
-        ax, ay = points[i, 0], points[i, 1]
-        px, py = points[i + 1, 0] - ax, points[i + 1, 1] - ay
+        ax = points[i, 0]
+        ay = points[i, 1]
+        px = points[i + 1, 0] - ax
+        py = points[i + 1, 1] - ay
         for column in range(-1, 2):
             first = keys[m] + column * wide - 1
             for n in range(np.searchsorted(keys, first), len(pieces)):
@@ -229,16 +236,20 @@ def _crossings_in(points, pieces, keys, wide):  # type: ignore[no-untyped-def]
                 j = pieces[n]
                 if j <= i + 1:
                     continue
-                qx, qy = points[j + 1, 0] - points[j, 0], points[j + 1, 1] - points[j, 1]
+                qx = points[j + 1, 0] - points[j, 0]
+                qy = points[j + 1, 1] - points[j, 1]
                 cross = px * qy - py * qx
                 if cross == 0.0:
                     continue
-                wx, wy = points[j, 0] - ax, points[j, 1] - ay
-                u, v = (wx * qy - wy * qx) / cross, (wx * py - wy * px) / cross
+                wx = points[j, 0] - ax
+                wy = points[j, 1] - ay
+                u = (wx * qy - wy * qx) / cross
+                v = (wx * py - wy * px) / cross
                 if 0.0 <= u < 1.0 and 0.0 <= v < 1.0:
                     if count == len(found):
                         found = np.concatenate((found, np.empty_like(found)))
-                    found[count, 0], found[count, 1] = i + u, j + v
+                    found[count, 0] = i + u
+                    found[count, 1] = j + v
                     count += 1
     return found[:count].copy()
 
@@ -253,12 +264,15 @@ def _kept(points, tolerance):  # type: ignore[no-untyped-def]
     count = 1
     while count > 0:
         count -= 1
-        first, last = stack[count, 0], stack[count, 1]
-        wx, wy = points[last, 0] - points[first, 0], points[last, 1] - points[first, 1]
+        first = stack[count, 0]
+        last = stack[count, 1]
+        wx = points[last, 0] - points[first, 0]
+        wy = points[last, 1] - points[first, 1]
         length2 = wx * wx + wy * wy
         worst, at = 0.0, -1
         for k in range(first + 1, last):
-            dx, dy = points[k, 0] - points[first, 0], points[k, 1] - points[first, 1]
+            dx = points[k, 0] - points[first, 0]
+            dy = points[k, 1] - points[first, 1]
             share = min(max((dx * wx + dy * wy) / length2, 0.0), 1.0) if length2 > 0 else 0.0
             off = (dx - share * wx) ** 2 + (dy - share * wy) ** 2
             if off > worst:

@@ -122,7 +122,8 @@ def positions_mm(
     """
     # 1. the move in increments
     ramp = ramp or Ramp()
-    start, end = np.asarray(start_mm, np.float64), np.asarray(end_mm, np.float64)
+    start = np.asarray(start_mm, np.float64)
+    end = np.asarray(end_mm, np.float64)
     feeds = [feed_mm_s, *(feed for _, feed in changes)]
     _check(start, end, feeds, rate_hz)
     length_mm = math.dist(start, end)

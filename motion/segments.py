@@ -185,7 +185,8 @@ def _allowed_mm_s(places: Array, spacing_mm: float, limits: Limits) -> Array:
     """The speed at which no axis is asked for more than it can do, at each place."""
     reach = max(1, min(round(limits.window_mm / spacing_mm), (len(places) - 1) // 2))
     around = np.pad(places, ((reach, reach), (0, 0)), "reflect", reflect_type="odd")
-    before, after = around[: -2 * reach], around[2 * reach :]
+    before = around[: -2 * reach]
+    after = around[2 * reach :]
     chord = np.abs(after - before).max(axis=1)
     way = np.maximum(np.sqrt(((after - before) ** 2).sum(axis=1)), 1e-12)
     bend = np.abs(before - 2 * places + after).max(axis=1) / (reach * spacing_mm) ** 2

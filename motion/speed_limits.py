@@ -30,7 +30,8 @@ def reachable(allowed_mm_s: Array, gain_mm2_s2: Array | float) -> Array:
 
 def _bounded(allowed_mm_s: Array, gain_mm2_s2: Array | float, *, both_ways: bool) -> Array:
     """The highest speeds within the gains from place to place, mm/s."""
-    squared, gains = allowed_mm_s**2, np.empty(len(allowed_mm_s) - 1)
+    squared = allowed_mm_s**2
+    gains = np.empty(len(allowed_mm_s) - 1)
     gains[:] = gain_mm2_s2
     _passes(squared, gains, both_ways)
     return np.asarray(np.sqrt(squared))

@@ -61,7 +61,8 @@ class Field:
 
     def refuse(self, allowed: str, held: str | None = None) -> NoReturn:
         """Raise the CardFault of this field."""
-        line, holds = self.page.lines.get(self.path, 1), held or _shown(self.value)
+        line = self.page.lines.get(self.path, 1)
+        holds = held or _shown(self.value)
         where = self.name or self.page.called
         raise CardFault(
             f"{self.page.name}, line {line}: {where} holds {holds}; {allowed}",

@@ -55,7 +55,8 @@ class _Reader:
         found = (word for word in _WORD.finditer(text) if word.lastgroup != "comment")
         self._words, line, seen = list[tuple[str, str, int]](), 1, 0
         for word in found:
-            line, seen = line + text.count("\n", seen, word.start()), word.start()
+            line += text.count("\n", seen, word.start())
+            seen = word.start()
             self._words.append((word.lastgroup or "", word[0], line))
         self._next = 0
         self._lines: dict[Path, int] = {(): 1}

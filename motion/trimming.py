@@ -24,6 +24,7 @@ import numpy as np
 
 from morfax.motion.arm import DEEP_MM
 from morfax.motion.arrays import Array
+from morfax.motion.plane import cross
 from morfax.motion.polyline import UM, Nearest, at_places, closed_up, crossings_of, length_mm
 
 NEARER = 0.2 * UM  # than the radius: a piece that is nearer is taken out, ...
@@ -62,7 +63,8 @@ def trimmed(
         ways.append(closed_up(shaken) if is_closed else shaken)
     firsts = np.r_[0, np.cumsum([len(way) for way in ways])]
     pairs = _crossings(ways, firsts, near, radius_mm)
-    at, number = np.concatenate([pairs[:, 0], pairs[:, 1]]), np.tile(np.arange(len(pairs)), 2)
+    at = np.concatenate([pairs[:, 0], pairs[:, 1]])
+    number = np.tile(np.arange(len(pairs)), 2)
     pieces = list[OffsetPiece]()
     for guide, way in enumerate(ways):
         own = (at >= firsts[guide]) & (at < firsts[guide + 1])
@@ -123,8 +125,10 @@ def _parted(way: Array, cuts: list[Cut], closed: bool, guide: int) -> list[Offse
     pieces = [
         OffsetPiece(_stretch(way, a, b), guide, m, n) for (a, m), (b, n) in pairwise(cuts)
     ]
-    (first, m), (last, n) = cuts[0], cuts[-1]
-    before, after = _stretch(way, 0, first), _stretch(way, last, len(way) - 1)
+    first, m = cuts[0]
+    last, n = cuts[-1]
+    before = _stretch(way, 0, first)
+    after = _stretch(way, last, len(way) - 1)
     if closed:
         return [*pieces, OffsetPiece(np.vstack([after, before[1:]]), guide, n, m)]
     return [OffsetPiece(before, guide, FREE, m), *pieces, OffsetPiece(after, guide, n, FREE)]
@@ -157,4 +161,4 @@ def _turn(arriving: OffsetPiece, leaving: OffsetPiece) -> float:
     """By how much the way turns to the left from the end of a piece onto another, rad."""
     a = arriving.points_mm[-1] - arriving.points_mm[-2]
     b = leaving.points_mm[1] - leaving.points_mm[0]
-    return math.atan2(a[0] * b[1] - a[1] * b[0], a @ b)
+    return math.atan2(cross(a, b), a @ b)

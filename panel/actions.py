@@ -192,7 +192,8 @@ def override_words(bench: Bench, share: float) -> list[str]:
     """The words of `morfax play` that run the result's program at an override, on the machine that it is for:
     another one may be set by now.
     """
-    result, made_by = bench.kept.result, bench.kept.words or []
+    result = bench.kept.result
+    made_by = bench.kept.words or []
     assert result is not None
     return commands.play_words(bench.folder / str(result["program"]), made_by, share)
 

@@ -204,7 +204,8 @@ class _Pages:
                 version = self._bench.version
                 frame["state"] = state.state(self._bench)
             head = self._bench.path.since(life, at)
-            life, at = head["life"], head["from"] + len(head["fresh"])
+            life = head["life"]
+            at = head["from"] + len(head["fresh"])
             frame["head"] = head
             await socket.send_text(json.dumps(frame))
             if head["more"]:

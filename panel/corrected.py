@@ -31,7 +31,9 @@ def asked_words(action: dict[str, Any]) -> list[str]:
     """The words of a correction that a page asks for; raises WrongUse for one that is none."""
     if "remove" in action:
         return ["--remove", str(_number(action["remove"]))]
-    kind, at, width = action.get("as"), _places(action.get("at")), action.get("width")
+    kind = action.get("as")
+    at = _places(action.get("at"))
+    width = action.get("width")
     if kind in TURNS:
         return ["--turn", str(kind), at[0]]
     if kind in AT_PLACES:

@@ -133,7 +133,8 @@ class Lookout:
             np.flatnonzero(np.diff(marks, prepend=np.floor(self._over_mm / STEP_MM)) > 0)
         ]
         with self._lock:
-            self._last, self._over_mm = places[-1], float(come_mm[-1] % STEP_MM)
+            self._last = places[-1]
+            self._over_mm = float(come_mm[-1] % STEP_MM)
             self._fresh += np.round(kept, 3).tolist()
         self._news.set()
 

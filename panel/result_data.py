@@ -62,7 +62,8 @@ def of_run(result: RunResult) -> dict[str, Any]:
 def of_play(path: Path, chart: Chart | None, placed: list[list[float]]) -> dict[str, Any]:
     """What is other in a run that the machine ran again: its path back on the drawing, and its errors."""
     moved = np.array(path.positions_mm, np.float64)
-    moved[:, :2] = moved[:, :2] @ np.array(placed)[:, :2].T + np.array(placed)[:, 2]
+    placed_mm = np.array(placed)
+    moved[:, :2] = moved[:, :2] @ placed_mm[:, :2].T + placed_mm[:, 2]
     return {
         "played": path_rows(replace(path, positions_mm=moved)),
         "following": following_rows(chart),

@@ -42,7 +42,8 @@ def levels(tape: FilePath) -> dict[str, Any] | None:
     if tape.suffix.lower() not in (".wav", ".rf64", ".flac"):
         return None
     with soundfile.SoundFile(for_soundfile(tape)) as opened:
-        window, seconds = round(WINDOW_S * opened.samplerate), opened.frames / opened.samplerate
+        window = round(WINDOW_S * opened.samplerate)
+        seconds = opened.frames / opened.samplerate
         blocks = opened.blocks(512 * window, dtype="float32", always_2d=True)
         power = [_power(block, window) for block in blocks]
     if not power:
@@ -106,7 +107,8 @@ def _of_phases(file: FilePath, columns: int) -> dict[str, Any]:
 def _gathered(tape: Tape, rows: float, rate_hz: float, columns: int) -> dict[str, Any]:
     """Deviation and lock of so many columns of so many rows each."""
     axes = len(tape.format.axes)
-    first, last = np.full((columns, axes), np.nan), np.full((columns, axes), np.nan)
+    first = np.full((columns, axes), np.nan)
+    last = np.full((columns, axes), np.nan)
     lock = np.zeros((columns, axes))
     for phases in _phases(tape):
         column = ((phases.first_row + np.arange(len(phases))) / rows).astype(int)

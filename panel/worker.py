@@ -179,7 +179,8 @@ class Worker:
         from morfax.panel.result_data import of_play
 
         play, placed, share = job
-        chart, settings = new_chart(raw=False), play.control.for_file(play.tape, play.by_hand)
+        chart = new_chart(raw=False)
+        settings = play.control.for_file(play.tape, play.by_hand)
         with settings_checked():
             playing = Playing(play.tape, play.by_hand, chart=chart, settings=settings)
             played = playing.whole(self.teller)
@@ -241,7 +242,8 @@ def main() -> None:
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is not for the pipe
     kernels.choose_cache()
-    worker, jobs = Worker(out), queue.Queue[tuple[Any, ...]]()
+    worker = Worker(out)
+    jobs = queue.Queue[tuple[Any, ...]]()
     compile_damaged_again(worker.teller.note)
     threading.Thread(target=worker.send_head, daemon=True).start()
     threading.Thread(target=_obey, args=(worker.lookout, jobs), daemon=True).start()

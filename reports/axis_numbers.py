@@ -26,7 +26,8 @@ def numbers(first: float, last: float, most_steps: int) -> list[tuple[float, str
     times = next(step for step in STEPS if step * 10.0**power >= least * (1 - CLOSE))
     step = times * 10.0**power
     decimals = max(0, -power + (times == 2.5) - (times == 10.0))
-    begin, end = math.ceil(first / step - CLOSE), math.floor(last / step + CLOSE)
+    begin = math.ceil(first / step - CLOSE)
+    end = math.floor(last / step + CLOSE)
     values = [number * step for number in range(begin, end + 1)]
     return [(value, _written(value, decimals)) for value in values]
 

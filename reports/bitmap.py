@@ -75,8 +75,10 @@ def drawn(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | None
 def corners_px(page: Page, box: Box) -> tuple[int, int, int, int]:
     """Left, top, right and bottom of a box on the fine canvas, pixels."""
     high = round(page.height_in * DPI)
-    left, right = box.left_in * DPI, (box.left_in + box.width_in) * DPI
-    top, bottom = high - (box.bottom_in + box.height_in) * DPI, high - box.bottom_in * DPI
+    left = box.left_in * DPI
+    right = (box.left_in + box.width_in) * DPI
+    top = high - (box.bottom_in + box.height_in) * DPI
+    bottom = high - box.bottom_in * DPI
     at = [round(side) * FINER for side in (left, top, right, bottom)]
     return at[0], at[1], at[2], at[3]
 
@@ -112,13 +114,15 @@ class _Field:
     def _px(self, places_mm: Array) -> Array:
         """Places on the canvas, columns and rows, pixels."""
         left, _, _, top = self.view
-        x, y = places_mm[:, 0] - left, top - places_mm[:, 1]
+        x = places_mm[:, 0] - left
+        y = top - places_mm[:, 1]
         return np.column_stack([x, y]) * self.px_per_mm - 0.5
 
     def _ground(self, ground: Ground) -> None:
         """The drawing in grey."""
         left, right, low, high = ground.extent
-        ends = np.round(self._px(np.array([[left, high], [right, low]])) + 0.5).astype(int)
+        corners = np.array([[left, high], [right, low]])
+        ends = np.round(self._px(corners) + 0.5).astype(int)
         (first, top), (last, bottom) = ends
         if last <= first or bottom <= top:
             return
@@ -127,13 +131,10 @@ class _Field:
         grey = cv2.resize(
             ground.grey, (int(last - first), int(bottom - top)), interpolation=how
         )
-        rows, columns = self.canvas.shape[:2]
-        to = self.canvas[max(top, 0) : min(bottom, rows), max(first, 0) : min(last, columns)]
-        to[:] = grey[
-            max(-top, 0) : max(-top, 0) + to.shape[0],
-            max(-first, 0) : max(-first, 0) + to.shape[1],
-            None,
-        ]
+        to = self.canvas[max(top, 0) : bottom, max(first, 0) : last]
+        high_px, wide_px = to.shape[:2]
+        above, before = max(-top, 0), max(-first, 0)
+        to[:] = grey[above : above + high_px, before : before + wide_px, None]
 
     def _line(self, at_px: Array, line: Line) -> None:
         """A line with its gaps."""
@@ -152,7 +153,8 @@ class _Field:
             arms = [np.array([[-0.5, 0], [0.5, 0]]), np.array([[0, -0.5], [0, 0.5]])]
             strokes, closed = [at_px + size_px * arm for arm in arms], False
         else:
-            strokes, closed = [at_px + size_px * np.array(OUTLINES[spot.shape])], True
+            strokes = [at_px + size_px * np.array(OUTLINES[spot.shape])]
+            closed = True
         polylines(self.canvas, strokes, spot.colour, SPOT_PX, closed=closed)
 
     def _area(self, corners_px: Array, area: Area) -> None:
@@ -215,7 +217,8 @@ def _fill_scale(canvas: Pixels, corners: tuple[int, int, int, int], scale: Colou
     """A scale of colours from left to right, in a frame."""
     left, top, right, bottom = corners
     rgb = np.array(shades(scale.colours, right - left))
-    canvas[top:bottom, left:right] = np.stack([rgb & 255, rgb >> 8 & 255, rgb >> 16], axis=1)
+    bytes_of = [rgb & 255, rgb >> 8 & 255, rgb >> 16]
+    canvas[top:bottom, left:right] = np.stack(bytes_of, axis=1)
     _frame(canvas, corners)
 
 

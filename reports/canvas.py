@@ -112,7 +112,8 @@ def _cut_out(drawing: Drawing, view: View) -> tuple[Any, View]:
         [rows - view[3] / pitch_mm, rows - view[2] / pitch_mm + 1], 0, rows
     ).astype(int)
     part: Any = drawing.darkness[top:bottom, left:right]
-    low_mm, high_mm = (rows - bottom) * pitch_mm, (rows - top) * pitch_mm
+    low_mm = (rows - bottom) * pitch_mm
+    high_mm = (rows - top) * pitch_mm
     extent = (float(left * pitch_mm), float(right * pitch_mm), float(low_mm), float(high_mm))
     if max(part.shape) > LARGEST_IMAGE_PX:
         import cv2

@@ -73,13 +73,15 @@ def draw_checked(result: CheckResult, name: str, file: FilePath) -> None:
 
 def way_mm(step: Step) -> Array:
     """Places (n, 3) along a step: its ends, and between those of an arc as many as it takes to look round."""
-    begin, end = np.array(step.begin_mm), np.array(step.move.end_mm)
+    begin = np.array(step.begin_mm)
+    end = np.array(step.move.end_mm)
     turned = step.move.turned_rad
     if not turned:
         return np.vstack([begin, end])
     share = np.linspace(0, 1, max(2, math.ceil(abs(turned) / CHORD_RAD)) + 1)
     x, y = np.array(step.begin_mm[:2]) - step.move.centre_mm
-    cos, sin = np.cos(turned * share), np.sin(turned * share)
+    cos = np.cos(turned * share)
+    sin = np.sin(turned * share)
     places: Array = np.column_stack(
         [
             step.move.centre_mm[0] + cos * x - sin * y,
@@ -94,14 +96,17 @@ def _view(steps: Sequence[Step], stock: Stock | None) -> View:
     """The part that is shown, mm: the program, the stock, and the zero if it is not far away."""
     places = [way_mm(step)[:, :2] for step in steps] or [np.zeros((1, 2))]
     if stock is not None and stock.width_mm is not None and stock.height_mm is not None:
-        size, corner = np.array([stock.width_mm, stock.height_mm]), np.array(stock.corner_mm)
+        size = np.array([stock.width_mm, stock.height_mm])
+        corner = np.array(stock.corner_mm)
         places.append(np.vstack([corner, corner + size]))
     every = np.vstack(places)
     low, high = every.min(axis=0), every.max(axis=0)
     span = max(float((high - low).max()), 1.0)
     if (low - span < 0).all() and (high + span > 0).all():
-        low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
-    low, high = low - MARGIN_SHARE * span, high + MARGIN_SHARE * span
+        low = np.minimum(low, 0.0)
+        high = np.maximum(high, 0.0)
+    low = low - MARGIN_SHARE * span
+    high = high + MARGIN_SHARE * span
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
@@ -210,7 +215,9 @@ def _side_view(axes: Axes, steps: Sequence[Step], result: CheckResult) -> None:
     """Draw the height of the tool along its way, with the work's faces."""
     stock = result.stock
     surface_mm = stock.surface_mm if stock is not None else 0.0
-    along_mm, rapids, lines = 0.0, list[Array](), list[Array]()
+    along_mm = 0.0
+    rapids = list[Array]()
+    lines = list[Array]()
     for step in steps:
         ends = [along_mm, along_mm + step.length_mm]
         way = np.column_stack([ends, [step.begin_mm[2], step.move.end_mm[2]]])

@@ -70,7 +70,8 @@ def _edges(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _within(ends: Array, view: View) -> NDArray[np.bool_]:
     """Which pieces (n, 2 ends, 2) have an end in a view, or beside it."""
-    x, y = ends[..., 0], ends[..., 1]
+    x = ends[..., 0]
+    y = ends[..., 1]
     beside = BESIDE * max(view[1] - view[0], view[3] - view[2])
     inside = (x > view[0] - beside) & (x < view[1] + beside)
     inside &= (y > view[2] - beside) & (y < view[3] + beside)
@@ -82,7 +83,9 @@ def _lines(
 ) -> tuple[NDArray[np.int64], list[Array]]:
     """The shades that there are, the largest last, and a line with gaps for each; pieces by their number."""
     order = np.argsort(shades, kind="stable")
-    pieces, shades, numbers = pieces[order], shades[order], numbers[order]
+    pieces = pieces[order]
+    shades = shades[order]
+    numbers = numbers[order]
     goes_on = np.zeros(len(pieces), bool)
     goes_on[1:] = (np.diff(numbers) == 1) & (np.diff(shades) == 0)
     # a gap, the begin of a piece, its end; a piece that goes on from the one before needs its end only

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import left_of
 from morfax.reports.plate import Area, Line, Mark, Spot, Words
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def _stroke(stroke: Stroke) -> list[Mark]:
     ]
     for begin, end in pairwise(places_mm):
         along = (end - begin) / max(float(np.hypot(*(end - begin))), 1e-9)
-        left = half_mm * np.array([-along[1], along[0]])
+        left = half_mm * left_of(along)
         drawn.append(_rubbed(np.array([begin + left, end + left, end - left, begin - left])))
     return drawn
 

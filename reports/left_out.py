@@ -18,7 +18,8 @@ ALPHA = 0.4  # the ink shines through
 
 def marks(areas: Sequence[Area]) -> list[plate.Area]:
     """Marks for solid areas and letters that were left out, in colours of their own."""
-    named, drawn = set[str](), list[plate.Area]()
+    named = set[str]()
+    drawn = list[plate.Area]()
     for area in (area for area in areas if area.what in COLOURS):
         left, bottom, right, top = area.box_mm
         box = (left, bottom), (right, bottom), (right, top), (left, top)

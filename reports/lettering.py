@@ -62,7 +62,8 @@ def scale_numbers(scale: Colours, box: Box) -> list[tuple[float, str]]:
 def ring(words: Words) -> tuple[Place, float]:
     """Middle, from the words' place, and radius of the ring round words."""
     left, top, right, bottom = _font(words.size_pt).getbbox(_plain(words.text), anchor="ls")
-    x, y = (words.offset_pt[0] * PX_PER_PT, -words.offset_pt[1] * PX_PER_PT)
+    x = words.offset_pt[0] * PX_PER_PT
+    y = -words.offset_pt[1] * PX_PER_PT
     size_px = words.size_pt * PX_PER_PT
     radius = max(right - left, size_px) / 2 + RING_PAD * size_px
     return (x + (left + right) / 2, y + (top + bottom) / 2), radius
@@ -85,7 +86,8 @@ def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
     is_upper, is_right = free_corner(shown, shares)
     left = wide_px - OUTSIDE * em - wide if is_right else OUTSIDE * em
     top = OUTSIDE * em if is_upper else high_px - OUTSIDE * em - high
-    begin, end = left + PAD * em, left + (PAD + SAMPLE) * em
+    begin = left + PAD * em
+    end = left + (PAD + SAMPLE) * em
     middles = [top + (PAD + 0.5 + row * (1 + BETWEEN)) * em for row in range(rows)]
     samples = [(begin, end, middle) for middle in middles]
     return Legend((left, top, left + wide, top + high), samples, HALF_HIGH * em)
@@ -171,7 +173,8 @@ class _Pen:
     def _sides(self, box: Box) -> tuple[float, float, float, float]:
         """Left, top, right and bottom of a box."""
         bottom = self.page_px - box.bottom_in * DPI
-        left, top = box.left_in * DPI, bottom - box.height_in * DPI
+        left = box.left_in * DPI
+        top = bottom - box.height_in * DPI
         return left, top, left + box.width_in * DPI, bottom
 
     def _write(

@@ -95,7 +95,8 @@ def _bar(axes: Axes, layout: Layout) -> None:
     for a, b in ((left, left + thick), (right - thick, right)):
         _filled(axes, [a, y - half, b, y + half])
     said = TOLD.format(name=layout.paper.name.upper())
-    middle, top = (left + right) / 2, layout.band_mm[3]
+    middle = (left + right) / 2
+    top = layout.band_mm[3]
     axes.text(middle, top - 0.5, said, fontsize=WORDS_PT, ha="center", va="top", color=BLACK)
 
 

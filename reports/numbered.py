@@ -66,7 +66,8 @@ def _colour(number: int) -> str:
 
 def _painted(seen: Survey) -> NDArray[np.uint8]:
     """The sheet's ink in colours, reduced to a size for a picture; (rows, columns, 3)."""
-    patches, (rows, columns) = seen.sheet.patches, seen.sheet.drawing.darkness.shape
+    patches = seen.sheet.patches
+    rows, columns = seen.sheet.drawing.darkness.shape
     of_patch = np.full((patches.count, 3), _rgb(LEFT_OUT), np.uint8)
     of_patch[list(seen.lettering)] = _rgb(LETTERING)
     for entry in seen.entries:

@@ -132,7 +132,8 @@ def _ends(plate: Plate, path: Path) -> None:
     runs = path.runs()
     if not runs:
         return
-    (x, y), (end_x, end_y) = runs[0][0].tolist(), runs[-1][-1].tolist()
+    x, y = runs[0][0].tolist()
+    end_x, end_y = runs[-1][-1].tolist()
     plate.add(
         Spot((x, y), "o", 7, "#2a7f3f", "start"),
         Spot((end_x, end_y), "s", 7, "#7a3fa0", "end"),

@@ -59,7 +59,8 @@ def lay_out(height_to_width: float, insets: int, *, has_bar: bool) -> Page:
     is_low = insets > 0 and shape < WIDE
     below = (BAR_IN if has_bar else 0.0) + (ROW_IN if is_low else 0.0)
     column = BESIDE_IN if insets and not is_low else 0.0
-    width, height = LEFT_IN + wide + RIGHT_IN + column, TITLE_IN + high + NAMES_IN + below
+    width = LEFT_IN + wide + RIGHT_IN + column
+    height = TITLE_IN + high + NAMES_IN + below
     main = Box(LEFT_IN, NAMES_IN + below, wide, high)
     bar_wide, bar_low = 0.7 * wide, below - BAR_IN + 0.5
     bar = Box(LEFT_IN + 0.15 * wide, bar_low, bar_wide, BAR_HIGH_IN) if has_bar else None

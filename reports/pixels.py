@@ -48,18 +48,23 @@ def seen(at_px: Array, shape: tuple[int, ...]) -> Array:
     # 1. without pieces of which both ends are beyond the same side
     shown = np.ones(len(at_px) - 1, bool)
     for at, size in zip(at_px.T, shape[1::-1], strict=True):
-        before, beyond = at < -MARGIN_PX, at > size + MARGIN_PX
-        shown &= ~(before[:-1] & before[1:]) & ~(beyond[:-1] & beyond[1:])
+        before = at < -MARGIN_PX
+        beyond = at > size + MARGIN_PX
+        shown &= ~(before[:-1] & before[1:])
+        shown &= ~(beyond[:-1] & beyond[1:])
     kept = np.flatnonzero(np.r_[shown, False] | np.r_[False, shown])
     near = np.insert(at_px[kept], np.flatnonzero(np.diff(kept) > 1) + 1, np.nan, axis=0)
     if len(near) < 2:
         return near
     # 2. a place of each pixel of the way, and both places beside a gap
     x, y = near.T
-    way = np.floor(np.cumsum(np.nan_to_num(np.hypot(np.diff(x), np.diff(y)))))
+    steps = np.nan_to_num(np.hypot(np.diff(x), np.diff(y)))
+    pixel = np.floor(np.cumsum(steps))
+    is_next_pixel = np.r_[True, np.diff(pixel, prepend=0.0) > 0]
     is_gap = np.isnan(x)
-    ends = np.r_[True, is_gap[:-1]] | is_gap | np.r_[is_gap[1:], True]
-    return np.asarray(near[ends | np.r_[True, np.diff(way, prepend=0.0) > 0]])
+    is_after_gap = np.r_[True, is_gap[:-1]]
+    is_before_gap = np.r_[is_gap[1:], True]
+    return np.asarray(near[is_next_pixel | is_after_gap | is_gap | is_before_gap])
 
 
 def polylines(

@@ -131,14 +131,16 @@ def fitted(view: View, height_to_width: float) -> View:
     left, right, low, high = view
     wide = max(right - left, (high - low) / height_to_width)
     tall = wide * height_to_width
-    x, y = (left + right) / 2, (low + high) / 2
+    x = (left + right) / 2
+    y = (low + high) / 2
     return x - wide / 2, x + wide / 2, y - tall / 2, y + tall / 2
 
 
 def shades(colours: Sequence[str], count: int) -> list[int]:
     """So many colours 0xrrggbb, evenly from the first of some #rrggbb to the last."""
     known = np.array([int(colour[1:], 16) for colour in colours])
-    at, index = np.linspace(0, len(known) - 1, count), np.arange(len(known))
+    at = np.linspace(0, len(known) - 1, count)
+    index = np.arange(len(known))
     mixed = [
         np.interp(at, index, known >> shift & 255).round().astype(int) for shift in (16, 8, 0)
     ]

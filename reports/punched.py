@@ -61,7 +61,8 @@ def draw_tape(program: StepProgram, file: FilePath) -> int:
 
 def strips(program: StepProgram) -> list[Strip]:
     """The strips that the tape is cut into; one at least."""
-    rows, width_mm = min(len(program.rows), MOST_ROWS), WIDTHS_MM[program.format.channels]
+    rows = min(len(program.rows), MOST_ROWS)
+    width_mm = WIDTHS_MM[program.format.channels]
     firsts = range(0, max(1, rows), ROWS_PER_STRIP)
     return [
         Strip(
@@ -76,7 +77,8 @@ def strips(program: StepProgram) -> list[Strip]:
 
 def holes(program: StepProgram) -> Iterator[Hole]:
     """All holes that are shown, feed holes too."""
-    channels, codes = program.format.channels, program.rows[:MOST_ROWS].tolist()
+    channels = program.format.channels
+    codes = program.rows[:MOST_ROWS].tolist()
     for strip in strips(program):
         right_mm = (
             strip.x_mm + (strip.width_mm + channels * PITCH_MM) / 2

@@ -72,7 +72,8 @@ def errors(results: Sequence[SystemResult]) -> Figure:
     panels = figure.subplots(max(1, len(ran)), 1, squeeze=False, sharex=True, sharey=True)[:, 0]
     for axes, result in zip(panels, ran, strict=False):
         assert result.from_ink is not None
-        points, error_um = result.from_ink.points_mm, result.from_ink.error_mm * UM_PER_MM
+        points = result.from_ink.points_mm
+        error_um = result.from_ink.error_mm * UM_PER_MM
         way_mm = lengths_mm(points)
         axes.axhline(0, color=REFERENCE, linewidth=0.6)
         axes.plot(way_mm, error_um, color=COLOURS[result.suffix], linewidth=0.8)

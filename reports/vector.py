@@ -28,8 +28,10 @@ def figure_of(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | 
     figure = new_figure(page.width_in, page.height_in, layout="none")
 
     def axes(box: Box) -> Axes:
-        left, bottom = box.left_in / page.width_in, box.bottom_in / page.height_in
-        across, up = box.width_in / page.width_in, box.height_in / page.height_in
+        left = box.left_in / page.width_in
+        bottom = box.bottom_in / page.height_in
+        across = box.width_in / page.width_in
+        up = box.height_in / page.height_in
         return figure.add_axes((left, bottom, across, up))
 
     for box, plate in plates:

@@ -225,7 +225,8 @@ def _spline(at: Array, places: Array, intervals: int) -> tuple[Array, Array]:
     knots = np.r_[[0.0] * 3, np.arange(intervals + 1), [float(intervals)] * 3]
     coefficients = np.empty((intervals + 3, places.shape[1]))
     # the first two alike: slope zero
-    coefficients[:2], coefficients[-2:] = (places[0], places[-1])
+    coefficients[:2] = places[0]
+    coefficients[-2:] = places[-1]
     if intervals > 1:
         basis = BSpline.design_matrix(np.clip(at, 0, intervals), knots, 3).tocsc()
         rest = np.r_[0, 1, intervals + 1, intervals + 2]

@@ -150,7 +150,8 @@ def _svg(lines: list[CutLine]) -> str:
             begin = piece.end_mm
         words.append("Z" if line.closed else "" if line.pieces else "h 0")
         paths.append(f'  <path d="{" ".join(words).rstrip()}"/>')
-    width, height = digits(right - left, 4), digits(high - low, 4)
+    width = digits(right - left, 4)
+    height = digits(high - low, 4)
     return "\n".join(
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '

@@ -29,7 +29,8 @@ BAND = 8  # unknowns that a residual can couple: two segments have at most eight
 @njit(cache=True)
 def _row(x0, y0, x1, y1, half):  # type: ignore[no-untyped-def]
     """Begin, cosine and sine of the heading there, and curvature of a segment, as in `rows_of`."""
-    chord, heading = math.hypot(x1 - x0, y1 - y0), math.atan2(y1 - y0, x1 - x0) - half
+    chord = math.hypot(x1 - x0, y1 - y0)
+    heading = math.atan2(y1 - y0, x1 - x0) - half
     length = chord if half == 0.0 else chord * half / math.sin(half)
     return x0, y0, math.cos(heading), math.sin(heading), 2 * half / length
 
@@ -37,7 +38,8 @@ def _row(x0, y0, x1, y1, half):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _off(row, x, y):  # type: ignore[no-untyped-def]
     """Distance of a place from the circle or line of a row, positive to the left."""
-    dx, dy = x - row[0], y - row[1]
+    dx = x - row[0]
+    dy = y - row[1]
     square = 2 * (dy * row[2] - dx * row[3]) - row[4] * (dx * dx + dy * dy)
     return square / (1 + math.sqrt(max(1 - row[4] * square, 0.0)))
 
@@ -62,8 +64,12 @@ def normal(table, seen, breaks, columns, closed):  # type: ignore[no-untyped-def
     """The normal equations (see `Spline._linearised`); `seen`: places, their segments, their weights."""
     places, owner, weights = seen
     unknowns = columns.max() + 1
-    band, pull, seam = np.zeros((unknowns, BAND)), np.zeros(unknowns), np.zeros(unknowns)
-    cost, slope, column = 0.0, np.empty(10), np.empty(10, np.int64)
+    band = np.zeros((unknowns, BAND))
+    pull = np.zeros(unknowns)
+    seam = np.zeros(unknowns)
+    cost = 0.0
+    slope = np.empty(10)
+    column = np.empty(10, np.int64)
     # 1. each distance depends on the five numbers of its own segment only
     rows, last = np.empty((6, 5)), -1
     for i in range(len(places)):
@@ -82,7 +88,8 @@ def normal(table, seen, breaks, columns, closed):  # type: ignore[no-untyped-def
         after = (j + 1) % len(table)
         _break_slopes(table[j], 1.0, slope[:5])
         _break_slopes(table[after], -1.0, slope[5:])
-        column[:5], column[5:] = columns[j], columns[after]
+        column[:5] = columns[j]
+        column[5:] = columns[after]
         cost += breaks[j] * breaks[j]
         if closed and j == len(breaks) - 1:
             for k in range(10):
@@ -112,10 +119,13 @@ def _break_slopes(own, sign, slope):  # type: ignore[no-untyped-def]
     """How a break depends on the five numbers of the segment before it (sign 1) or after it (-1): on the
     chord's direction, and on half the angle.
     """
-    dx, dy = own[2] - own[0], own[3] - own[1]
+    dx = own[2] - own[0]
+    dy = own[3] - own[1]
     square = dx * dx + dy * dy
-    slope[0], slope[1] = -sign * dy / square, sign * dx / square
-    slope[2], slope[3] = sign * dy / square, -sign * dx / square
+    slope[0] = -sign * dy / square
+    slope[1] = sign * dx / square
+    slope[2] = sign * dy / square
+    slope[3] = -sign * dx / square
     slope[4] = -1.0
     for k in range(5):
         slope[k] /= BREAK_RAD

@@ -48,11 +48,14 @@ def corners(points_mm: Array) -> NDArray[np.int64]:
     """Indices of the corners of a polyline; its first and last points are none."""
     s = lengths_mm(points_mm)
     wide, narrow = (_turn_rad(points_mm, s, reach) for reach in (WINDOW_MM, WINDOW_MM / 4))
-    sharp = np.flatnonzero((np.abs(wide) > CORNER_RAD) & (np.abs(narrow) > 0.6 * np.abs(wide)))
+    wide, narrow = np.abs(wide), np.abs(narrow)
+    is_sharp = (wide > CORNER_RAD) & (narrow > 0.6 * wide)
+    sharp = np.flatnonzero(is_sharp)
     if not len(sharp):
         return sharp
-    groups = np.split(sharp, np.flatnonzero(np.diff(s[sharp]) > WINDOW_MM) + 1)
-    return np.array([group[np.argmax(np.abs(narrow[group]))] for group in groups])
+    apart_mm = np.diff(s[sharp])
+    groups = np.split(sharp, np.flatnonzero(apart_mm > WINDOW_MM) + 1)
+    return np.array([group[np.argmax(narrow[group])] for group in groups])
 
 
 def _turn_rad(points: Array, s: Array, reach_mm: float) -> Array:
@@ -61,7 +64,8 @@ def _turn_rad(points: Array, s: Array, reach_mm: float) -> Array:
         np.column_stack([np.interp(s + r, s, c) for c in points.T])
         for r in (-reach_mm, reach_mm)
     )
-    (ax, ay), (bx, by) = (points - before).T, (after - points).T
+    ax, ay = (points - before).T
+    bx, by = (after - points).T
     turn = np.arctan2(ax * by - ay * bx, ax * bx + ay * by)
     turn[(s < reach_mm / 2) | (s > s[-1] - reach_mm / 2)] = 0.0
     return turn
@@ -88,7 +92,8 @@ def _longest(places, tolerance_mm, ends, straight):  # type: ignore[no-untyped-d
         # 1. ever further, until nothing fits; then half way between what fits and what does not
         low, step = first + 1, 1
         while low < last and _fits(places[first : min(low + step, last) + 1], tolerance_mm):
-            low, step = min(low + step, last), 2 * step
+            low = min(low + step, last)
+            step = 2 * step
         high = min(low + step, last + 1)
         while high - low > 1:
             middle = (low + high) // 2
@@ -130,7 +135,9 @@ def off_line_mm(places):  # type: ignore[no-untyped-def]
     """The largest distance of some places (n, 2) from the line that fits them best, mm."""
     x, y, xx, xy, yy = spread(places)
     heading = 0.5 * math.atan2(2 * xy, xx - yy)
-    c, s, most = math.cos(heading), math.sin(heading), 0.0
+    c = math.cos(heading)
+    s = math.sin(heading)
+    most = 0.0
     for i in range(len(places)):
         most = max(most, abs((places[i, 1] - y) * c - (places[i, 0] - x) * s))
     return most
@@ -157,7 +164,8 @@ def curvature_per_mm(places: Array) -> float:
     )
     if np.abs(v).max() > 0.2 * chord:  # more than a third of a turn: a chord says little
         side = places[len(places) // 2] - places.mean(axis=0)
-        quarter, half = len(dx) // 4, len(dx) // 2
+        quarter = len(dx) // 4
+        half = len(dx) // 2
         across = dx[quarter] * dy[half] - dy[quarter] * dx[half]
         least_mm = float(np.hypot(*side)) / 10
         return math.copysign(1 / max(kasa(places)[2], least_mm), across)

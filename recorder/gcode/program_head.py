@@ -158,7 +158,8 @@ def drilled_mm(planned: BlockPlan) -> set[tuple[float, float]]:
     """The places where the tool goes into the work and comes out again without moving across."""
     x, y, _ = (float(mm) for mm in planned.start_mm)
     begun: tuple[float, float] | None = None
-    found, place = set[tuple[float, float]](), (x, y)
+    found = set[tuple[float, float]]()
+    place = (x, y)
     for block in planned.blocks:
         across = block.place_mm[:2] != place
         if block.code in CUTS and not across and block.place_mm[2] <= IN_WORK_BELOW_MM:
@@ -206,5 +207,6 @@ def _bends_mm(line: list[Block], sense: int) -> list[float]:
 
 def _heading_rad(begin: Place, block: Block, from_: float, to: float) -> float:
     """The heading of a block between two shares of its way."""
-    (x0, y0), (x1, y1) = place_at(begin, block, from_), place_at(begin, block, to)
+    x0, y0 = place_at(begin, block, from_)
+    x1, y1 = place_at(begin, block, to)
     return math.atan2(y1 - y0, x1 - x0)

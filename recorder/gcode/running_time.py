@@ -89,7 +89,8 @@ def _leg(place: Place, block: Block, machine: Machine, share: float) -> _Leg | N
     way_mm = length_mm(place, block)
     if way_mm <= 0:
         return None
-    leaves, arrives = _direction(place, block, 0.0), _direction(place, block, 1.0)
+    leaves = _direction(place, block, 0.0)
+    arrives = _direction(place, block, 1.0)
     if block.code == RAPID:
         speed_mm_s = _along(leaves, machine.rapid_mm_s)
     else:
@@ -111,7 +112,8 @@ def _direction(place: Place, block: Block, at: float) -> Place:
         way = [end - begin for begin, end in zip(place, block.place_mm, strict=True)]
     else:
         from_, to = (0.0, STEP) if at == 0 else (1 - STEP, 1.0)
-        (x0, y0), (x1, y1) = place_at(place, block, from_), place_at(place, block, to)
+        x0, y0 = place_at(place, block, from_)
+        x1, y1 = place_at(place, block, to)
         way = [x1 - x0, y1 - y0, 0.0]
     whole = math.hypot(*way)
     return way[0] / whole, way[1] / whole, way[2] / whole

@@ -83,7 +83,9 @@ def residuals(joints, halves, seen, closed):  # type: ignore[no-untyped-def]
 def table_of(joints, halves):  # type: ignore[no-untyped-def]
     """The ends of each segment and half the angle that it turns."""
     table = np.empty((len(halves), 5))
-    table[:, :2], table[:, 2:4], table[:, 4] = joints[:-1], joints[1:], halves
+    table[:, :2] = joints[:-1]
+    table[:, 2:4] = joints[1:]
+    table[:, 4] = halves
     return table
 
 

@@ -96,7 +96,9 @@ class PipeSource:
                 return
             if skip:
                 gone = min(skip, whole)
-                data, whole, skip = data[gone:], whole - gone, skip - gone
+                data = data[gone:]
+                whole = whole - gone
+                skip = skip - gone
             if whole:
                 self.frames += whole // step
                 yield self._samples.frames(data[:whole])

@@ -53,7 +53,8 @@ def between_silences(
             return
         # 3. what may be the beginning of the last silence waits for the next block, and is heard again
         end = (count - carriers.held(count - begin)) * window
-        out, left = frames[begin * window : end], frames[end:]
+        out = frames[begin * window : end]
+        left = frames[end:]
         if len(out):
             yield out
     if carriers.level is not None and left is not None and len(left):

@@ -85,7 +85,8 @@ def make_plain(file: str | os.PathLike[str]) -> bool:
 
 def replace_text(file: str | os.PathLike[str], old: str, new: str) -> None:
     """Replace a text in the header by one that is not longer; raises ValueError if that cannot be done."""
-    before, after = old.encode(), new.encode().ljust(len(old.encode()))
+    before = old.encode()
+    after = new.encode().ljust(len(old.encode()))
     with Path(file).open("r+b") as opened:
         at = opened.read(_SEARCHED_BYTES).find(before)
         if at < 0 or len(after) != len(before):

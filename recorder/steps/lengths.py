@@ -97,7 +97,8 @@ def _traced_back(last: int, winner: int, book: _Book) -> tuple[Steps, Array]:
     steps = np.zeros((last + 1, 3), np.int64)
     distances = np.zeros(last + 1)
     for level in range(last, -1, -1):
-        steps[level], distances[level] = book.taken[level, winner], book.off[level, winner]
+        steps[level] = book.taken[level, winner]
+        distances[level] = book.off[level, winner]
         winner = int(book.parents[level, winner])
     return steps, distances
 
@@ -109,7 +110,8 @@ def _search(task, book):  # type: ignore[no-untyped-def]
     places, speeds, left, spacing, start, end, changes, table = task
     parents, taken, off = book
     width = off.shape[1]
-    beam, new = np.zeros((width, _COLUMNS), np.int64), np.zeros((width, _COLUMNS), np.int64)
+    beam = np.zeros((width, _COLUMNS), np.int64)
+    new = np.zeros((width, _COLUMNS), np.int64)
     costs, new_costs = np.zeros(width), np.zeros(width)
     course = np.zeros(_COLUMNS, np.int64)
     beam[0, :3] = start
@@ -134,7 +136,8 @@ def _search(task, book):  # type: ignore[no-untyped-def]
         # 2. take them down
         count = new_count
         for b in range(count):
-            beam[b], costs[b] = new[b], new_costs[b]
+            beam[b] = new[b]
+            costs[b] = new_costs[b]
             parents[level, b] = new[b, _FROM]
             taken[level, b] = new[b, _NX:_AT]
             off[level, b] = np.sqrt(_squared(places, new[b, _AT], new[b]))
@@ -170,8 +173,10 @@ def _is_vector(table, beam, b, course):  # type: ignore[no-untyped-def]
     """Whether a vector command leads from course b to the steps of a course."""
     if course[_NX + 2] != beam[b, _NX + 2]:
         return False
-    x, y = beam[b, _NX], beam[b, _NX + 1]
-    to_x, to_y = course[_NX] - x + 1, course[_NX + 1] - y + 1
+    x = beam[b, _NX]
+    y = beam[b, _NX + 1]
+    to_x = course[_NX] - x + 1
+    to_y = course[_NX + 1] - y + 1
     return table[x + LARGEST, y + LARGEST, to_x, to_y] >= 0
 
 
@@ -192,7 +197,8 @@ def _keep(beam, costs, count, course, cost):  # type: ignore[no-untyped-def]
         count = min(count + 1, width)
         at = count - 1
     while at > 0 and costs[at - 1] > cost:
-        beam[at], costs[at] = beam[at - 1], costs[at - 1]
+        beam[at] = beam[at - 1]
+        costs[at] = costs[at - 1]
         at -= 1
     beam[at], costs[at] = course, cost
     return count
@@ -234,7 +240,9 @@ def _nearest(places, first, guess, course):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _squared(places, at, course):  # type: ignore[no-untyped-def]
     """Squared distance of a course's place from a place of the leg, steps²."""
-    x, y, z = places[at, 0] - course[0], places[at, 1] - course[1], places[at, 2] - course[2]
+    x = places[at, 0] - course[0]
+    y = places[at, 1] - course[1]
+    z = places[at, 2] - course[2]
     return x**2 + y**2 + z**2
 
 

@@ -149,7 +149,8 @@ def _taps() -> Frames:
 @njit(cache=True, nogil=True)
 def _read(held, places, taps, out):  # type: ignore[no-untyped-def]
     """Interpolate each track at its places; beyond the frames held the tape is blank."""
-    parts, half = len(taps) - 1, taps.shape[1] // 2
+    parts = len(taps) - 1
+    half = taps.shape[1] // 2
     for i in range(len(places)):
         for track in range(places.shape[1]):
             whole = int(np.floor(places[i, track]))

@@ -107,7 +107,8 @@ def _aged(
     """Run an open tape through the transport into a file."""
     kind = medium(target, sample)
     deck = Deck(wear, sound.samplerate, sound.channels, seed)
-    rate_hz, total_s = wear.stamped_hz or sound.samplerate, sound.frames / sound.samplerate
+    rate_hz = wear.stamped_hz or sound.samplerate
+    total_s = sound.frames / sound.samplerate
     text = text_of(source, sound)
     with written_beside(target) as beside:
         with (

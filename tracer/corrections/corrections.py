@@ -133,7 +133,8 @@ class Correction:
 
     def check(self) -> None:
         """Raise ValueError if the places or what is beside them cannot be served."""
-        fewest, most = FEWEST.get(self.do, 1), MOST_PLACES if self.do in INKED else 1
+        fewest = FEWEST.get(self.do, 1)
+        most = MOST_PLACES if self.do in INKED else 1
         if not fewest <= len(self.at) <= most:
             allowed = "one place" if most == 1 else f"{fewest} to {most} places"
             raise ValueError(f"{self.do} has {len(self.at)} places; it takes {allowed}")

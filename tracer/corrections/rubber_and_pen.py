@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
+from morfax.motion.plane import heading_of, left_of
 from morfax.motion.polyline import evenly
 from morfax.tracer.corrections.on_sheet import Stroke
 
@@ -165,7 +166,7 @@ class Easel:
         if not np.hypot(*way) > 0:
             return None
         ahead = way / np.hypot(*way)
-        left = np.array([-ahead[1], ahead[0]])
+        left = left_of(ahead)
         reach_mm = ASIDE_WIDTHS * self.pen.width_mm
         aside_mm = np.arange(-reach_mm, reach_mm, STEP_PX * self.pitch_mm)
         back_mm = BACK_WIDTHS * self.pen.width_mm
@@ -178,7 +179,7 @@ class Easel:
         slope, aside = np.polyfit(-back_mm[good], middles, 2)[1:]
         if abs(aside) > WITHIN * self.pen.width_mm or abs(math.atan(slope)) > ALONG:
             return None
-        heading_rad = math.atan2(ahead[1], ahead[0]) + math.atan(float(slope))
+        heading_rad = heading_of(ahead) + math.atan(float(slope))
         across = math.cos(math.atan(float(slope)))  # profiles are square to the stroke
         width_mm, dark = self._pen_of(across * float(np.median(areas)), float(np.median(peaks)))
         return _Line(end_mm + aside * left, heading_rad, width_mm, dark)
@@ -235,8 +236,10 @@ class Easel:
         """The pixels about a piece, and how far each is from it, pixels."""
         window = self._box(piece, margin_px)
         rows, columns = np.mgrid[window]
-        begin, way = piece[0], piece[1] - piece[0]
-        x, y = columns - begin[0], rows - begin[1]
+        begin = piece[0]
+        way = piece[1] - piece[0]
+        x = columns - begin[0]
+        y = rows - begin[1]
         square = max(float(way @ way), 1e-12)
         along = np.clip((x * way[0] + y * way[1]) / square, 0.0, 1.0)
         return window, np.hypot(x - along * way[0], y - along * way[1])

@@ -25,6 +25,7 @@ import numpy as np
 
 from morfax.motion.curves import hermite
 from morfax.motion.long_array import LongArray, is_mapped
+from morfax.motion.plane import heading_of, left_of
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
@@ -90,7 +91,8 @@ class Cut:
         if len(line.xy_mm) < 2 or line.is_dot or (line.is_guide and down_at is None):
             return None
         first = _first_cut(line, down_at)
-        closed, places_mm = line.is_lead or line.ending == "closed", _places(line, first)
+        closed = line.is_lead or line.ending == "closed"
+        places_mm = _places(line, first)
         if closed:
             places_mm = _closed(places_mm)
         return cls(line, first, places_mm, closed, tuple(operator.stops(line, number)), down_at)
@@ -136,7 +138,8 @@ def _places(line: Line, first: int) -> Array:
 
 def _bridge(before: Array, after: Array) -> Array:
     """A cubic from the end of some places (n, 2) mm to the beginning of others; nothing at a corner."""
-    arrives, leaves = _end_heading(before), _end_heading(after[::-1]) + math.pi
+    arrives = _end_heading(before)
+    leaves = _end_heading(after[::-1]) + math.pi
     if abs(turn(arrives, leaves)) > CORNER:
         return np.empty((0, 2))
     return hermite(before[-1], arrives, after[0], leaves)[1:-1]
@@ -151,7 +154,7 @@ def _end_heading(places_mm: Array) -> float:
     near = away_mm >= -FELT_MM
     degree = 2 if away_mm[near][0] < -FELT_MM / 2 else 1
     slope = polynomial.polyfit(away_mm[near], places_mm[near], degree)[1]
-    return math.atan2(slope[1], slope[0])
+    return heading_of(slope)
 
 
 def _closed(places_mm: Array) -> Array:
@@ -218,7 +221,7 @@ class Beside:
         way = heading(self._every, here, self.cut.closed)
         if way is None:
             return None
-        across = np.array([-way[1], way[0]])
+        across = left_of(way)
         return np.asarray((self.radius_mm if self.left else -self.radius_mm) * across)
 
 

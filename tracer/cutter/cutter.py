@@ -136,7 +136,8 @@ def with_cutter(
     left = _left(cuts, curves, paths, cutter.radius_mm)
     # 3. the drawn program transferred to the paths
     near = Nearest([sides.whole(curve) for curve in curves], cutter.radius_mm)
-    feed, left_out = FeedRate(feed_mm_s, trace.rate_hz), {out.line for out in left.lines}
+    feed = FeedRate(feed_mm_s, trace.rate_hz)
+    left_out = {out.line for out in left.lines}
     made, number = list[Line](), 0
     starts = StartPlaces(contouring, Scrap(curves, cutter.radius_mm, near))
     for line, cut in lines:
@@ -259,7 +260,8 @@ def _stretches(cut: Cut, places: Array, left_mm: Array) -> Iterator[Unreached]:
     """The stretches of a line, by its places (n, 2) mm, of which more than nothing is left."""
     if cut.closed:
         first = int(np.argmin(left_mm))  # no stretch is parted where the line begins
-        places, left_mm = np.roll(places, -first, axis=0), np.roll(left_mm, -first)
+        places = np.roll(places, -first, axis=0)
+        left_mm = np.roll(left_mm, -first)
     is_left = np.r_[False, left_mm > LEFT_MM, False].astype(np.int8)
     for a, b in np.flatnonzero(np.diff(is_left)).reshape(-1, 2):
         at = a + int(np.argmax(left_mm[a:b]))

@@ -48,7 +48,9 @@ class FeedRate:
         pieces = braking.pieces(rows_mm, at, BRAKE_MM_S2, self.rate_hz)[: len(at)]
         rested = np.vstack([pieces[0], *(piece[1:] for piece in pieces[1:])])
         rests = [len(pieces[0]) - 1, *(len(piece) - 1 for piece in pieces[1:])]
-        index, was, now = np.arange(len(rows_mm)), lengths_mm(rows_mm), lengths_mm(rested)
+        index = np.arange(len(rows_mm))
+        was = lengths_mm(rows_mm)
+        now = lengths_mm(rested)
         was_at = np.r_[0.0, np.interp(at, index, was)]
         now_at = np.r_[0.0, now[np.cumsum(rests)]]
 
@@ -103,7 +105,8 @@ class PathRun:
         # 1. the path from its beginning on, between its leads
         points = path_mm
         if begin.at > 0:
-            k, place = int(begin.at), at_places(path_mm, np.array([begin.at]))
+            k = int(begin.at)
+            place = at_places(path_mm, np.array([begin.at]))
             points = np.vstack([place, path_mm[k + 1 :], path_mm[1 : k + 1], place])
         before = points[:1] if begin.lead_in is None else begin.lead_in
         after = points[-1:] if begin.lead_out is None else begin.lead_out
@@ -141,7 +144,8 @@ class PathRun:
             leave, shift = detour.leave, len(detour.xy_mm) + 1
             self.at = {drawn: at + shift * (at > leave) for drawn, at in self.at.items()}
             self.guides = [shifted(guide, shift) for guide in self.guides]
-            before, after = self.xy_mm[: leave + 1], self.xy_mm[leave:]
+            before = self.xy_mm[: leave + 1]
+            after = self.xy_mm[leave:]
             self.xy_mm = np.vstack([before, detour.xy_mm, after])
             self.last += shift
             self.at |= {drawn: at + leave + 1 for drawn, at in detour.at.items()}

@@ -78,7 +78,8 @@ def crossing(lines_mm: Sequence[Array]) -> NDArray[np.bool_]:
     firsts = np.r_[0, last + 1]
     crossed = np.zeros((len(closed), len(closed)), bool)
     for a, b in crossings_of(np.vstack(closed), np.setdiff1d(np.arange(len(owner)), last)):
-        i, j = owner[int(a)], owner[int(b)]
+        i = owner[int(a)]
+        j = owner[int(b)]
         if i == j:
             lengths = lengths_mm(closed[i])
             begin_mm, end_mm = np.interp([a, b], firsts[i] + np.arange(len(lengths)), lengths)
@@ -128,7 +129,8 @@ def room(curves: Sequence[DriveCurve], number: int) -> Room | None:
         steps = np.arange(-FINER, FINER + 1) * 2 * cell_mm / FINER
         places = place + np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
         away_mm = near.distances_mm(places)
-        place, cell_mm = places[int(away_mm.argmax())], cell_mm * 2 / FINER
+        place = places[int(away_mm.argmax())]
+        cell_mm = cell_mm * 2 / FINER
     return Room((float(place[0]), float(place[1])), 2 * float(away_mm.max()))
 
 

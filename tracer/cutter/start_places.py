@@ -22,6 +22,7 @@ import numpy as np
 
 from morfax.motion import segments
 from morfax.motion.arrays import Array
+from morfax.motion.plane import cross, left_of
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
@@ -108,7 +109,7 @@ class StartPlaces:
         if lead is None or self.scrap is None:
             return None, 0.0
         along = way if leaving else -way
-        across = np.array([-way[1], way[0]]) * (1 if path.scrap_left else -1)
+        across = left_of(way) * (1 if path.scrap_left else -1)
         for share in SIZES:
             size_mm = share * lead.size_mm
             if size_mm < LEAST_MM:
@@ -143,7 +144,8 @@ class _Path:
         way = heading(self._every, round(mm / APART_MM), True)
         if way is not None:
             return place, way, way
-        before, after = self._at_mm(mm - BESIDE_MM), self._at_mm(mm + BESIDE_MM)
+        before = self._at_mm(mm - BESIDE_MM)
+        after = self._at_mm(mm + BESIDE_MM)
         return place, _unit(place - before), _unit(after - place)
 
     def places(self, start_at: str | None, tool_mm: Array | None) -> Iterator[float]:
@@ -169,7 +171,8 @@ class _Path:
         rolled = np.vstack([self.points_mm[far:], self.points_mm[1 : far + 1]])
         nodes = plain(np.ascontiguousarray(rolled), STRAIGHT_MM)
         # 2. their middles
-        long_mm, begins_mm = np.hypot(*np.diff(nodes, axis=0).T), lengths_mm(nodes)[:-1]
+        long_mm = np.hypot(*np.diff(nodes, axis=0).T)
+        begins_mm = lengths_mm(nodes)[:-1]
         longest = np.argsort(-long_mm, kind="stable")
         middles = begins_mm[longest] + 0.5 * long_mm[longest]
         share = self._lengths[-1] / lengths_mm(nodes)[-1]
@@ -181,13 +184,14 @@ class _Path:
         line = with_places(plain(cut.places_mm, 0.1 * STRAIGHT_MM), EVERY_MM)
         middle = at_places(self.points_mm, np.array([smooth]))[0]
         k = int(np.argmin(np.hypot(*(line - middle).T)))
-        line, reach = np.vstack([line[k:], line[1 : k + 1]]), round(1.0 / EVERY_MM)
+        line = np.vstack([line[k:], line[1 : k + 1]])
+        reach = round(1.0 / EVERY_MM)
         found = list[tuple[bool, float, float]]()
         for corner in segments.corners(line, CORNERS):
             arrives = _unit(line[corner] - line[max(0, corner - reach)])
             leaves = _unit(line[min(corner + reach, len(line) - 1)] - line[corner])
-            turned = float(np.arctan2(_cross(arrives, leaves), arrives @ leaves))
-            across = _unit(np.array([-(arrives + leaves)[1], (arrives + leaves)[0]]))
+            turned = float(np.arctan2(cross(arrives, leaves), arrives @ leaves))
+            across = _unit(left_of(arrives + leaves))
             out = across if self._beside.left else -across
             foot = line[corner] + self._beside.radius_mm * out
             goes_round = (turned > 0) != self._beside.left
@@ -221,8 +225,3 @@ class _Path:
 def _unit(way: Array) -> Array:
     """A direction, of length 1."""
     return np.asarray(way / max(float(np.hypot(*way)), 1e-12))
-
-
-def _cross(a: Array, b: Array) -> float:
-    """The third component of a cross product: positive if b turns left of a."""
-    return float(a[0] * b[1] - a[1] * b[0])

@@ -115,9 +115,7 @@ def _is_clear(
 ) -> bool:
     """Whether the tool can go down at the lead line's tick: from there on no contour is too near."""
     down_at = beside.cut.down_at
-    if (
-        not beside.radius_mm
-    ):  # without a cutter the tool goes down at the tick, as it would on the drawn line
+    if not beside.radius_mm:  # without a cutter the tool goes down at the tick, as drawn
         return True
     if down_at is None or not down_at <= end < beside.cut.first:
         return False
@@ -170,7 +168,8 @@ def _detour(
     run = runs[place.path]
     row = round(run.position(place))
     here = run.xy_mm[row]
-    drawn, moved = feed.resting(xy_mm[begin : end + 1], [0, guide.tip - begin, end - begin])
+    rests = [0, guide.tip - begin, end - begin]
+    drawn, moved = feed.resting(xy_mm[begin : end + 1], rests)
     to_it = feed.run(np.vstack([here, drawn[0]]))
     from_it = feed.run(np.vstack([drawn[-1], here]))
     # 3. the positions of its marks and its tip
@@ -221,7 +220,8 @@ def _with_stops(beside: Beside, run: PathRun, line: Line) -> Line:
     line = replace(line, xy_mm=run.xy_mm, guides=guides, leads=run.leads)
     marks = [replace(mark, at=run.at[mark.at]) for mark in drawn.marks if mark.at in run.at]
     marks = [replace(mark, place_mm=line.place(mark.at)) for mark in marks]
-    here = sorted((run.at[stop.at], stop.number or 0) for stop in stops if stop.at in run.at)
+    on_run = [stop for stop in stops if stop.at in run.at]
+    here = sorted((run.at[stop.at], stop.number or 0) for stop in on_run)
     return replace(
         line,
         marks=tuple(marks),

@@ -23,6 +23,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.motion.plane import heading_of
 from morfax.motion.polyline import at_lengths
 from morfax.tracer.drawing.hollow import FEWEST_PIECES, Seen, rows_of
 
@@ -64,7 +65,7 @@ def width_of(seen: Seen, middles: Array, width_mm: float) -> float:
     for k, place in enumerate(some):
         near = middles[np.hypot(*(middles - place).T) < ABOUT_WIDTHS * width_mm]
         along = np.linalg.svd(near - near.mean(axis=0), full_matrices=False)[2][0]
-        headings[k] = math.atan2(along[1], along[0])
+        headings[k] = heading_of(along)
     widths = width_mm * inks(seen(some, headings, width_mm * ACROSS))
     known = widths[np.isfinite(widths)]
     return median(known) if len(known) else math.nan

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import cross, left_of, meeting
 
 BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
 NEARLY_PARALLEL = 0.1  # sine of the angle between legs that do not meet
@@ -34,7 +35,7 @@ class EdgeLeg(NamedTuple):
         origin, end = (leg[-1], leg[0]) if near < 0 else (leg[0], leg[-1])
         along = (origin - end) / np.hypot(*(origin - end))
         out = leg - origin
-        u, v = out @ along, out @ np.array([-along[1], along[0]])
+        u, v = out @ along, out @ left_of(along)
         from numpy.polynomial import polynomial
 
         straight, bent = (polynomial.polyfit(u, v, degree) for degree in (1, 2))
@@ -44,7 +45,7 @@ class EdgeLeg(NamedTuple):
     def beside(self, place: Array) -> tuple[Array, Array]:
         """The leg beside a place, and its direction there."""
         u = float((place - self.origin) @ self.along)
-        left = np.array([-self.along[1], self.along[0]])
+        left = left_of(self.along)
         powers = np.arange(len(self.across))
         slope = float(np.sum(powers[1:] * self.across[1:] * u ** powers[:-1]))
         direction = self.along + slope * left
@@ -56,11 +57,9 @@ class EdgeLeg(NamedTuple):
         place = 0.5 * (self.origin + other.origin)
         for _ in range(6):
             (p, t), (q, w) = self.beside(place), other.beside(place)
-            cross = t[0] * w[1] - t[1] * w[0]
-            if abs(cross) < NEARLY_PARALLEL:
+            if abs(cross(t, w)) < NEARLY_PARALLEL:
                 return None
-            gap = q - p
-            place = p + t * (gap[0] * w[1] - gap[1] * w[0]) / cross
+            place = meeting(p, t, q, w)
         reach = 4 * float(np.hypot(*(self.origin - other.origin)))
         for leg in (self, other):
             beyond = place - leg.origin

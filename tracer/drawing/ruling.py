@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
+from morfax.motion.plane import left_of
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.tiles import Kept, Tiles
@@ -263,7 +264,7 @@ def _without(darkness: Darkness, family: Family) -> Darkness:
     darker = np.where(seen - printed > EXCESS, seen - printed, 0.0)
     # 2. strokes that come up to the printed line from both sides
     across = np.array(family.across)
-    along = np.array([-across[1], across[0]])
+    along = left_of(across)
     fill = np.zeros(len(i))
     for degrees in FILL_DEG:
         way = across + math.tan(math.radians(degrees)) * along

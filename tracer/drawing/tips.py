@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import meeting
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.sharpening import APART_PX, CLEAR, Edge, most_turned, turned_at
 
@@ -68,8 +69,7 @@ def _tip(places: Array, at: int, softness_px: float) -> Tip | None:
     angle = math.acos(float(np.clip(t @ w, -1, 1)))
     if not SHARPEST < angle < BLUNTEST:
         return None
-    gap, cross = q - p, t[0] * w[1] - t[1] * w[0]
-    vertex = p + t * (gap[0] * w[1] - gap[1] * w[0]) / cross
+    vertex = meeting(p, t, q, w)
     short_px = float((vertex - places[at]) @ (t + w)) / float(np.hypot(*(t + w)))
     return Tip(places[at], angle, short_px) if short_px > SHORT * softness_px else None
 

@@ -141,7 +141,8 @@ def _edges(picture: Picture, corners_mm: Array, corners_px: Array) -> Sightings 
     middle_px, middle_mm = corners_px.mean(axis=0), corners_mm.mean(axis=0)
     parts = []
     for k in range(4):
-        a, b = corners_px[k], corners_px[(k + 1) % 4]
+        a = corners_px[k]
+        b = corners_px[(k + 1) % 4]
         outward = _normal(a, b, middle_px)
         seen = crossings(picture, a + shares * (b - a), np.tile(outward, (PER_EDGE, 1)), reach)
         if len(seen.of) < PER_EDGE / 2:

@@ -55,7 +55,8 @@ def crossings(
     seen = light_at(picture, at)
     # 1. the mixture of colours in which both sides differ most
     part = len(across) // 4
-    inner, outer = seen[:, :part].mean(axis=1), seen[:, -part:].mean(axis=1)
+    inner = seen[:, :part].mean(axis=1)
+    outer = seen[:, -part:].mean(axis=1)
     step = np.median(inner - outer, axis=0)
     if not np.linalg.norm(step) > LEAST_LIGHT:
         return Crossings(np.empty((0, 2)), np.empty(0, np.intp), np.empty(0))
@@ -66,14 +67,18 @@ def crossings(
     half = (high + low) / 2
     fall = -np.gradient(profiles, across, axis=1)
     steepest = np.argmax(fall, axis=1)
-    falls = (profiles[:, :-1] >= half[:, None]) & (profiles[:, 1:] < half[:, None])
+    is_light = profiles >= half[:, None]
+    is_dark = profiles < half[:, None]
+    falls = is_light[:, :-1] & is_dark[:, 1:]
     index = np.arange(len(across) - 1)
     away = np.where(falls, np.abs(index - steepest[:, None]), len(across))
-    k, rows = np.argmin(away, axis=1), np.arange(len(profiles))
+    k = np.argmin(away, axis=1)
+    rows = np.arange(len(profiles))
     contrast = high - low
     good = contrast > max(LEAST_LIGHT, LEAST_SHARE * float(np.median(contrast)))
     good &= away[rows, k] * (across[1] - across[0]) <= NEAR_PX
-    before, after = profiles[rows, k], profiles[rows, k + 1]
+    before = profiles[rows, k]
+    after = profiles[rows, k + 1]
     share = (before - half) / np.maximum(before - after, 1e-9)
     found = across[k] + share * (across[k + 1] - across[k])
     softness = contrast / (math.sqrt(2 * math.pi) * np.maximum(fall[rows, steepest], 1e-9))
@@ -87,10 +92,13 @@ def light_at(picture: Picture, places_px: Array) -> Array:
     x = np.clip(places_px[..., 0] - 0.5, 0, columns - 1.001)
     y = np.clip(places_px[..., 1] - 0.5, 0, rows - 1.001)
     left, top = x.astype(int), y.astype(int)
-    x, y = (x - left)[..., None], (y - top)[..., None]
+    x = (x - left)[..., None]
+    y = (y - top)[..., None]
     right, bottom = left + 1, top + 1
-    upper = (1 - x) * LIGHT[picture[top, left]] + x * LIGHT[picture[top, right]]
-    lower = (1 - x) * LIGHT[picture[bottom, left]] + x * LIGHT[picture[bottom, right]]
+    upper_left, upper_right = LIGHT[picture[top, left]], LIGHT[picture[top, right]]
+    lower_left, lower_right = LIGHT[picture[bottom, left]], LIGHT[picture[bottom, right]]
+    upper = (1 - x) * upper_left + x * upper_right
+    lower = (1 - x) * lower_left + x * lower_right
     return np.asarray((1 - y) * upper + y * lower, float)
 
 

@@ -124,7 +124,8 @@ def fitted(
 
     start = np.concatenate([(first / first[2, 2]).ravel()[:8], np.zeros(3 if inked else 2)])
     found = least_squares(residual, start, method="lm", x_scale=1.0).x
-    projection, gain = _projection(found, sheet, photo), float(found[10]) if inked else 0.0
+    projection = _projection(found, sheet, photo)
+    gain = float(found[10]) if inked else 0.0
     return Fit(projection, sightings, _off_mm(sightings, projection) - gain, gain)
 
 

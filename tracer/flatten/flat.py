@@ -163,7 +163,8 @@ def _of_marks(picture: Picture, scale: float, focal: Focal) -> Flattening | None
 def _of_corners(picture: Picture, wanted: Wanted, focal: Focal) -> Flattening:
     """By four places."""
     assert wanted.paper is not None
-    sheet, photo = Rectangle(*wanted.paper[1:]), photo_of(picture)
+    sheet = Rectangle(*wanted.paper[1:])
+    photo = photo_of(picture)
     corners = np.array(wanted.corners_px)
     if ((corners < 0) | (corners > (photo.width, photo.height))).any():
         raise DrawingFault(

@@ -162,7 +162,8 @@ def _likelier(
 
 def _fit(picture: Picture, found: Sides, paper: Format) -> Fit:
     """Fit a sheet of a format as it lies."""
-    sheet, photo = Rectangle(paper.width_mm, paper.height_mm), photo_of(picture)
+    sheet = Rectangle(paper.width_mm, paper.height_mm)
+    photo = photo_of(picture)
     first = homography_of(corners_of(sheet), outline.corners_of(found), sheet, photo)
     seen = outline.sightings(found, paper.width_mm, paper.height_mm)
     return fitted(seen, sheet, photo, first, inked=False)

@@ -92,14 +92,16 @@ class Layout:
     @property
     def bar_mm(self) -> Array:
         """The two ends (2, 2) of the bar: the outer edges of the strokes there, mm."""
-        middle, y = self.paper.width_mm / 2, self.band_mm[1] + BAR_CLEAR_MM + BAR_END_MM / 2
+        middle = self.paper.width_mm / 2
+        y = self.band_mm[1] + BAR_CLEAR_MM + BAR_END_MM / 2
         return np.array([(middle - BAR_MM / 2, y), (middle + BAR_MM / 2, y)])
 
     @property
     def frame_mm(self) -> Box:
         """Where one draws: whole squares of the grid."""
         inset = MARGIN_MM + MARK_MM + QUIET_MM
-        bottom, top = self.band_mm[3], self.paper.height_mm - inset
+        bottom = self.band_mm[3]
+        top = self.paper.height_mm - inset
         columns = (self.paper.width_mm - 2 * inset) // GRID_MM
         rows = (top - bottom) // GRID_MM
         left = (self.paper.width_mm - columns * GRID_MM) / 2

@@ -70,7 +70,8 @@ def sides(picture: Picture, corners_px: Array) -> list[tuple[Array, Array]] | No
     middle = corners_px.mean(axis=0)
     found = []
     for k in range(4):
-        a, b = corners_px[k], corners_px[(k + 1) % 4]
+        a = corners_px[k]
+        b = corners_px[(k + 1) % 4]
         way = (b - a) / np.hypot(*(b - a))
         outward = np.array([way[1], -way[0]])
         outward = outward if outward @ (a - middle) > 0 else -outward
@@ -184,12 +185,14 @@ def _clearness(small: Picture, corners_px: Array) -> float:
     step = max(2.0, BESIDE * float(np.hypot(rows, columns)))
     middle, steps = corners_px.mean(axis=0), []
     for k in range(4):
-        a, b = corners_px[k], corners_px[(k + 1) % 4]
+        a = corners_px[k]
+        b = corners_px[(k + 1) % 4]
         way = (b - a) / np.hypot(*(b - a))
         outward = np.array([way[1], -way[0]])
         outward = outward if outward @ (a - middle) > 0 else -outward
         on = a + np.linspace(0.04, 0.96, 40)[:, None] * (b - a)
-        outer, inner = on + step * outward, on - step * outward
+        outer = on + step * outward
+        inner = on - step * outward
         inside = ((outer > 0) & (outer < (columns, rows))).all(axis=1)
         change = light_at(small, inner) - light_at(small, outer)
         steps.append(np.where(inside[:, None], change, 0.0))

@@ -170,7 +170,8 @@ def _rules(homography: Array, focal: float) -> tuple[float, float, float]:
     """How far X and Y are from square (cosine), how many times X is longer than Y, and the tilt, rad."""
     along = homography[:, :2] / np.array([[focal], [focal], [1.0]])
     x, y = along.T
-    x_long, y_long = np.linalg.norm(x), np.linalg.norm(y)
+    x_long = np.linalg.norm(x)
+    y_long = np.linalg.norm(y)
     normal = np.cross(x, y)
     tilt = math.acos(min(1.0, abs(float(normal[2])) / float(np.linalg.norm(normal))))
     return float(x @ y) / float(x_long * y_long), float(x_long / y_long), tilt

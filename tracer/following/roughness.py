@@ -21,11 +21,12 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
 from morfax.tracer.sensing.edge_scout import CIRCLE_PX
-from morfax.tracer.sensing.leg import heading_of, turn
+from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import View
 
 PIECE_MM = 3.0  # longer waves are the shape; clean parts stray by 8 um at most

@@ -19,6 +19,7 @@ import numpy as np
 from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import LongArray
+from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head import kernel, mount, screws, slow_cell, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
@@ -27,7 +28,7 @@ from morfax.tracer.head.slow_cell import Stretch
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home, Mark, at_rest, put_on_drum, two_of
 from morfax.tracer.head.trail import Marks, Trail
-from morfax.tracer.sensing.leg import Leg, heading_of, turn
+from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
 
 CHUNK = 6000  # samples that the kernel follows before it reports: a second at the motion rate

@@ -25,6 +25,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.contour import distances_mm
 from morfax.motion.median import median
+from morfax.motion.plane import heading_of
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
 from morfax.tracer.head.state import HOME, MORE, Home, Tuning, put_on_drum
@@ -36,7 +37,7 @@ from morfax.tracer.head.windows import (
     slowly,
     widest,
 )
-from morfax.tracer.sensing.leg import heading_of, turn
+from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.parabola import ROBUST
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View

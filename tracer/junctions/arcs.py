@@ -45,7 +45,8 @@ def outward(cells, centre, ring_mm, inner):  # type: ignore[no-untyped-def]
     arcs = np.zeros(len(seen), ARC)
     count = 0
     for k in range(len(seen)):
-        begin, end = seen[k, 0], seen[k, 1]
+        begin = seen[k, 0]
+        end = seen[k, 1]
         # 1. the arcs within on which it hangs
         parents, parent, incoming, settled, found = _parents(inner, begin, end)
         if len(inner) > 0 and parents == 0:

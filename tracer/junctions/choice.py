@@ -177,7 +177,8 @@ class _Survey:
         legs = sorted(legs, key=lambda leg: abs(self._turn(leg)))
         # 3. left, where the line comes square to another
         if rank == 0 and len(legs) > 1:
-            one, other = self._turn(legs[0]), self._turn(legs[1])
+            one = self._turn(legs[0])
+            other = self._turn(legs[1])
             if abs(one) > STRAIGHT and abs(one + other) < SQUARE:
                 return max(legs[:2], key=self._turn)
         return legs[min(rank, len(legs) - 1)]
@@ -229,7 +230,8 @@ class _Survey:
         end = stroke_end(self.view, leg, longest_mm(self.view))
         if end is None:
             return math.inf
-        way, heading = leg.end_mm - self.incoming.end_mm, self.incoming.heading_rad
+        way = leg.end_mm - self.incoming.end_mm
+        heading = self.incoming.heading_rad
         aside = abs(way[1] * math.cos(heading) - way[0] * math.sin(heading))
         return float(end + aside - 0.5 * self.view.width_mm)
 

@@ -138,7 +138,8 @@ def rounded_corner(
 ) -> Array:
     """The way (n, 2) by the arc that touches both legs so far from their vertex (see `through_corner`)."""
     incoming, outgoing = corner.incoming, corner.outgoing
-    a, b = corner.beyond_mm - touch_mm, -corner.before_mm + touch_mm
+    a = corner.beyond_mm - touch_mm
+    b = -corner.before_mm + touch_mm
     way, along = onto(*stands, incoming, a)
     bend = _arc(incoming.at(a), incoming.heading_at(a), outgoing.at(b), outgoing.heading_at(b))
     return np.vstack([way, along_leg(incoming, along, a), bend, along_leg(outgoing, b, end_mm)])
@@ -213,7 +214,8 @@ def _edge_mm(view: View, corner: Corner, side: int) -> float:
     NaN if it has no edge there.
     """
     before, after = corner.headings_rad()
-    x, y = math.cos(before) - math.cos(after), math.sin(before) - math.sin(after)
+    x = math.cos(before) - math.cos(after)
+    y = math.sin(before) - math.sin(after)
     outward = math.atan2(side * y, side * x)
     reach_mm = REACH_WIDTHS * corner.width_mm + REACH_PX * view.pitch_mm
     vertex_mm = corner.incoming.place(corner.beyond_mm)
@@ -225,7 +227,9 @@ def _edge(cells, vertex, outward, sizes_mm, is_outside):  # type: ignore[no-unty
     """How far the ink reaches from a vertex, mm: the median of some rays. `sizes_mm`: the line's width, and
     how far the edge is sought.
     """
-    width_mm, c, s = sizes_mm[0], math.cos(outward), math.sin(outward)
+    width_mm = sizes_mm[0]
+    c = math.cos(outward)
+    s = math.sin(outward)
     found = np.empty(RAYS)
     for k in range(RAYS):
         off = (k * (2 * ACROSS / (RAYS - 1)) - ACROSS) * width_mm
@@ -245,7 +249,8 @@ def _edge_outward(cells, place, outward, sizes_mm):  # type: ignore[no-untyped-d
     width_mm, reach_mm = sizes_mm
     _, edge = edges(cells, place[0], place[1], outward - math.pi / 2, reach_mm)
     within_mm = 0.5 * width_mm
-    x, y = place[0] - within_mm * math.cos(outward), place[1] - within_mm * math.sin(outward)
+    x = place[0] - within_mm * math.cos(outward)
+    y = place[1] - within_mm * math.sin(outward)
     beyond = edge_along(cells, x, y, outward, reach_mm) - within_mm
     return beyond if math.isnan(edge) or beyond > edge else edge
 

@@ -26,6 +26,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.motion.median import median
+from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.sharpening import APART_PX, PutBack, corners_of
 from morfax.tracer.head.course import FELT_LEGS, SMOOTH
@@ -79,7 +80,8 @@ class EdgeAhead:
     @cached_property
     def corners(self) -> list[PutBack]:
         """The corners on it, in stations and mm."""
-        pitch_mm, places = self.view.pitch_mm, self.felt[:, :2]
+        pitch_mm = self.view.pitch_mm
+        places = self.felt[:, :2]
         along_px = lengths_mm(places) / pitch_mm
         at_px = np.arange(0.0, along_px[-1], APART_PX)
         evenly = np.column_stack([np.interp(at_px, along_px, c) for c in places.T / pitch_mm])
@@ -148,7 +150,8 @@ class EdgeAhead:
         half_mm = FELT_LEGS * self.view.leg_mm
         for _ in range(2):
             reach = max(LEAST_NODES, math.ceil(half_mm / self.view.step_mm))
-            begin, end = max(first, at - reach), min(last, at + reach) + 1
+            begin = max(first, at - reach)
+            end = min(last, at + reach) + 1
             seen = self.felt[begin:end].copy()
             seen[:, 2] = self.view.width_mm
             leg = centre_at(seen, at - begin, half_mm)
@@ -207,7 +210,9 @@ class EdgeAhead:
     def _through(self, stands: tuple[Array, float], end: Node) -> Plan:
         """Stretches from where the head stands to a node: along nodes, and through corners by their legs."""
         place, heading = stands
-        stretches, way, turned = list[Array](), list[Array](), False
+        stretches = list[Array]()
+        way = list[Array]()
+        turned = False
         for mark in self._marks(stands[0], end):
             if isinstance(mark, Node):
                 is_first = not stretches and not way
@@ -216,7 +221,7 @@ class EdgeAhead:
                 way.append(hermite(place, heading, mark.leg.end_mm, mark.leg.heading_rad))
                 place, heading = mark.leg.end_mm, mark.leg.heading_rad
             else:
-                into, out = (math.atan2(v[1], v[0]) for v in (mark.into, mark.out))
+                into, out = (heading_of(v) for v in (mark.into, mark.out))
                 way += [hermite(place, heading, mark.places[0], into), mark.places]
                 place, heading, turned = mark.places[-1], out, True
                 if len(mark.places) == 1 and abs(turn(into, out)) > SMOOTH:

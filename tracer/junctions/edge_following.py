@@ -27,6 +27,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.median import median
+from morfax.motion.plane import heading_of, left_of
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
@@ -107,7 +108,8 @@ def to_vertex(view: View, corner: Corner) -> Corner:
     ):
         return _within_ink(view, corner)
     # 2. the legs by their outer edges
-    side, round_mm = -math.copysign(1.0, turned), rounding(view, corner)[1]
+    side = -math.copysign(1.0, turned)
+    round_mm = rounding(view, corner)[1]
     arriving = _along_outside(view, incoming.seen[::-1], side, corner.beyond_mm - round_mm)
     leaving = _along_outside(view, outgoing.seen, -side, corner.before_mm - round_mm)
     into = incoming if arriving is None else leg_of(arriving[0][::-1], True, arriving[1])
@@ -132,7 +134,8 @@ def _passes(view: View, leg: Leg, vertex_mm: float, turned: float) -> bool:
         return False
     if not all(view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED)):
         return False
-    place, heading = leg.at(vertex_mm + clear_mm), leg.heading_at(vertex_mm + clear_mm)
+    place = leg.at(vertex_mm + clear_mm)
+    heading = leg.heading_at(vertex_mm + clear_mm)
     right, left = view.edges(place, heading, 2 * view.width_mm)
     like = abs(left - right - leg.width_mm) < LIKE * leg.width_mm
     return like and abs(left + right) < CENTRED * leg.width_mm
@@ -172,7 +175,7 @@ def _along_outside(
     if count < FEWEST_STATIONS or base < 2:
         return None
     width = median(seen[base:, 2])
-    pose = float(seen[base, 0]), float(seen[base, 1]), math.atan2(way[1], way[0])
+    pose = float(seen[base, 0]), float(seen[base, 1]), heading_of(way)
     felt = _along_edge(view.cells, pose, side, width, Walk(view.step_mm, count, count))
     if len(felt) < FEWEST_STATIONS:
         return None
@@ -230,9 +233,11 @@ def _turned_back(
     # 2. the way back, half a width within the far edge
     back = np.empty((len(measured), 3))
     for k, i in enumerate(measured):
-        a, b = seen[max(0, i - 3), :2], seen[min(len(seen) - 1, i + 3), :2]
+        a = seen[max(0, i - 3), :2]
+        b = seen[min(len(seen) - 1, i + 3), :2]
         t = (b - a) / np.hypot(*(b - a))
-        back[k, :2] = seen[i, :2] - side * max(excess[i], 0.0) * np.array([-t[1], t[0]])
+        across = side * left_of(t)
+        back[k, :2] = seen[i, :2] - max(excess[i], 0.0) * across
         back[k, 2] = width_mm
     return EdgeRun(seen[: tip + 1], back)
 
@@ -260,16 +265,20 @@ def _along_edge(cells, pose, side, width_mm, walk):  # type: ignore[no-untyped-d
     out = np.empty((walk.stations, 3))
     x, y, heading = pose
     alone, been_wide = 0, False
-    near, far, across = NEAR_EDGE * width_mm, FAR_EDGE * width_mm, ACROSS * width_mm
+    near = NEAR_EDGE * width_mm
+    far = FAR_EDGE * width_mm
+    across = ACROSS * width_mm
     for n in range(walk.stations):
         # 1. the edge, and the middle half a width within it
         if darkness_at(cells, x, y) < cells.level:
             return out[:n].copy()
-        nx, ny = -side * math.sin(heading), side * math.cos(heading)
+        nx = -side * math.sin(heading)
+        ny = side * math.cos(heading)
         aside = end_of_ink(cells, Ray(x, y, nx, ny, 0.0), near, far) - 0.5 * width_mm
         if not abs(aside) < OFF * width_mm + OFF_PX * cells.pitch_mm:
             return out[:n].copy()
-        x, y = x + aside * nx, y + aside * ny
+        x += aside * nx
+        y += aside * ny
         out[n, 0], out[n, 1] = x, y
         # 2. the other edge
         out[n, 2] = end_of_ink(cells, Ray(x, y, -nx, -ny, 0.0), 0.0, across)
@@ -281,5 +290,6 @@ def _along_edge(cells, pose, side, width_mm, walk):  # type: ignore[no-untyped-d
         # 3. a step on
         if n >= 2:
             heading = onward(out, n + 1)
-        x, y = x + walk.step_mm * math.cos(heading), y + walk.step_mm * math.sin(heading)
+        x += walk.step_mm * math.cos(heading)
+        y += walk.step_mm * math.sin(heading)
     return out

@@ -18,6 +18,7 @@ import numpy as np
 from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
+from morfax.motion.plane import heading_of
 from morfax.motion.polyline import with_places
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.plan import Plan
@@ -85,7 +86,7 @@ def _felt_on(view: View, seen: Array) -> Array:
     """
     way = seen[3, :2] - seen[0, :2]
     length_mm = len(seen) * view.step_mm + view.leg_mm
-    more = view.feel(seen[0, :2], math.atan2(way[1], way[0]), length_mm)
+    more = view.feel(seen[0, :2], heading_of(way), length_mm)
     return more if len(more) > len(seen) else seen
 
 
@@ -110,7 +111,9 @@ def _by_round(planner: Planner, seen: Array, i: int) -> Plan | None:
     Each leg is felt up to where its ink shows that the round begins: what is felt of a round is averaged over
     more of the line than the round is long.
     """
-    view, last, first = planner.view, i - SKIPPED - 1, i + SKIPPED + 1
+    view = planner.view
+    last = i - SKIPPED - 1
+    first = i + SKIPPED + 1
     while last + 1 >= LEG_STATIONS and first <= len(seen) - LEG_STATIONS:
         incoming = leg_of(seen[: last + 1], True, view.leg_mm)
         outgoing = leg_of(seen[first:], False, view.leg_mm)

@@ -11,13 +11,13 @@ Source: our own. The head goes across a wider gap as it does across one that is 
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion import long_array
 from morfax.motion.arrays import Array
+from morfax.motion.plane import heading_of
 from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, straight_on
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.parabola import FEWEST
@@ -50,10 +50,11 @@ def _gap_mm(view: View, way_mm: Array) -> float | None:
     if place is None:
         return None
     along = way_mm[-1] - place
-    seen = view.feel(place, math.atan2(along[1], along[0]), felt_mm)
+    seen = view.feel(place, heading_of(along), felt_mm)
     if len(seen) < FEWEST:
         return None
-    leg, most_mm = leg_of(seen, True, view.leg_mm), FARTHEST_WIDTHS * view.width_mm
+    leg = leg_of(seen, True, view.leg_mm)
+    most_mm = FARTHEST_WIDTHS * view.width_mm
     if straight_on(view, leg, most_mm) is None:
         return None
     gaps = np.arange(EVERY_MM, most_mm, EVERY_MM)

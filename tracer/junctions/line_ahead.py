@@ -17,6 +17,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
+from morfax.motion.plane import cross, direction, heading_of
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.parabola import FEWEST
@@ -62,10 +63,10 @@ def _round_about(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
     if off_mm > OFF_CIRCLE * view.width_mm or not radius_mm > gap_mm:
         return None
     out = incoming.end_mm - centre
-    ahead = np.array([math.cos(incoming.heading_rad), math.sin(incoming.heading_rad)])
-    side = math.copysign(1.0, out[0] * ahead[1] - out[1] * ahead[0])  # 1: counter-clockwise
+    ahead = direction(incoming.heading_rad)
+    side = math.copysign(1.0, cross(out, ahead))  # 1: counter-clockwise
     end_mm = centre + out * (radius_mm / float(np.hypot(*out)))
-    heading_rad = math.atan2(out[1], out[0]) + side * math.pi / 2
+    heading_rad = heading_of(out) + side * math.pi / 2
     return replace(
         incoming, end_mm=end_mm, heading_rad=heading_rad, bend_per_mm=side / radius_mm
     )
@@ -106,7 +107,7 @@ def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> L
         legs = []
         for middle in view.ring(end, radius).mean(axis=1):
             if off_heading(float(middle)) < AHEAD:
-                met = end + radius * np.array([math.cos(middle), math.sin(middle)])
+                met = end + radius * direction(middle)
                 legs += [leg for leg in _from(view, met) if not trail.holds(leg, view.width_mm)]
         legs = [leg for leg in legs if off_heading(leg.heading_rad) < AHEAD]
         if legs:
@@ -119,7 +120,7 @@ def _from(view: View, place: Array) -> list[Leg]:
     found, away_mm = [], OFF_PLACE * view.width_mm
     for arc in view.ring(place, away_mm):
         heading = float(arc.mean())
-        start = place + away_mm * np.array([math.cos(heading), math.sin(heading)])
+        start = place + away_mm * direction(heading)
         seen = view.feel(start, heading, view.leg_mm)
         if len(seen) >= FEWEST:
             found.append(leg_of(seen, False, view.leg_mm))

@@ -230,7 +230,8 @@ class Planner:
                 return None
             return Plan([course.through_nodes(nodes)], leg, run.seen, STATIONS)
         to_tip, felt = course.nodes_along(self.view, self.stands, there, 0.0)
-        tip, onto_tip_rad = run.back[0, :2], to_tip[-1][1]
+        tip = run.back[0, :2]
+        onto_tip_rad = to_tip[-1][1]
         from_tip, leg = course.nodes_along(
             self.view, (tip, onto_tip_rad + math.pi), run.back, 0.0
         )

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.junctions.arcs import ARC, outward
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
@@ -99,8 +100,10 @@ def fork_in(view: View, seen: Array, first: int) -> int | None:
 def fork_at(cells, width_mm, seen, first):  # type: ignore[no-untyped-def]
     """The same for kernels: -1 without a fork."""
     for i in range(max(first, FORK_CHORD), len(seen) - FORK_ENDS, FORK_EVERY):
-        x, y = seen[i, 0], seen[i, 1]
-        way_x, way_y = x - seen[i - FORK_CHORD, 0], y - seen[i - FORK_CHORD, 1]
+        x = seen[i, 0]
+        y = seen[i, 1]
+        way_x = x - seen[i - FORK_CHORD, 0]
+        way_y = y - seen[i - FORK_CHORD, 1]
         length = math.hypot(way_x, way_y)
         c, s = way_x / length, way_y / length
         # 1. where the felt line has left the straight one
@@ -134,7 +137,9 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
     """The clean legs that leave a junction, but for the one by which the `trail` (n, 2) came in."""
     trail = _up_to(trail, centre)
     way_in = trail, np.hypot(*(trail - centre).T)
-    arcs, found, at = np.empty(0, ARC), list[Leg](), 0
+    arcs = np.empty(0, ARC)
+    found = list[Leg]()
+    at = 0
     last_mm = max(FARTHEST_MM, FARTHEST_WIDTHS * view.width_mm)
     more_mm = MORE_LEGS * view.leg_mm
     radii = np.arange(BEGIN * view.width_mm, last_mm, view.step_mm)
@@ -215,7 +220,7 @@ def _leg_outward(view: View, centre: Array, radius: float, arc: np.void) -> Leg 
     track = np.array([arc["middle_two_back"], arc["middle_one_back"], arc["middle"]])
     places = centre + radii[:, None] * np.column_stack([np.cos(track), np.sin(track)])
     way = places[-1] - places[0]
-    heading = math.atan2(way[1], way[0])
+    heading = heading_of(way)
     view = view.like(places[-1], heading)
     seen = view.feel(places[0], heading, view.leg_mm)
     if len(seen) < FEWEST_STATIONS:

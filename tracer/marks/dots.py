@@ -20,6 +20,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.motion.compiled import njit
 from morfax.motion.median import median
+from morfax.motion.plane import direction, heading_of
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.marks.sizes import (
     DOT_ALONG,
@@ -46,7 +47,7 @@ def disc(view: View, place: Array, along: Array) -> Array | None:
     if found is None:
         return None
     centre, arms = found
-    heading = math.atan2(along[1], along[0])
+    heading = heading_of(along)
     ahead = [abs(turn(heading, arm)) for arm in arms]
     back = [abs(turn(heading + math.pi, arm)) for arm in arms]
     off_line = np.minimum(ahead, back)
@@ -70,7 +71,7 @@ def dot_ahead(view: View, leg: Leg) -> bool:
     """Whether a leg leads to a dot, at which the line may end or not."""
     for along, place in _rounds_ahead(view, leg):
         heading = leg.heading_at(along)
-        if disc(view, place, np.array([math.cos(heading), math.sin(heading)])) is not None:
+        if disc(view, place, direction(heading)) is not None:
             return True
     return False
 

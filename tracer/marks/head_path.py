@@ -32,7 +32,8 @@ class HeadPath:
         if len(places) < count:  # the last length is the end of the path, but for rounding
             places.add(positions[-1:, :2])
             position.add(at[None, 2:])
-        self.at_mm, self.position = step_mm * np.arange(count), position.whole()[:count, 0]
+        self.at_mm = step_mm * np.arange(count)
+        self.position = position.whole()[:count, 0]
         self.places = places.whole()[:count]
         self.along = _along(self.places)
 
@@ -68,8 +69,10 @@ def _walked(block, step_mm, number, at):  # type: ignore[no-untyped-def]
     out, count = np.empty((1024, 3)), 0
     first, come_mm, moved = at
     for k in range(len(block) - 1):
-        x, y = block[k, 0], block[k, 1]
-        dx, dy = block[k + 1, 0] - x, block[k + 1, 1] - y
+        x = block[k, 0]
+        y = block[k, 1]
+        dx = block[k + 1, 0] - x
+        dy = block[k + 1, 1] - y
         next_mm = come_mm + math.hypot(dx, dy)
         if next_mm == come_mm:
             continue

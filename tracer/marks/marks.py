@@ -120,7 +120,8 @@ def _foot_mm(
         return None
     nearest = round(stroke.foot_mm / path.step_mm)
     station = int(np.clip(nearest, 0, len(path.places) - 1))
-    place, along = path.places[station], path.along[station]
+    place = path.places[station]
+    along = path.along[station]
     return float(path.at_mm[station] + crossing_mm(view, place, along, [stroke, *across]))
 
 
@@ -157,7 +158,8 @@ def _strokes(view: View, path: HeadPath) -> list[SideStroke]:
     row_mm = max(0.5 * view.width_mm, 2 * view.pitch_mm)
     rows = view.width_mm + np.arange(0.0, sizes.FARTHEST_MM + 0.1, row_mm)
     dark = _are_dark(view, path, np.r_[rows, -rows])
-    left, right = dark[: len(rows)], dark[len(rows) :]
+    left = dark[: len(rows)]
+    right = dark[len(rows) :]
     return [*_of_side(view, path, 1, rows, left), *_of_side(view, path, -1, rows, right)]
 
 
@@ -165,7 +167,8 @@ def _of_side(
     view: View, path: HeadPath, side: int, rows: Array, dark: Bits
 ) -> list[SideStroke]:
     """The strokes of one side, from where the cells of its rows see ink."""
-    least_mm, most_mm = sizes.SEEN[0] * view.width_mm, 2 * sizes.SEEN[1] * view.width_mm
+    least_mm = sizes.SEEN[0] * view.width_mm
+    most_mm = 2 * sizes.SEEN[1] * view.width_mm
     found, feet_mm = list[SideStroke](), list[float]()  # the feet in their order
     for away, ink in zip(rows, dark, strict=True):
         for begin, end in _pulses(ink, len(path.places)):
@@ -182,7 +185,8 @@ def _of_side(
 
 def _is_among(view: View, foot_mm: float, feet_mm: list[float]) -> bool:
     """Whether a stroke with this foot has been found already, from another row of cells."""
-    within_mm, at = sizes.SAME_WIDTHS * view.width_mm, bisect(feet_mm, foot_mm)
+    within_mm = sizes.SAME_WIDTHS * view.width_mm
+    at = bisect(feet_mm, foot_mm)
     return any(
         abs(foot_mm - other_mm) <= within_mm for other_mm in feet_mm[max(0, at - 1) : at + 1]
     )

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.motion.median import median
+from morfax.motion.plane import direction, heading_of, meeting
 from morfax.tracer.drawing.holes import holes
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.marks.sizes import (
@@ -161,7 +162,8 @@ def _inside(sheet: Sheet, patch: int) -> Iterator[tuple[Array, float, bool]]:
     top, bottom, left, right = sheet.patches.box(chosen)
     if (bottom - top) * (right - left) > MOST_PX:
         return
-    pitch, rows = sheet.drawing.pitch_mm, sheet.drawing.darkness.shape[0]
+    pitch = sheet.drawing.pitch_mm
+    rows = sheet.drawing.darkness.shape[0]
     ink = sheet.patches.painted(chosen, top, bottom, left, right)
     for x, y, wide, high, _ in holes(ink):
         size_mm = max(wide, high) * pitch
@@ -188,9 +190,11 @@ def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
     The fourth arm may run on as the lead line, or another line may begin anywhere on it.
     """
     # 1. three arms square to each other, and a fourth, all of them inked
-    half, middle = 0.5 * (b - a), a + 0.5 * (b - a)
+    half = 0.5 * (b - a)
+    middle = a + 0.5 * (b - a)
     arm = c - middle
-    reach, length = float(np.hypot(*half)), float(np.hypot(*arm))
+    reach = float(np.hypot(*half))
+    length = float(np.hypot(*arm))
     if abs(length - reach) >= ALIKE * reach or abs(arm @ half) > SQUARE * length * reach:
         return None
     fourth = -arm * min(1.0, reach / length)
@@ -230,7 +234,7 @@ def _felt_inward(view: View, tip: Array, middle: Array) -> Array:
     way = middle - tip
     length = float(np.hypot(*way))
     start = tip + 0.3 * view.width_mm * way / length
-    return view.feel(start, math.atan2(way[1], way[0]), length - view.width_mm)[:, :2]
+    return view.feel(start, heading_of(way), length - view.width_mm)[:, :2]
 
 
 def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
@@ -240,7 +244,7 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
     """
     for arc in view.ring(centre, reach_mm + BEYOND[0] * view.width_mm):
         heading = float(arc.mean())
-        way = np.array([math.cos(heading), math.sin(heading)])
+        way = direction(heading)
         for start in centre + (reach_mm + BEYOND[:, None] * view.width_mm) * way:
             seen = view.feel(start, heading, view.leg_mm)
             if len(seen) < 4:
@@ -255,11 +259,7 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
 
 def _crossing(one: Array, other: Array) -> Array:
     """Where the straight lines through two strokes' places (n, 2) cross."""
-    (a, t), (b, u) = _straight(one), _straight(other)
-    across = b - a
-    of_way = u[1] * across[0] - u[0] * across[1]
-    of_lines = t[0] * u[1] - t[1] * u[0]
-    return a + t * of_way / of_lines
+    return meeting(*_straight(one), *_straight(other))
 
 
 def _straight(places: Array) -> tuple[Array, Array]:

@@ -23,6 +23,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.median import median
+from morfax.motion.plane import left_of
 from morfax.tracer.marks import sizes
 from morfax.tracer.sensing.parabola import LEAST_OFF_MM, OUTLIERS, ROBUST
 from morfax.tracer.sensing.photocell import LEVEL, STEP_PX
@@ -32,16 +33,11 @@ from morfax.tracer.sensing.view import View
 
 TURNS = 3  # the cells are turned this often: by then they stand square to a stroke
 ACROSS = 1.2  # widths, along the path from a stroke's middle: its edges are nearer
-WIDE, STRAY = (
-    1.6,
-    0.25,
-)  # widths: a dash is no wider, and its middle no further from the stroke's own line
+# widths: a dash is no wider, and its middle no further from the stroke's own line
+WIDE, STRAY = 1.6, 0.25
 DASH = 1.5  # widths: ink in line with a stroke that goes on for longer is a dash
-SPECK_MM, SPECK_PX, SPECK_WIDTHS = (
-    0.16,
-    2.5,
-    0.6,
-)  # of paper on a stroke: two pixels through the aperture
+# of paper on a stroke: two pixels through the aperture
+SPECK_MM, SPECK_PX, SPECK_WIDTHS = 0.16, 2.5, 0.6
 NEAREST = 0.4  # widths from the path: the line's own ink is not felt
 
 
@@ -132,7 +128,7 @@ def felt(
     ends = reach < longest_mm and _ends(view, base, seen, touches)
     is_clear = _is_clear(view, base, middles, touches)
     # 3. where it is
-    across = base.side * np.array([-base.along[1], base.along[0]])
+    across = base.side * left_of(base.along)
     places = base.place + middles[:, :1] * base.along + middles[:, 1:2] * across
     on_path = middles[:, :2] + [at_mm, 0.0]
     return SideStroke(base.side, on_path, places, touches, ends, reach, is_clear, is_like)
@@ -140,7 +136,7 @@ def felt(
 
 def _ends(view: View, base: Base, seen: Array, touches: bool) -> bool:
     """Whether a stroke ends at its far end, and at the near one if it does not touch the line."""
-    width, across = view.width_mm, base.side * np.array([-base.along[1], base.along[0]])
+    width, across = view.width_mm, base.side * left_of(base.along)
     far = seen[np.argmax(seen[:, 1]), :2] - [0, 0.5 * width]
     near = seen[np.argmin(seen[:, 1]), :2] + [0, 0.5 * width]
     for u, v in [far] if touches else [far, near]:
@@ -168,7 +164,7 @@ def crossing_mm(view: View, place: Array, along: Array, mark: Sequence[SideStrok
     The mark is one stroke, or one on either side. It is felt square to itself: felt along the path, its round
     tips and the corners at its foot would draw the middle of a slanted mark aside.
     """
-    left = np.array([-along[1], along[0]])
+    left = left_of(along)
     slant, foot_mm = mark[0].side * mark[0].slant, 0.0
     for _ in range(TURNS):
         square = (along - slant * left) / math.hypot(1.0, slant)
@@ -193,7 +189,7 @@ def _square_to(
     farthest_mm = float(away.max()) * lean + width
     seen = _stroke_at(view.cells, base, away_mm, farthest_mm, width)
     seen = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width * lean + 0.5 * width * abs(slant)]
-    out = stroke.side * np.array([-square[1], square[0]])
+    out = stroke.side * left_of(square)
     return place + seen[:, :1] * square + seen[:, 1:2] * out if len(seen) > 3 else stroke.places
 
 
@@ -211,7 +207,8 @@ def _robust_line(x: Array, y: Array) -> tuple[float, float]:
 def _row(base, v_mm):  # type: ignore[no-untyped-def]
     """The ray along the path at a distance away from it."""
     place, along, side = base
-    x, y = place[0] - side * v_mm * along[1], place[1] + side * v_mm * along[0]
+    x = place[0] - side * v_mm * along[1]
+    y = place[1] + side * v_mm * along[0]
     return Ray(x, y, along[0], along[1], 0.0)
 
 

@@ -67,7 +67,8 @@ class Drill:
 
     def presets(self, at: Counters, rapid_mm_s: float) -> tuple[Preset, ...]:
         """Settings of the panel from a place down to depth and back; none if the place is as deep already."""
-        made, bottom = list[Preset](), max(0, -at.count)
+        made = list[Preset]()
+        bottom = max(0, -at.count)
         while bottom < self.depth_counts:
             near = min(self.clear_counts - bottom, at.count)  # from here on at the drill's feed
             bottom = min(bottom + self.peck_counts, self.depth_counts)

@@ -182,7 +182,8 @@ class Operator:
 
     def _along(self, halts: list[Halt], line: Line) -> list[Action]:
         """What is done at each halt; the tool is at clearance before the first."""
-        down, actions = self._down(halts, line), list[Action]()
+        down = self._down(halts, line)
+        actions = list[Action]()
         z_mm = left_mm = self.work.clearance_mm
         for halt in halts:
             if halt.kind == "leave":

@@ -97,7 +97,8 @@ def window(
     tiles: MadeTiles, top: int, bottom: int, left: int, right: int
 ) -> NDArray[np.float32]:
     """What cells see at the pixels of some rows and columns of a large sheet; only those on the sheet."""
-    bottom, right = min(bottom, tiles.rows), min(right, tiles.columns)
+    bottom = min(bottom, tiles.rows)
+    right = min(right, tiles.columns)
     out = np.empty((max(bottom - top, 0), max(right - left, 0)), np.float32)
     _window(tiles, top, left, out)
     return out
@@ -115,7 +116,8 @@ def _weights(spread_px: float) -> Array:
 @njit(cache=True)
 def darkness_at(tiles, x_px, y_px):  # type: ignore[no-untyped-def]
     """Darkness behind the spot at a place in pixels from the sheet's lower-left corner; paper outside."""
-    x, y = x_px - 0.5, tiles.rows - y_px - 0.5
+    x = x_px - 0.5
+    y = tiles.rows - y_px - 0.5
     i, j = math.floor(y), math.floor(x)
     if i < 0 or j < 0 or i >= tiles.rows - 1 or j >= tiles.columns - 1:
         return 0.0
@@ -130,7 +132,9 @@ def between(tiles, i, j, down, along):  # type: ignore[no-untyped-def]
         place = _make(tiles, i >> SHIFT, j >> SHIFT)
     if place == PAPER:
         return 0.0
-    seen, a, b = tiles.made[place], i & WITHIN, j & WITHIN
+    seen = tiles.made[place]
+    a = i & WITHIN
+    b = j & WITHIN
     above = seen[a, b] * (1 - along) + seen[a, b + 1] * along
     below = seen[a + 1, b] * (1 - along) + seen[a + 1, b + 1] * along
     return above * (1 - down) + below * down
@@ -141,7 +145,8 @@ def _make(tiles, up, across):  # type: ignore[no-untyped-def]
     """Make a tile, in the place of the oldest; its place, or PAPER where there is no ink about it."""
     weights, half = tiles.weights, len(tiles.weights) // 2
     size = SIDE_PX + 1 + 2 * half
-    top, left = up * SIDE_PX - half, across * SIDE_PX - half
+    top = up * SIDE_PX - half
+    left = across * SIDE_PX - half
     # 1. the sheet about it
     part, is_inked = np.zeros((size, size)), False
     for a in range(size):

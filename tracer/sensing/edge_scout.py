@@ -70,7 +70,8 @@ def onto_edge(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
         inward_x, inward_y = first_x / size, first_y / size
         aside = (BALANCED - mean) * CIRCLE_PX * cells.pitch_mm / size
         aside = min(max(aside, -farthest), farthest)
-        x_mm, y_mm = x_mm + aside * inward_x, y_mm + aside * inward_y
+        x_mm += aside * inward_x
+        y_mm += aside * inward_y
     return x_mm, y_mm, inward_x, inward_y, size
 
 
@@ -122,6 +123,7 @@ def along_edge(cells, pose, step_mm, stations):  # type: ignore[no-untyped-def]
             # 2. or all round
             stands = (x, y, math.atan2(way_y, way_x))
             next_x, next_y = _round_about(cells, stands, side, step_mm)
-            on_x, on_y = (next_x - x) / step_mm, (next_y - y) / step_mm
+            on_x = (next_x - x) / step_mm
+            on_y = (next_y - y) / step_mm
         x, y, way_x, way_y = next_x, next_y, on_x, on_y
     return seen

@@ -17,6 +17,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.motion.plane import direction, heading_of, left_of
 from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, ROBUST, leg_through, parabola
 
 # straight on is within this, and a leg turns off to a side by more than that
@@ -47,14 +48,15 @@ class Leg:
         if isinstance(along_mm, (float, int)):
             return np.array(self.place(along_mm))
         s = np.asarray(along_mm, float)[..., None]
-        t = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad)])
-        n = np.array([-t[1], t[0]])
+        t = direction(self.heading_rad)
+        n = left_of(t)
         return self.end_mm + s * t + 0.5 * self.bend_per_mm * s * s * n
 
     def place(self, along_mm: float) -> tuple[float, float]:
         """The place at one distance, as `at` has it to the bit: an array of two takes ten times as long."""
         x, y = self.end_mm.tolist()
-        c, s = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        c = math.cos(self.heading_rad)
+        s = math.sin(self.heading_rad)
         aside = 0.5 * float(self.bend_per_mm) * along_mm * along_mm
         return x + along_mm * c + aside * -s, y + along_mm * s + aside * c
 
@@ -94,7 +96,8 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
     d = seen[:, :2] - seen[i, :2]
     near = np.flatnonzero(np.hypot(*d.T) < half_mm)
     heading, t, n = _chord(d[near[-1]] - d[near[0]])
-    x, y = d[near] @ t, d[near] @ n
+    x = d[near] @ t
+    y = d[near] @ n
     width = median(seen[near, 2])
     off = np.abs(seen[near, 2] / width - 1)
     usual = max(OUTLIERS * ROBUST * median(off), BITTEN)
@@ -107,17 +110,12 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
 
 def _chord(chord: Array) -> tuple[float, Array, Array]:
     """Heading of a chord, and the unit vectors along it and to its left."""
-    heading = math.atan2(chord[1], chord[0])
-    t = np.array([math.cos(heading), math.sin(heading)])
-    return heading, t, np.array([-t[1], t[0]])
+    heading = heading_of(chord)
+    t = direction(heading)
+    return heading, t, left_of(t)
 
 
 # two legs
-
-
-def heading_of(step: Array) -> float:
-    """Heading of a step (x, y), rad."""
-    return math.atan2(step[1], step[0])
 
 
 def turn(a: float, b: float) -> float:
@@ -129,11 +127,13 @@ def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
     """Distances (beyond the incoming leg's end, before the outgoing leg's) where they cross, mm, or None."""
     s = u = 0.0
     for _ in range(6):
-        a, b = incoming.heading_at(s), outgoing.heading_at(-u)
+        a = incoming.heading_at(s)
+        b = outgoing.heading_at(-u)
         cross = math.sin(turn(a, b))
         if abs(cross) < NEARLY_PARALLEL:
             return None
-        (from_x, from_y), (to_x, to_y) = incoming.place(s), outgoing.place(-u)
+        from_x, from_y = incoming.place(s)
+        to_x, to_y = outgoing.place(-u)
         dx, dy = to_x - from_x, to_y - from_y
         ds = (dx * math.sin(b) - dy * math.cos(b)) / cross
         du = (dx * math.sin(a) - dy * math.cos(a)) / cross

@@ -57,7 +57,8 @@ def _without_blot(seen, last):  # type: ignore[no-untyped-def]
     count = len(seen)
     usual = median_of(seen[:, 2])
     spread = ROBUST * median_of(np.abs(seen[:, 2] - usual))
-    within, most = max(OUTLIERS * spread, BLOT * usual), count // 3
+    within = max(OUTLIERS * spread, BLOT * usual)
+    most = count // 3
     spoilt = most
     for k in range(most + 1):
         station = count - 1 - k if last else k
@@ -83,10 +84,14 @@ def _leg(seen, end, within_mm):  # type: ignore[no-untyped-def]
     first, last = near[0], near[count - 1]
     heading = math.atan2(seen[last, 1] - seen[first, 1], seen[last, 0] - seen[first, 0])
     c, s = math.cos(heading), math.sin(heading)
-    x, y, widths = np.empty(count), np.empty(count), np.empty(count)
+    x = np.empty(count)
+    y = np.empty(count)
+    widths = np.empty(count)
     for k in range(count):
-        dx, dy = seen[near[k], 0] - end[0], seen[near[k], 1] - end[1]
-        x[k], y[k] = _along(dx, dy, c, s), _across(dx, dy, c, s)
+        dx = seen[near[k], 0] - end[0]
+        dy = seen[near[k], 1] - end[1]
+        x[k] = _along(dx, dy, c, s)
+        y[k] = _across(dx, dy, c, s)
         widths[k] = seen[near[k], 2]
     # 2. the parabola
     (slope, offset, bend), misfit = fit(x, y)
@@ -141,9 +146,12 @@ def parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
     And the uncertainty of the last coefficient per unit of noise in y.
     """
     n = degree + 1
-    moments, right, powers = np.zeros(5), np.zeros(3), np.ones(5)
+    moments = np.zeros(5)
+    right = np.zeros(3)
+    powers = np.ones(5)
     for k in range(len(x)):
-        powers[1], powers[2] = x[k], x[k] * x[k]
+        powers[1] = x[k]
+        powers[2] = x[k] * x[k]
         powers[3], powers[4] = x[k] * powers[2], powers[2] * powers[2]
         for i in range(n):
             right[i] += weights[k] * y[k] * powers[i]
@@ -199,7 +207,9 @@ def bend_at(seen, i, half_mm):  # type: ignore[no-untyped-def]
     heading = math.atan2(seen[last, 1] - seen[first, 1], seen[last, 0] - seen[first, 0])
     c, s = math.cos(heading), math.sin(heading)
     # 2. their weights
-    x, y, weights = np.empty(count), np.empty(count), np.empty(count)
+    x = np.empty(count)
+    y = np.empty(count)
+    weights = np.empty(count)
     for k in range(count):
         weights[k] = seen[near[k], 2]
     width = median_of(weights)
@@ -207,8 +217,10 @@ def bend_at(seen, i, half_mm):  # type: ignore[no-untyped-def]
         weights[k] = abs(weights[k] / width - 1.0)
     usual = max(OUTLIERS * ROBUST * median_of(weights), BITTEN)
     for k in range(count):
-        dx, dy = seen[near[k], 0] - seen[i, 0], seen[near[k], 1] - seen[i, 1]
-        x[k], y[k] = dx * c + dy * s, dy * c - dx * s
+        dx = seen[near[k], 0] - seen[i, 0]
+        dy = seen[near[k], 1] - seen[i, 1]
+        x[k] = dx * c + dy * s
+        y[k] = dy * c - dx * s
         spoiled = (weights[k] / usual) ** 4
         weights[k] = max(1.0 - (x[k] / half_mm) ** 2, 0.05) / (1.0 + spoiled)
     # 3. the parabola

@@ -124,7 +124,8 @@ def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
     if near.mean() > MOSTLY:
         return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
     # 2. each stretch behind the spot
-    seen, halo = np.zeros(darkness.shape, np.float32), math.ceil(HALO_SPREADS * sigma_px) + 1
+    seen = np.zeros(darkness.shape, np.float32)
+    halo = math.ceil(HALO_SPREADS * sigma_px) + 1
     side = TILE_BLOCKS * BLOCK_PX
     edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     row, begin = np.nonzero(edges == 1)
@@ -146,7 +147,8 @@ def _blur(
 ) -> None:
     """Fill in a window of a sheet behind a spot that looks a halo beyond it."""
     top, left, bottom, right = window
-    above, beside = max(0, top - halo), max(0, left - halo)
+    above = max(0, top - halo)
+    beside = max(0, left - halo)
     soft = cv2.GaussianBlur(
         darkness[above : bottom + halo, beside : right + halo], (0, 0), sigma_px
     )
@@ -164,7 +166,8 @@ def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     rows, columns = seen.shape
     if rows == 0:
         return aperture.darkness_at(cells.tiles, x_mm / pitch_mm, y_mm / pitch_mm)
-    x, y = x_mm / pitch_mm - 0.5, rows - y_mm / pitch_mm - 0.5
+    x = x_mm / pitch_mm - 0.5
+    y = rows - y_mm / pitch_mm - 0.5
     i, j = math.floor(y), math.floor(x)
     if i < 0 or j < 0 or i >= rows - 1 or j >= columns - 1:
         return 0.0
@@ -209,7 +212,8 @@ def _look_round(cells, centre, radius_mm, out):  # type: ignore[no-untyped-def]
     """Fill `out` with what a cell sees going once round a centre."""
     for k in range(len(out)):
         a = TWO_PI * k / len(out)
-        x, y = centre[0] + radius_mm * math.cos(a), centre[1] + radius_mm * math.sin(a)
+        x = centre[0] + radius_mm * math.cos(a)
+        y = centre[1] + radius_mm * math.sin(a)
         out[k] = darkness_at(cells, x, y)
 
 
@@ -233,7 +237,8 @@ def ring(cells, centre, radius_mm):  # type: ignore[no-untyped-def]
         return arcs[:1].copy()
     count, begin = 0, math.nan
     for n in range(1, samples + 1):
-        now, before = seen[(first_light + n) % samples], seen[(first_light + n - 1) % samples]
+        now = seen[(first_light + n) % samples]
+        before = seen[(first_light + n - 1) % samples]
         if (now < level) != (before < level):
             a = (first_light + n - 1 + (level - before) / (now - before)) * TWO_PI / samples
             if now >= level:

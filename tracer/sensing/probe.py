@@ -15,6 +15,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.plane import direction, left_of
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.photocell import STEP_PX, darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
@@ -42,8 +43,8 @@ def reach_of_ink(
     last_mm = (int(farthest_mm / step) - 1) * step  # the last sample
     if last_mm < 0:
         return None
-    t = np.array([math.cos(incoming.heading_rad), math.sin(incoming.heading_rad)])
-    place = incoming.end_mm + aside_mm * np.array([-t[1], t[0]])
+    t = direction(incoming.heading_rad)
+    place = incoming.end_mm + aside_mm * left_of(t)
     if view.darkness_at(place) < view.level:
         return 0.0
     ray = Ray(place[0], place[1], t[0], t[1], incoming.bend_per_mm)
@@ -117,7 +118,9 @@ def _joined(cells, level, centre, headings, ways_mm):  # type: ignore[no-untyped
     for heading in headings:
         c, s = math.cos(heading), math.sin(heading)
         for beside in beside_mm:
-            x, y, inked = centre[0] - beside * s, centre[1] + beside * c, 0
+            x = centre[0] - beside * s
+            y = centre[1] + beside * c
+            inked = 0
             while inked < len(along_mm):
                 along = along_mm[inked]
                 if darkness_at(cells, x + along * c, y + along * s) <= level:

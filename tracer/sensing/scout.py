@@ -58,7 +58,8 @@ def scout(cells, pose, width_mm, step_mm, stations):  # type: ignore[no-untyped-
             count += 1
             since_speck += 1
             spoilt = 0
-            x, y = seen[count - 1, 0], seen[count - 1, 1]
+            x = seen[count - 1, 0]
+            y = seen[count - 1, 1]
             if count >= 3:
                 heading = onward(seen, count)
         else:
@@ -68,7 +69,8 @@ def scout(cells, pose, width_mm, step_mm, stations):  # type: ignore[no-untyped-
             spoilt += 1
             if spoilt > passed_over or count == 0:
                 break
-        x, y = x + step_mm * math.cos(heading), y + step_mm * math.sin(heading)
+        x += step_mm * math.cos(heading)
+        y += step_mm * math.sin(heading)
     return seen[: count if since_speck > passed_over else before_speck].copy()
 
 

@@ -35,7 +35,8 @@ def changes_along(cells, place, ways, reach_mm, out):  # type: ignore[no-untyped
     step = STEP_PX * cells.pitch_mm
     last_mm = reach_mm - step  # the sample after this is the last within reach
     for k in range(len(ways)):
-        spoke, begin_mm = Ray(place[0], place[1], ways[k, 0], ways[k, 1], 0.0), 0.0
+        spoke = Ray(place[0], place[1], ways[k, 0], ways[k, 1], 0.0)
+        begin_mm = 0.0
         for change in range(out.shape[1]):
             found = crossing_mm(cells, spoke, begin_mm, last_mm, 0.0)
             if math.isnan(found):

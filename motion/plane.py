@@ -1,0 +1,39 @@
+"""Directions in the plane: the one of a heading, the heading of one, what is to its left, and where two meet.
+
+Signals: headings, rad from X to Y, and directions (2,) of any length in and out; of a cross product the third
+component.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+
+
+def direction(heading_rad: float) -> Array:
+    """The direction of a heading, of length 1."""
+    return np.array([math.cos(heading_rad), math.sin(heading_rad)])
+
+
+def heading_of(way: Array) -> float:
+    """The heading of a direction, rad."""
+    return math.atan2(way[1], way[0])
+
+
+def left_of(way: Array) -> Array:
+    """A direction a quarter of a turn to the left, as long."""
+    return np.array([-way[1], way[0]])
+
+
+def cross(a: Array, b: Array) -> float:
+    """The area between two directions: positive if the second is to the left of the first."""
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def meeting(place: Array, way: Array, other: Array, its_way: Array) -> Array:
+    """Where a line through a place meets one through another; they may not be parallel."""
+    gap = other - place
+    return np.asarray(place + way * cross(gap, its_way) / cross(way, its_way))
