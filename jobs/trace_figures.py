@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from morfax.tracer.cutter.cutter import Cutter, Left
+    from morfax.tracer.ink.hatching import Hatching
     from morfax.tracer.ink.left_out import Area
     from morfax.tracer.program.program import Trace
     from morfax.tracer.program.small_rings import SmallPatch
@@ -73,28 +74,28 @@ def ink(trace: Trace) -> dict[str, Any]:
             if area.what == "outlined area"
         ]
         or None,
-        "hatching": [
-            {
-                "hatching_place_mm": family.place_mm,
-                "strokes": len(family.strokes),
-                "hatching_mm": family.length_mm,
-                "apart_mm": family.apart_mm,
-                "heading_deg": math.degrees(family.heading_rad),
-            }
-            for family in balance.hatching
-        ]
-        or None,
-        "places_left_out": [
-            {"left_out_place_mm": (x, y), "left_out_mm": length_mm}
-            for x, y, length_mm in balance.lost
-        ]
-        or None,
-        "places_run_once": [
-            {"doubled_place_mm": (x, y), "doubled_mm": length_mm}
-            for x, y, length_mm in balance.single
-        ]
-        or None,
+        "hatching": [_hatched(family) for family in balance.hatching] or None,
+        "places_left_out": _along("left_out", balance.lost) or None,
+        "places_run_once": _along("doubled", balance.single) or None,
     }
+
+
+def _hatched(family: Hatching) -> dict[str, Any]:
+    """A family of hatching strokes."""
+    return {
+        "hatching_place_mm": family.place_mm,
+        "strokes": len(family.strokes),
+        "hatching_mm": family.length_mm,
+        "apart_mm": family.apart_mm,
+        "heading_deg": math.degrees(family.heading_rad),
+    }
+
+
+def _along(what: str, stretches: Sequence[tuple[float, float, float]]) -> list[dict[str, Any]]:
+    """Where some stretches are and how long, by what they are."""
+    return [
+        {f"{what}_place_mm": (x, y), f"{what}_mm": length_mm} for x, y, length_mm in stretches
+    ]
 
 
 def _small_patches(name: str, patches: Sequence[SmallPatch]) -> dict[str, Any]:

@@ -200,71 +200,90 @@ class Drawing:
         Raises DrawingFault for a missing scale, for a scan that holds no line, and for printed lines that are
         not there.
         """
-        # 1. grey levels on square pixels
         pitch = scale.pitches_mm(scan)
         grey = scan.pixels
         if ink is not None:
             colours = np.asarray(scan.pixels, np.uint8)
             grey = inks.covered(colours, ink, None if reading.edge else pitch[0])
         grey = on_square_pixels(grey, pitch)
-        # 2. darkness
         notes = (*scan.notes, *scale.notes(scan))
         if reading.edge:
-            from morfax.tracer.drawing.shapes import outlined
+            return cls._of_shapes(scan.file, np.asarray(grey), pitch[0], notes)
+        return cls._of_lines(scan.file, grey, pitch[0], notes, reading)
 
-            rims = outlined(np.asarray(grey), pitch[0])
-            return cls(
-                rims.darkness,
-                pitch[0] / rims.finer,
-                scan.file,
-                rims.finer,
-                rims.edges_mm,
-                rims.shade,
-                notes=(*notes, *rims.notes),
-            )
-        darkness: Any  # or tiles
-        if grey.size >= large.LARGE_PX:
-            made: Any = large.levelled(grey, pitch[0])
-        else:
-            made = levelled(grey, pitch[0], reading.shapes_are_ink)
-        darkness, shapes, paper_noise = made
-        darkness, note = ruling.left_out(darkness, pitch[0], reading.printed)
+    @classmethod
+    def _of_shapes(
+        cls, file: Path, grey: NDArray[Any], pitch_mm: float, notes: tuple[str, ...]
+    ) -> Drawing:
+        """The edges of the filled shapes in grey levels on square pixels."""
+        from morfax.tracer.drawing.shapes import outlined
+
+        rims = outlined(grey, pitch_mm)
+        return cls(
+            rims.darkness,
+            pitch_mm / rims.finer,
+            file,
+            rims.finer,
+            rims.edges_mm,
+            rims.shade,
+            notes=(*notes, *rims.notes),
+        )
+
+    @classmethod
+    def _of_lines(
+        cls, file: Path, grey: Any, pitch_mm: float, notes: tuple[str, ...], reading: Reading
+    ) -> Drawing:
+        """The lines in grey levels on square pixels."""
+        # 1. darkness, without what is printed and the scan's border
+        darkness, shapes, paper_noise = _levelled(grey, pitch_mm, reading)
+        darkness, note = ruling.left_out(darkness, pitch_mm, reading.printed)
         notes = notes if note is None else (*notes, note)
         edges = without_border(darkness)
-        if edges:
-            notes = (*notes, border_note(edges))
-        # 3. grain, of lines as they are drawn, pale lines, and too large pixels
+        notes = (*notes, border_note(edges)) if edges else notes
+        # 2. pale lines
         lines, pale_mm = within(darkness, paper_noise), 0.0
-        in_lines = lines.grain
+        drawn_grain = lines.grain
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
-            pale_mm = deepened(darkness, pitch[0], paper_noise, shapes)
+            pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes)
         if pale_mm:
             lines = within(darkness, paper_noise)
-        width_px, seen_px = lines.width_px, lines.seen_px
-        if seen_px < coarse.SEEN_PX:
-            notes = (*notes, coarse.note(seen_px, pitch[0]))
+        if lines.seen_px < coarse.SEEN_PX:
+            notes = (*notes, coarse.note(lines.seen_px, pitch_mm))
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
-        slit, grainy = grain.slit_for(in_lines, width_px, pitch[0]), False
-        if slit is not None:
-            behind = grain.behind(slit, np.asarray(darkness))
-            grainy = grain.mends(np.asarray(darkness), behind, in_lines)
-            if grainy:
-                darkness, notes = behind, (*notes, grain.note(slit, pitch[0]))
-        finer = coarse.times_finer(darkness, width_px)
+        # 3. grain, of lines as they are drawn
+        slit = grain.slit_for(drawn_grain, lines.width_px, pitch_mm)
+        behind = None if slit is None else _behind(slit, np.asarray(darkness), drawn_grain)
+        if slit is not None and behind is not None:
+            darkness, notes = behind, (*notes, grain.note(slit, pitch_mm))
+        # 4. too large pixels
+        finer = coarse.times_finer(darkness, lines.width_px)
         if finer > 1:
-            darkness = coarse.finer(np.asarray(darkness), finer, seen_px)
+            darkness = coarse.finer(np.asarray(darkness), finer, lines.seen_px)
             if reading.pale_is_ink:  # a line of a pixel is paler now
-                pale_mm += deepened(darkness, pitch[0] / finer, None, shapes)
+                pale_mm += deepened(darkness, pitch_mm / finer, None, shapes)
         notes = (*notes, deepened_note(pale_mm)) if pale_mm else notes
         return cls(
             darkness,
-            pitch[0] / finer,
-            scan.file,
+            pitch_mm / finer,
+            file,
             shapes=shapes,
             notes=notes,
             finer=finer,
-            seen_px=seen_px,
+            seen_px=lines.seen_px,
             is_hard=hard,
-            grainy=grainy,
+            grainy=behind is not None,
             paper_noise=paper_noise,
         )
+
+
+def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Any:
+    """Darkness, or tiles of it, where filled shapes are, and the noise of the paper."""
+    if grey.size >= large.LARGE_PX:
+        return large.levelled(grey, pitch_mm)
+    return levelled(grey, pitch_mm, reading.shapes_are_ink)
+
+
+def _behind(slit: grain.Slit, darkness: Darkness, drawn_grain: float) -> Darkness | None:
+    """The darkness behind a slit, if the slit mends the grain of the lines."""
+    behind = grain.behind(slit, darkness)
+    return behind if grain.mends(darkness, behind, drawn_grain) else None
