@@ -147,6 +147,13 @@ def at_places(line_mm: Array, at: Array) -> Array:
     return np.asarray((line_mm[after] - line_mm[before]) * share + line_mm[before])
 
 
+def begun_at(line_mm: Array, at: float) -> Array:
+    """A closed polyline from one of its places on, numbered with shares, and round to it again, (n, 2) mm."""
+    at = at or len(line_mm) - 1
+    place = at_places(line_mm, np.array([at]))
+    return np.vstack([place, line_mm[math.floor(at) + 1 :], line_mm[1 : math.ceil(at)], place])
+
+
 def at_lengths(line_mm: Array, at_mm: Array) -> Array:
     """Where a polyline is at some lengths from its start, (n, 2) mm."""
     s = lengths_mm(line_mm)

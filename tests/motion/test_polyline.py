@@ -149,3 +149,21 @@ def test_places_beside_an_upright_line_take_no_more_looks_than_beside_a_sloping_
         nearest_mm(line[::30] + np.array([60.0, -30.0]), line)
         looks.append(Looked.times)
     assert 0 < looks[1] < looks[0]
+
+
+@pytest.mark.parametrize(
+    ("at", "found"),
+    [
+        (0.0, [0, 1, 2, 3, 0]),
+        (1, [1, 2, 3, 0, 1]),
+        (3.0, [3, 0, 1, 2, 3]),
+        (1.5, [1.5, 2, 3, 0, 1, 1.5]),
+        (3.5, [3.5, 0, 1, 2, 3, 3.5]),
+        (0.25, [0.25, 1, 2, 3, 0, 0.25]),
+    ],
+)
+def test_a_closed_line_may_begin_at_any_of_its_places(at: float, found: list[float]) -> None:
+    """A square, once round; no place is there twice but the first and the last."""
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
+    expected = polyline.at_places(square, np.array(found))
+    assert polyline.begun_at(square, at) == pytest.approx(expected)

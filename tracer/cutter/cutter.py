@@ -159,8 +159,8 @@ def with_cutter(
 def _goes_nowhere(curves: Sequence[DriveCurve], cutter: Cutter) -> MotionFault:
     """The fault of a cutter that has room beside no line, with the widest cutter that has."""
     rooms = [sides.room(curves, k) for k in range(len(curves))]
-    most_mm = max((room.passes_mm for room in rooms if room is not None), default=0.0)
-    up_to = f", up to {most_mm:g} mm" if most_mm > 0 else ""
+    fits_mm = [room.passes_mm for room in rooms if room is not None]
+    up_to = f", up to {max(fits_mm):g} mm" if any(fits_mm) else ""
     return MotionFault(
         f"a cutter of {cutter.diameter_mm:g} mm has no room {cutter.side} of any line;"
         f" give a smaller --cutter{up_to}, or another --side"

@@ -15,7 +15,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.feed import run_along
-from morfax.motion.polyline import at_places, length_mm, lengths_mm
+from morfax.motion.polyline import begun_at, length_mm, lengths_mm
 from morfax.tracer.cutter.contour import PathPlace
 from morfax.tracer.cutter.start_places import Begin
 from morfax.tracer.following.line import Leads
@@ -103,22 +103,21 @@ class PathRun:
     def along(cls, path_mm: Array, begin: Begin, feed: FeedRate) -> PathRun:
         """Run a path with its leads; a closed one from and to a place between its points."""
         # 1. the path from its beginning on, between its leads
-        points = path_mm
-        if begin.at > 0:
-            k = int(begin.at)
-            place = at_places(path_mm, np.array([begin.at]))
-            points = np.vstack([place, path_mm[k + 1 :], path_mm[1 : k + 1], place])
-        before = points[:1] if begin.lead_in is None else begin.lead_in
-        after = points[-1:] if begin.lead_out is None else begin.lead_out
-        way = np.vstack([before[:-1], points, after[1:]])
+        ways = [begun_at(path_mm, begin.at) if begin.at > 0 else path_mm]
+        if begin.lead_in is not None:
+            ways.insert(0, begin.lead_in[:-1])
+        if begin.lead_out is not None:
+            ways.append(begin.lead_out[1:])
+        way = np.vstack(ways)
         # 2. run as one, and where it comes onto the path and leaves it
         xy_mm = feed.run(way)
         share = length_mm(xy_mm) / max(length_mm(way), NOTHING_MM)
         first, last = 0, len(xy_mm) - 1
         if begin.lead_in is not None:
-            first = round(position_at(xy_mm, share * length_mm(before)))
+            first = round(position_at(xy_mm, share * length_mm(begin.lead_in)))
         if begin.lead_out is not None:
-            last = round(position_at(xy_mm, share * (length_mm(way) - length_mm(after))))
+            until_mm = length_mm(way) - length_mm(begin.lead_out)
+            last = round(position_at(xy_mm, share * until_mm))
         return cls(xy_mm, path_mm, begin, first, last)
 
     @property

@@ -26,6 +26,7 @@ from morfax.motion.plane import cross, left_of
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
+    begun_at,
     evenly,
     lengths_mm,
     plain,
@@ -168,8 +169,7 @@ class _Path:
         """Middles of the straight stretches, the longest first."""
         # 1. begun at a place far out, where no straight stretch is parted
         far = int(np.argmax(np.hypot(*(self.points_mm - self.points_mm.mean(axis=0)).T)))
-        rolled = np.vstack([self.points_mm[far:], self.points_mm[1 : far + 1]])
-        nodes = plain(np.ascontiguousarray(rolled), STRAIGHT_MM)
+        nodes = plain(begun_at(self.points_mm, far), STRAIGHT_MM)
         # 2. their middles
         long_mm = np.hypot(*np.diff(nodes, axis=0).T)
         begins_mm = lengths_mm(nodes)[:-1]
@@ -184,7 +184,7 @@ class _Path:
         line = with_places(plain(cut.places_mm, 0.1 * STRAIGHT_MM), EVERY_MM)
         middle = at_places(self.points_mm, np.array([smooth]))[0]
         k = int(np.argmin(np.hypot(*(line - middle).T)))
-        line = np.vstack([line[k:], line[1 : k + 1]])
+        line = begun_at(line, k)
         reach = round(1.0 / EVERY_MM)
         found = list[tuple[bool, float, float]]()
         for corner in segments.corners(line, CORNERS):

@@ -16,9 +16,9 @@ LINE = np.array([[0.0, 0.0], [40.0, 0.0]])
 RADIUS_MM = 3.0
 
 
-def motion(x_mm: Array, y_mm: Array, z_mm: float) -> list[Motion]:
-    """A motion at a height, in one block."""
-    return [Motion(np.column_stack([x_mm, y_mm, np.full(len(x_mm), z_mm)]), 6000.0, 0.0)]
+def motion(x_mm: Array, y_mm: Array, z_mm: float | Array) -> list[Motion]:
+    """A motion, in one block."""
+    return [Motion(np.column_stack([x_mm, y_mm, z_mm + 0 * x_mm]), 6000.0, 0.0)]
 
 
 def beside(away_mm: float, z_mm: float) -> list[Motion]:
@@ -60,7 +60,7 @@ def test_a_gouge_of_a_hundredth_of_a_second_is_found_wherever_it_begins(first: i
 def test_a_tool_that_only_stands_or_drills_there_gouges_nothing() -> None:
     """A hole is drilled where it was drawn, however near to a line."""
     still = np.full(600, 10.0)
-    check(motion(still, 0.1 * still, -1.0))
+    check(motion(still, 0.1 * still, np.linspace(2.0, -5.0, 600)))
 
 
 def test_the_place_that_is_told_is_the_deepest() -> None:

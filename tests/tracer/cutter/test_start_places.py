@@ -160,7 +160,7 @@ def test_where_no_place_has_room_for_whole_leads_the_longest_are_taken() -> None
     assert 0.85 * 4 / 1.5 < in_mm <= 4 / 1.5
 
 
-@pytest.mark.parametrize(("wide_mm", "has_lead"), [(0.05, False), (0.4, True)])
+@pytest.mark.parametrize(("wide_mm", "has_lead"), [(0.14, False), (0.4, True)])
 def test_a_lead_below_a_tenth_of_a_millimetre_is_none(wide_mm: float, has_lead: bool) -> None:
     """In a slot an arc of r wants r and half of it."""
     slot = [(0.0, 0.0), (20.0, 0.0), (20.0, wide_mm), (0.0, wide_mm)]
