@@ -24,7 +24,6 @@ from morfax.recorder.cubics.cubics import (
     record_cubics,
 )
 from morfax.recorder.cubics.file import (
-    MOST_POINTS,
     CubicFormat,
     CubicProgram,
     read_program,
@@ -278,6 +277,7 @@ BAD = [
     (GOOD.replace("46000 ", ""), "9 whole numbers", 11),
     (GOOD.replace("intervals 1", "intervals 2"), "1 of the 2 intervals", None),
     (GOOD.replace("intervals 1", "intervals 0"), "more than the 0", 11),
+    (GOOD.replace("intervals 1", "intervals 10000001"), "a whole number up to 10000000", None),
     (GOOD.replace("end\n", ""), "cut short", None),
     (GOOD[:140], "9 whole numbers", 11),
     (GOOD.replace("46000", "46001"), "comes to 1000", 11),
@@ -344,7 +344,7 @@ def test_a_loop_that_ends_where_it_began_is_no_further_off_there(tmp_path: FileP
     ("name", "least", "most", "below", "above"),
     [
         ("interval_s", 1e-4, 3600.0, 0.9e-4, 3601.0),
-        ("points", 2, MOST_POINTS, 1, 2 * MOST_POINTS),
+        ("points", 2, 4096, 1, 8192),  # the cube of 4096 with places of 67 m fits a register
         ("linear", 1, 64, 0, 128),
         ("counts_per_mm", 1.0, 1e6, 0.9, 1.1e6),
         ("modulus_per_s", 1e-9, 1e5, 0.0, 1.1e5),

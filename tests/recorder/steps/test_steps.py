@@ -228,6 +228,9 @@ def test_an_axis_row_is_punched_as_figure_6_has_it(
     assert [bin(row) for row in found] == [bin(row) for row in rows]
     down = encode(np.array(lengths), np.ones(len(lengths), bool), fmt)
     assert [int(row) for row in down] == [0b1000_0000 | row for row in rows]
+    if not np.any(lengths, axis=0)[2]:  # five channels have neither Z nor a tool
+        five = encode(np.array(lengths), np.ones(len(lengths), bool), StepFormat(channels=5))
+        assert five.tolist() == rows
 
 
 def test_vectors_are_punched_in_pairs_of_one_tool_and_no_second_change_of_z() -> None:
