@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from morfax.recorder.tape.check_frame import (
     COUNTS_PER_CYCLE,
+    LEAST_ACCELERATION,
+    LEAST_SPEED,
     NUMBERS,
     SYMBOLS,
     SYNC,
@@ -19,6 +21,8 @@ from morfax.recorder.tape.check_frame import (
     from_bits,
     said_by,
     to_bits,
+    to_code,
+    to_value,
 )
 
 OCTAVE_STEP = 2 ** (1 / 8)  # speeds and accelerations are rounded up to this
@@ -125,3 +129,15 @@ def test_the_sync_word_is_like_itself_only() -> None:
     full[SYNC_SYMBOLS - 1] = 0
     assert np.abs(full).max() <= SYNC_SYMBOLS / 3
     assert abs(word @ word[::-1]) <= SYNC_SYMBOLS / 2
+
+
+@pytest.mark.parametrize("least", [LEAST_SPEED, LEAST_ACCELERATION])
+def test_eight_codes_are_an_octave_from_the_least_on(least: float) -> None:
+    """126 codes reach 15.6 octaves further; the last one is no bound."""
+    assert [to_code(value, least) for value in (0.0, -1.0, least / 9, least)] == [0, 0, 1, 1]
+    assert to_code(2 * least, least) == 9 and to_code(2.01 * least, least) == 10
+    assert to_value(1, least) == least and to_value(9, least) == 2 * least
+    largest = least * 2 ** (125 / 8)
+    assert to_code(largest, least) == 126 and to_value(126, least) == pytest.approx(largest)
+    assert to_code(1.01 * largest, least) == 127 and to_value(127, least) == math.inf
+    assert to_value(0, least) == 0.0

@@ -8,7 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from morfax.motion.faults import TapeFault
-from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat, is_format_text
+from morfax.recorder.tape.format import (
+    LARGEST_TEXT_BYTES,
+    TapeFormat,
+    columns_of,
+    is_format_text,
+)
 
 GOOD = json.loads(TapeFormat(end_mm=(1.0, 2.0, 3.0)).to_json())
 
@@ -117,3 +122,67 @@ def test_any_value_is_a_format_or_a_fault_of_one_line(value: Any) -> None:
 def test_a_remark_is_no_format() -> None:
     assert not is_format_text("made with a sound editor")
     assert not is_format_text("")
+
+
+AXES = tuple(f"a{k}" for k in range(16))
+
+
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ({"sample_rate_hz": 2**31}, {"sample_rate_hz": 2**31 + 1}),
+        ({"samples_per_motion": 2}, {"samples_per_motion": 1}),
+        ({"samples_per_motion": 10_000}, {"samples_per_motion": 10_001}),
+        ({"reference_hz": 17_999.0}, {"reference_hz": 18_000.0}),  # a third more is 24 kHz
+        ({"cycles_per_mm": 1e-9}, {"cycles_per_mm": 0.0}),
+        ({"cycles_per_mm": 9e11}, {"cycles_per_mm": 1e12}),
+        ({"dwell_s": 0.0}, {"dwell_s": -1e-9}),
+        ({"dwell_s": 3600.0}, {"dwell_s": 3601.0}),
+        ({"level": 1.0}, {"level": 1.001}),
+        # the check signal takes a fifth of the carrier more
+        ({"level": 1 / 1.2, "checked": True}, {"level": 0.84, "checked": True}),
+        ({"reference_hz": 5000.0, "checked": True}, {"reference_hz": 4999.0, "checked": True}),
+        ({"reference_hz": 4999.0}, {"reference_hz": 0.0}),
+        ({"axes": AXES[:15]}, {"axes": AXES}),
+        ({"axes": ("a" * 10,)}, {"axes": ("a" * 11,)}),
+        ({"axes": ("x",)}, {"axes": ("ä",)}),
+        ({"still": ("x", "z")}, {"still": ("x", "w")}),
+        ({"alike": ("x", "y")}, {"alike": ("w",)}),
+        ({"pickup": "coil"}, {"pickup": "needle"}),
+    ],
+)
+def test_a_format_is_taken_at_its_bounds_and_refused_beyond_them(
+    good: dict[str, Any], bad: dict[str, Any]
+) -> None:
+    fmt = TapeFormat(**good)
+    for name, value in good.items():
+        assert getattr(fmt, name) == value
+    with pytest.raises(ValueError, match="; it must be"):
+        TapeFormat(**bad)
+
+
+def test_the_version_is_the_lowest_that_can_say_it() -> None:
+    assert TapeFormat().version == 1
+    assert TapeFormat(pickup="coil").version == 2
+    for entry in ("still", "alike"):
+        assert TapeFormat(**{entry: ("x",)}).version == 3  # type: ignore[arg-type]
+    assert "pickup" not in json.loads(TapeFormat().to_json())
+    assert "still" not in json.loads(TapeFormat(pickup="coil").to_json())
+
+
+def test_speeds_and_travel_follow_from_reference_and_cycles() -> None:
+    """A third of the reference is the most; 8 samples to a period of the motion."""
+    fmt = TapeFormat(
+        sample_rate_hz=96_000, reference_hz=9000.0, cycles_per_mm=50.0, axes=("x", "y")
+    )
+    assert (fmt.largest_deviation_hz, fmt.largest_speed_mm_s) == (3000.0, 60.0)
+    assert (fmt.tracks, fmt.motion_rate_hz, fmt.mm_per_cycle) == (3, 12_000.0, 0.02)
+    assert fmt.carrier.reference_cycles == 0.75
+    assert fmt.can_be_checked and not TapeFormat(reference_hz=4000.0).can_be_checked
+
+
+@pytest.mark.parametrize("order", [(1, 2, 2, 3), (0, 1, 2, 3), (2, 3, 4, 5), (1, 2, 3)])
+def test_an_order_names_each_track_once(order: tuple[int, ...]) -> None:
+    with pytest.raises(TapeFault, match="are no order; name each of the tracks 1 to 4 once"):
+        columns_of(order, 4)
+    assert columns_of((2, 1, 4, 3), 4) == [1, 0, 3, 2] and columns_of(None, 4) is None
