@@ -93,6 +93,36 @@ def test_another_reference_is_told() -> None:
         bearings(tracks(swing, 0.3), TapeFormat(reference_hz=4000.0))
 
 
+@pytest.mark.parametrize("reference_hz", [6000.0, 9000.0])
+def test_a_recorder_whose_band_ends_below_the_carrier_is_told(reference_hz: float) -> None:
+    """What is left of track 1 then is the check signal, a sixth of the reference."""
+    frames = tracks(swing, 0.3)
+    t_s = np.arange(len(frames)) / RATE_HZ
+    frames[:, 0] = 0.1 * np.sin(2 * np.pi * reference_hz / 6 * t_s)
+    band = f"one that passes {reference_hz * 2 / 3:.0f} to {reference_hz * 4 / 3:.0f} Hz"
+    said = rf"carries the check signal of {reference_hz / 6:.0f} Hz and not the carrier.*{band}"
+    with pytest.raises(TapeFault, match=said):
+        bearings(frames, TapeFormat(reference_hz=reference_hz))
+    for hz in (reference_hz / 6 * 0.88, reference_hz / 6 * 1.12):
+        frames[:, 0] = 0.1 * np.sin(2 * np.pi * hz * t_s)
+        with pytest.raises(TapeFault, match=f"carries {hz:.0f} Hz where the reference"):
+            bearings(frames, TapeFormat(reference_hz=reference_hz))
+
+
+@pytest.mark.parametrize(
+    ("off", "is_let_pass"), [(-0.09, True), (0.09, True), (-0.11, False), (0.11, False)]
+)
+def test_a_reference_that_is_a_little_off_is_the_tape_s_speed(
+    off: float, is_let_pass: bool
+) -> None:
+    frames = tracks(lambda t_s: np.zeros((len(t_s), 3)), 0.3, Transport(speed=1 + off))
+    if is_let_pass:
+        assert bearings(frames).reference_hz == pytest.approx((1 + off) * REFERENCE_HZ, abs=1)
+    else:
+        with pytest.raises(TapeFault, match="where the reference of 6000 Hz should be"):
+            bearings(frames)
+
+
 def test_a_track_of_noise_is_told() -> None:
     frames = tracks(swing, 0.3)
     frames[:, 1] = np.random.default_rng(5).normal(0, 0.3, len(frames))
