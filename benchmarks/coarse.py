@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 
 from benchmarks.pencil import BLACK, HEAD, PAPER, Levels, coverage, measured, outline, told
-from morfax.tracer.drawing.scan import MM_PER_INCH
+from morfax.motion.units import MM_PER_INCH
 
 LINE_MM = 0.5
 SPOT = 2.355  # standard deviations to the breadth at half of the height

@@ -22,9 +22,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.contour import distance, distances_mm, pointwise
 from morfax.motion.faults import Fault
-from morfax.motion.units import parse_length_mm
+from morfax.motion.units import MM_PER_INCH, parse_length_mm
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.raster import MM_PER_INCH
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.program import ENDINGS
 from morfax.tracer.program.trace_lines import trace_lines

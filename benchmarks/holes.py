@@ -19,8 +19,9 @@ from PIL import Image
 
 from benchmarks.large import used
 from benchmarks.rows import Row, tell
+from morfax.motion.units import MM_PER_INCH
 
-DPI, MM_PER_INCH, LINE_MM = 300, 25.4, 0.5
+DPI, LINE_MM = 300, 0.5
 HOLE_MM, APART_MM = 6.0, 10.0
 SIXTEENTH = 4  # bits: places are drawn to a sixteenth of a pixel
 ASKED = {100: 2.0, 1000: 16.0}  # s

@@ -22,8 +22,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from benchmarks.rows import Row, tell
+from morfax.motion.units import MM_PER_INCH
 
-DPI, MM_PER_INCH, LINE_MM = 600, 25.4, 0.5
+DPI, LINE_MM = 600, 0.5
 A0_MM = 841.0, 1189.0
 A0_MPX = 558.0
 MARGIN_MM = 20.0

@@ -31,9 +31,10 @@ from morfax.jobs.settings import LineSettings
 from morfax.jobs.skips import gap_across_skips
 from morfax.motion.contour import distance
 from morfax.motion.faults import Fault
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
-from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
+from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.program.trace import trace
 

@@ -46,7 +46,7 @@ from benchmarks.pencil import (
     told,
 )
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.drawing.scan import MM_PER_INCH
+from morfax.motion.units import MM_PER_INCH
 
 Random = np.random.Generator
 PX_PER_MM = DPI / MM_PER_INCH

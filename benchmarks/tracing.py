@@ -31,10 +31,10 @@ from morfax.motion.contour import distances_mm
 from morfax.motion.motion import thin
 from morfax.motion.pathfile import read_path
 from morfax.motion.polyline import lengths_mm
+from morfax.motion.units import MM_PER_INCH
 from morfax.player.tape.playback import play
 from morfax.recorder.tape.tape import TapeFormat, record
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.raster import MM_PER_INCH
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.jobs.wrong_use import WrongUse
+from morfax.motion.units import MM_PER_INCH
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -59,7 +60,7 @@ def made_flat(
     scan: Scan, wanted: Wanted, bar_mm: float | None, listener: Listener
 ) -> tuple[Scan, Flattening]:
     """A scan in colours made flat, and how well; raises DrawingFault if it cannot be."""
-    from morfax.tracer.drawing.scan import MM_PER_INCH, Stated
+    from morfax.tracer.drawing.scan import Stated
     from morfax.tracer.flatten.flat import flattened
     from morfax.tracer.flatten.layout import BAR_MM
 

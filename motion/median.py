@@ -13,6 +13,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 MANY = 500  # numbers: to find their middle takes less time than to put them in order
 
 

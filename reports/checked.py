@@ -15,6 +15,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.reports.canvas import new_figure, save
+from morfax.reports.overlay import MARGIN_SHARE
 from morfax.reports.plate import View
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ CHORD_RAD = math.radians(4)  # of an arc that is drawn
 ARROWS = 60  # along the whole cut
 ARROW_IN = 0.12  # its length
 MOST_MARKED = 30  # findings with their line; further ones would hide the drawing
-MARGIN_SHARE = 0.06  # of the larger side, round what is shown
 WIDTH_IN = 8.5
 SIDE_IN = 1.8  # height of the view along the way
 

@@ -15,6 +15,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from morfax.motion.files import written_beside
+from morfax.motion.units import MM_PER_INCH
 
 if TYPE_CHECKING:
     from morfax.recorder.steps.file import StepProgram
@@ -141,6 +142,6 @@ def _write_png(program: StepProgram, file: FilePath) -> None:
             [mm * PX_PER_MM for mm in (h.x_mm - r, h.y_mm - r, h.x_mm + r, h.y_mm + r)],
             fill=HOLE,
         )
-    dpi = PX_PER_MM * 25.4
+    dpi = PX_PER_MM * MM_PER_INCH
     with written_beside(file) as beside:
         image.save(beside, dpi=(dpi, dpi))

@@ -33,11 +33,11 @@ from morfax.player.gcode.moves import RAPID, Move, Program
 from morfax.player.gcode.rs274 import GcodeReader, parse_rs274
 from morfax.player.gcode.tool_state import TORCH, ToolState
 from morfax.recorder.gcode.machine import HPGL, Machine, machine, names
+from morfax.recorder.gcode.program_head import HEAD_LINES
 from morfax.recorder.gcode.program_text import END
 from morfax.recorder.gcode.takes import Code, codes
 
 PLOTS = (".plt", ".hpgl")
-HEAD_LINES = 10  # among which a program of ours says what it is for
 
 FOR = re.compile(r"^[(;]\s*for ([\w.-]+): ")
 _PARAMETER = re.compile(r"^\s*#<[^>]*>\s*=.*$")

@@ -27,6 +27,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from morfax.motion.faults import ProgramFault
+from morfax.motion.units import MM_PER_INCH
 from morfax.player.gcode.arc_words import OURS, ArcWords, Place, WordError
 from morfax.player.gcode.gcode_text import COMMENT, WORD
 from morfax.player.gcode.modal_groups import BLENDING, CODES, DISTANCE, MOTION, READ, UNITS
@@ -40,7 +41,6 @@ from morfax.player.gcode.moves import (
     Program,
 )
 
-INCH_MM = 25.4
 LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
 
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
@@ -163,7 +163,7 @@ class GcodeReader:
     def _set_modes(self, groups: dict[str, int]) -> None:
         """Units, distance mode and motion of this line and those after it."""
         if UNITS in groups:
-            self.scale = INCH_MM if groups[UNITS] == 20 else 1.0
+            self.scale = MM_PER_INCH if groups[UNITS] == 20 else 1.0
         if DISTANCE in groups:
             self.relative = groups[DISTANCE] == 91
         if MOTION in groups:

@@ -17,11 +17,9 @@ from typing import NamedTuple
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.motion.segments import Source
+from morfax.recorder.gcode.closing import CLOSED_MM
 from morfax.recorder.gcode.plan import BlockPlan, Writing, plan
 from morfax.recorder.gcode.program_text import Block
-
-# a gap as wide as a fine line's noise on a scan; a closed trace ends within 0.01 mm of its start
-CLOSED_MM = 0.05
 
 Place = tuple[float, float]
 

@@ -5,16 +5,17 @@ Source: the international inch (1959), 25.4 mm; CSS 2.1, 4.3.2: a px is 1/96 inc
 
 from __future__ import annotations
 
-INCH_MM = 25.4
+from morfax.motion.units import MM_PER_INCH
+
 UNITS_MM = {
     "um": 1e-3,
     "mm": 1.0,
     "cm": 10.0,
     "m": 1e3,
-    "in": INCH_MM,
-    "ft": 12 * INCH_MM,
-    "pt": INCH_MM / 72,
-    "px": INCH_MM / 96,
+    "in": MM_PER_INCH,
+    "ft": 12 * MM_PER_INCH,
+    "pt": MM_PER_INCH / 72,
+    "px": MM_PER_INCH / 96,
 }
 # an SVG's own attribute, which morfax writes: where its lower left corner is in the motion's coordinates, mm
 ZERO = "data-lower-left-mm"

@@ -23,10 +23,11 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
-from morfax.recorder.drawings.drawn_units import INCH_MM, NO_UNIT, UNITS_MM, ZERO, unit_mm
+from morfax.motion.units import MM_PER_INCH
+from morfax.recorder.drawings.drawn_units import NO_UNIT, UNITS_MM, ZERO, unit_mm
 
 LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
-PHYSICAL_MM = {"mm": 1.0, "cm": 10.0, "in": INCH_MM, "pt": INCH_MM / 72, "pc": INCH_MM / 6,
+PHYSICAL_MM = {"mm": 1.0, "cm": 10.0, "in": MM_PER_INCH, "pt": MM_PER_INCH / 72, "pc": MM_PER_INCH / 6,
                "q": 0.25}  # fmt: skip
 SHAPED = 1e-6  # width and height that differ in scale by a smaller share are rounded
 

@@ -36,7 +36,7 @@ from morfax.recorder.gcode.made import Made
 from morfax.recorder.gcode.plan import BlockPlan
 from morfax.recorder.gcode.program_text import CUTS, RAPID, WORDS, Block, digits
 
-HEAD_LINES = 10  # among which the head says where the zero is
+HEAD_LINES = 10  # among which a program says for which machine it is, and where the zero is
 SAME_MM = 0.02  # of two sizes that are told in hundredths
 ZERO_LINE = re.compile(r"^[(;] ?zero at (-?[\d.]+),(-?[\d.]+) mm of the sheet")
 SHARP_RAD = math.radians(20)  # between two blocks of a bend it is less; chosen by trial

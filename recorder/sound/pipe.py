@@ -23,12 +23,12 @@ import numpy as np
 
 from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
+from morfax.recorder.sound.riff import UNKNOWN
 from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, Stored
 
 LARGEST_CHUNK_BYTES = 1 << 20  # of a header: more is no tape
 FEWEST_TRACKS, MOST_TRACKS = 3, 64  # reference, X, Y; more is no tape
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
-_UNKNOWN = 0xFFFFFFFF  # a length that is not known yet
 _FULL_SCALE = 32767  # of 16 bit, as libsndfile writes
 
 
@@ -114,10 +114,10 @@ class PipeSink(Ending):
         kind = struct.pack(
             "<HHIIHH", _PCM, tracks, rate_hz, 2 * tracks * rate_hz, 2 * tracks, 16
         )
-        stream.write(struct.pack("<4sI4s", b"RIFF", _UNKNOWN, b"WAVE"))
+        stream.write(struct.pack("<4sI4s", b"RIFF", UNKNOWN, b"WAVE"))
         for name, body in ((b"fmt ", kind), (b"LIST", comment)):
             stream.write(struct.pack("<4sI", name, len(body)) + body)
-        stream.write(struct.pack("<4sI", b"data", _UNKNOWN))
+        stream.write(struct.pack("<4sI", b"data", UNKNOWN))
 
     def end(self, error: BaseException | None) -> None:
         """Have all that was written go out."""

@@ -29,7 +29,7 @@ from typing import BinaryIO
 # a margin below 4 GiB for programs that count frames in whole pages
 LARGEST_RIFF_BYTES = 2**32 - 2**16
 # in an RF64: see ds64; in a plain WAV written through a pipe: up to the end
-_UNKNOWN = 0xFFFFFFFF
+UNKNOWN = 0xFFFFFFFF
 _EXTENSIBLE = b"\xfe\xff"
 _SEARCHED_BYTES = 65536  # of a header
 
@@ -122,7 +122,7 @@ def _find_data(opened: BinaryIO, kind: bytes, end: int) -> Sizes | None:
     while len(head := opened.read(8)) == 8:
         name, size = struct.unpack("<4sI", head)
         if name == b"data":
-            stated = stated_64 if size == _UNKNOWN else size
+            stated = stated_64 if size == UNKNOWN else size
             return Sizes(kind, format_at, opened.tell(), stated, end - opened.tell())
         next_at = opened.tell() + size + size % 2  # chunks start at even places
         if name == b"fmt ":

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 
 from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
+from morfax.recorder.sound.pipe import FEWEST_TRACKS
 from morfax.recorder.sound.source import (
     BLOCK_FRAMES,
     FileSource,
@@ -26,8 +27,6 @@ from morfax.recorder.tape.recording import Recording, record
 from morfax.recorder.tape.stated import allowed, format_of, started
 
 __all__ = ["Recording", "Stored", "Tape", "TapeFormat", "full_scale", "record"]
-
-_FEWEST_TRACKS = 3  # reference, X, Y
 
 
 class Tape(Ending):
@@ -145,10 +144,10 @@ class Tape(Ending):
 
 def _check_tracks(source: Source) -> None:
     """Raise TapeFault for too few tracks."""
-    if source.tracks >= _FEWEST_TRACKS:
+    if source.tracks >= FEWEST_TRACKS:
         return
     tracks = "one track" if source.tracks == 1 else f"{source.tracks} tracks"
     raise TapeFault(
-        f"{source.name} has {tracks}; a tape has at least {_FEWEST_TRACKS}: reference, X, Y (give the other "
+        f"{source.name} has {tracks}; a tape has at least {FEWEST_TRACKS}: reference, X, Y (give the other "
         "file of two stereo files with --second)"
     )

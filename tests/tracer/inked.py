@@ -14,8 +14,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.raster import MM_PER_INCH
 
 UM = 1e-3  # mm
 WIDTH_MM = 0.5

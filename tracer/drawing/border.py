@@ -19,10 +19,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import Patches, runs_of, strips
+from morfax.tracer.drawing.components import INK, Patches, runs_of, strips
 from morfax.tracer.drawing.tiles import Tiles, paper_like
 
-INK = 0.5  # darkness
 # All limits below were chosen by trial on framed and badly cropped pictures.
 AT_EDGE_PX, AT_EDGE = (
     3,

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing import png_rows, tiff_rows
+from morfax.tracer.drawing.exif import ORIENTATION
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 Bytes = NDArray[np.uint8]
 
 UPRIGHT = (None, 1)
-ORIENTATION = 0x112
 
 
 class Rows:

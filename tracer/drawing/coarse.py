@@ -27,7 +27,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.scan import MM_PER_INCH
+from morfax.motion.units import MM_PER_INCH
+from morfax.tracer.drawing.components import INK
 
 Darkness = NDArray[np.float32]
 
@@ -35,7 +36,6 @@ FEWEST_PX = 3.0  # of the line's width: see `jobs.scale_doubts`
 TIMES = 2  # three times finer is no better: the same details, 1 um more RMS
 # of a pixel: standard deviation of the aperture; at 0.35 the gaps of small engravings stay open; by trial
 APERTURE_PX = 0.6
-INK = 0.5  # darker is ink
 FULL, BETWEEN = (
     0.75,
     0.03,

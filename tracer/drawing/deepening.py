@@ -25,12 +25,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import percentile
-from morfax.tracer.drawing.components import FEW_PX, Mask, strips
+from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
 from morfax.tracer.drawing.noise import Noise, measured
 
 Darkness = NDArray[np.float32]
 
-INK, SURELY = 0.5, 0.6  # of ink's darkness: paler ink is that of a pale line in noise
+SURELY = 0.6  # of ink's darkness: paler ink is that of a pale line in noise
 SPOT_PX = 1.0  # standard deviation of the spot behind which lines are told from noise
 # of ink's darkness behind that spot. Paler are what shines through a sheet and a JPEG's rims; chosen
 LEAST = 0.15

@@ -28,7 +28,15 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.between import between
-from morfax.tracer.drawing.components import Mask, Numbers, Patches, runs_of, strips
+from morfax.tracer.drawing.components import (
+    INK,
+    SOFTENED_PX,
+    Mask,
+    Numbers,
+    Patches,
+    runs_of,
+    strips,
+)
 from morfax.tracer.drawing.drawing import Drawing
 
 EVERY_MM = 0.1  # between the places that are measured
@@ -39,10 +47,6 @@ STANDS, LEAP = 0.1, 10.0
 WIDEST = 1.3  # of the usual width: beyond this the ink's middle means nothing
 # the middle of the ink is averaged along the path over this, against the noise of the paper
 AVERAGED_MM = 0.5
-SOFTENED_PX, INK = (
-    0.7,
-    0.5,
-)  # ink is darker than half, seen through a spot of this standard deviation
 COVERS = 1.6  # widths: a path covers the ink within 0.8 of them
 
 

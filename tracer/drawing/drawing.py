@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from morfax.tracer.drawing import coarse, grain, inks, large, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.border import border_note, without_border
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import deepened, deepened_note
 from morfax.tracer.drawing.levelling import levelled
 from morfax.tracer.drawing.noise import Noise, measured, within
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.strokes import Sheet
     from morfax.tracer.flatten.flat import Flattening
 
-HALF = 0.5  # darkness from which a pixel is ink
 # of a scan of 300 dpi, for which the head's legs are made; a head that is slowed down more
 # than five times loses edges; by trial
 EDGE_PITCH_MM, SMALLEST = 0.0847, 0.2
@@ -148,14 +148,14 @@ class Drawing:
     def ink_px(self) -> int:
         """How many pixels are darker than half."""
         if isinstance(self.darkness, Tiles):
-            return self.darkness.darker_px(HALF)
+            return self.darkness.darker_px(INK)
         count = 0
-        for i, dark in enumerate(self.darkest > HALF):
+        for i, dark in enumerate(self.darkest > INK):
             places = np.flatnonzero(dark)
             if len(places):
                 rows = slice(BLOCK_PX * i, BLOCK_PX * (i + 1))
                 columns = slice(BLOCK_PX * places[0], BLOCK_PX * (places[-1] + 1))
-                count += int(np.count_nonzero(self.darkness[rows, columns] > HALF))
+                count += int(np.count_nonzero(self.darkness[rows, columns] > INK))
         return count
 
     @cached_property

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 # tags: the directory of Exif, and in it exposure time, aperture, focal lengths
 EXIF_IFD, EXPOSURE_S, APERTURE, FOCAL_MM, FOCAL_35MM = 0x8769, 0x829A, 0x829D, 0x920A, 0xA405
+ORIENTATION = 0x112
 MAKE, MODEL, X_RESOLUTION, Y_RESOLUTION, UNIT = 0x10F, 0x110, 0x11A, 0x11B, 0x128
 PER_INCH = {2: 1.0, 3: 2.54}  # dots per unit of the tag UNIT (inch, cm) to dots per inch
 

@@ -29,6 +29,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.tracer.drawing.components import INK, SOFTENED_PX
+
 Darkness = NDArray[np.float32]
 
 # Chosen by trial on `python -m benchmarks pencil`.
@@ -46,7 +48,6 @@ DIRECTIONS = 16
 SPREADS = 2.5  # standard deviations of the slit: its weight beyond that is 1 %
 EMPTY = 0.3  # of the ink's darkness: where nothing is darker, behind a spot of one pixel, is no line
 TILE_PX = 512
-INK, SOFTENED_PX = 0.5, 0.7  # of ink's darkness, and the spot behind which ink is told
 
 
 class Slit(NamedTuple):

@@ -15,14 +15,12 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.blocks import BLOCK_PX, Runs, near, runs_behind_spot
-from morfax.tracer.drawing.components import Patches, strips
+from morfax.tracer.drawing.components import INK, SOFTENED_PX, Patches, strips
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.large import runs_darker
 from morfax.tracer.drawing.tiles import Tiles
 
-INK = 0.5
-SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
 DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
 SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
 

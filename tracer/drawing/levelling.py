@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import median, percentile
+from morfax.motion.median import ROBUST, median, percentile
 from morfax.tracer.drawing.blocks import runs_behind_spot, runs_in
 from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import (
@@ -24,7 +24,6 @@ from morfax.tracer.drawing.contrast import (
     Contrast,
     strokes_of,
 )
-from morfax.tracer.drawing.paper import ROBUST
 from morfax.tracer.drawing.paper_noise import every_px, paper_noise
 from morfax.tracer.drawing.scan import Grey
 

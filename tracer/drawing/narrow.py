@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.inked import INK
 
 Mask = NDArray[np.uint8]
 

@@ -28,8 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import median, percentile
-from morfax.tracer.drawing.paper import ROBUST
+from morfax.motion.median import ROBUST, median, percentile
 from morfax.tracer.drawing.paper_noise import PAPER, of_sheet
 from morfax.tracer.drawing.profiles import (
     FEWEST_PROFILES,

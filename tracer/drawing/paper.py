@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing.blocks import Blocks
 
-ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
 SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shadow
 # light falls off over a sheet, by ink's whole contrast beneath a lamp; behind a shape's edge, blurred by a

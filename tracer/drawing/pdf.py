@@ -28,12 +28,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import exif
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.scale import LARGEST_PITCH_MM, LEAST_PITCH_MM
 from morfax.tracer.drawing.scan import (
-    MM_PER_INCH,
     Camera,
     Scan,
     Stated,

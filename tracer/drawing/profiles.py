@@ -21,10 +21,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.paper_noise import PAPER
 from morfax.tracer.drawing.tiles import Kept, Tiles
 
-INK = 0.5  # darker is ink
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
 MOST_PROFILES = 1000  # their median is 25 times as certain as one profile
 FEWEST_PROFILES = 20  # fewer tell nothing: there is hardly a line

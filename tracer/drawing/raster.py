@@ -23,8 +23,8 @@ from morfax.motion.files import check_regular
 from morfax.tracer.drawing import by_rows, exif, large
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.components import FEW_PX, strips
+from morfax.tracer.drawing.exif import ORIENTATION
 from morfax.tracer.drawing.scan import (
-    MM_PER_INCH,
     Camera,
     Grey,
     Scan,
@@ -37,7 +37,6 @@ from morfax.tracer.drawing.scan import (
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-__all__ = ["MM_PER_INCH", "read"]
 
 HEAD_BYTES = 1024  # in which the mark of a PDF stands
 PDF, HEIF_BRANDS = (
@@ -47,7 +46,6 @@ PDF, HEIF_BRANDS = (
 DRAWN_LINES = (".dxf", ".svg", ".plt", ".hpgl")  # drawings from CAD
 PREVIEWS = ("MPO",)  # formats whose further pictures are no pages: a camera's previews
 TURNED = (5, 6, 7, 8)  # orientations of Exif that put columns in the place of rows
-ORIENTATION = 0x112
 
 # what Pillow meets in damaged files: a TIFF without its size ends in a TypeError
 DAMAGE = (

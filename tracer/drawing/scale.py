@@ -21,7 +21,8 @@ import cv2
 import numpy as np
 
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing.scan import MM_PER_INCH, Grey, Scan
+from morfax.motion.units import MM_PER_INCH
+from morfax.tracer.drawing.scan import Grey, Scan
 
 # chosen far beyond any scan: a scale outside is a slip
 LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
 
-MM_PER_INCH = 25.4
 # what programs write into a file when they know no resolution: screens' dots, and Pillow's and Exif's default
 PLACEHOLDERS_DPI = (72.0, 96.0)
 ROUNDED_DPI = 0.02  # a file that states dots per metre is off a whole number of dpi by no more

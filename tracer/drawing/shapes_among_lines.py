@@ -21,7 +21,7 @@ import cv2
 import numpy as np
 
 from morfax.tracer.drawing.border import border_note, without_border
-from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.components import INK, Mask
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.inks import Colour, covered
 from morfax.tracer.drawing.ruling import PaperKind
@@ -34,7 +34,6 @@ BLACK = 255.0  # grey levels between paper and shape
 BROADEST_MM = 2.0  # of a line: the broadest of ISO 128-2
 ALIKE = 0.4  # share of the usual width by which a pen's lines differ; by trial
 MOST = 0.6  # of the middle line, which is in lines; by trial
-INK = 0.5
 MOSTLY_SHAPES = (
     "most of the ink is filled shapes, broader than lines, and their insides are left out: --edge follows "
     "their outlines"

@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.inked import INK
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 
 # All limits below were chosen by trial on `python -m benchmarks rough`.

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import ROBUST
 from morfax.tracer.flatten.edges import Picture, crossings, light_at
 from morfax.tracer.flatten.fit import Sightings
 
@@ -222,7 +223,7 @@ def _smooth(along: Array, off: Array) -> tuple[NDArray[np.bool_], Array]:
     for degree in (1, 2, *[SMOOTH_DEGREE] * ROUNDS):
         curve = np.asarray(polynomial.polyfit(along[kept], off[kept], degree), float)
         away = np.abs(off - polynomial.polyval(along, curve))
-        usual = 1.4826 * float(np.median(away[kept]))
+        usual = ROBUST * float(np.median(away[kept]))
         kept = away < max(LEAST_STRAY_PX, STRAY * usual)
         if np.count_nonzero(kept) < 2 * SMOOTH_DEGREE:
             return kept, curve

@@ -24,7 +24,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.contour import distances_mm
-from morfax.motion.median import median
+from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
@@ -38,7 +38,6 @@ from morfax.tracer.head.windows import (
     widest,
 )
 from morfax.tracer.sensing.leg import turn
-from morfax.tracer.sensing.parabola import ROBUST
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 

@@ -23,10 +23,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.median import median
+from morfax.motion.median import ROBUST, median
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.ink.run import Run, smooth
-from morfax.tracer.sensing.leg import ROBUST
 from morfax.tracer.sensing.ray import edges
 from morfax.tracer.sensing.scout import CLEAN, CLEAN_PX, LEAP, LEAP_PX, SPECK_MM, SPECK_PX
 from morfax.tracer.sensing.view import View

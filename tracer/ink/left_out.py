@@ -21,14 +21,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import FEW_PX, Mask, strips
+from morfax.tracer.drawing.components import FEW_PX, INK, SOFTENED_PX, Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.inked import INK
 from morfax.tracer.drawing.lettering import lettering, lower_than
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.drawing.strokes import Sheet
 
-SOFTENED_PX = 0.7  # as patches are found (see `drawing.strokes`)
 HALO_PX = 8  # beside a strip: softening looks no further
 OUTLINE_PX = 0.5  # so near an outline is drawn, for the eye
 RIM_PX = 1  # of a solid area beyond the place where it is half as dark

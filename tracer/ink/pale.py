@@ -21,18 +21,16 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.drawing.components import FEW_PX, Mask, strips
-from morfax.tracer.drawing.deepening import shaded
+from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
+from morfax.tracer.drawing.deepening import SPARSE, SPOT_PX, STRIPS, shaded
 from morfax.tracer.drawing.drawing import Darkness, Drawing
-from morfax.tracer.drawing.inked import INK
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 
-SPOT_PX = 1.0  # standard deviation of the spot that averages the paper's noise
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
 ABOVE_NOISE = 6.0  # standard deviations of the paper, as for ink (see `drawing.drawing`)
 # of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
 LEAST = 0.15
-STRIPS, STRIP_PX, SPARSE = 64, 24, 5  # of the sheet, and pixels of these, that tell its noise
+STRIP_PX = 24  # high: strips of the sheet that tell its noise
 # percentiles one standard deviation apart; ink and its rims are above the middle
 LOW_AND_MIDDLE = 15.87, 50.0
 RIM_PX, SPOTS = (

@@ -22,10 +22,10 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.median import median
+from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import left_of
 from morfax.tracer.marks import sizes
-from morfax.tracer.sensing.parabola import LEAST_OFF_MM, OUTLIERS, ROBUST
+from morfax.tracer.sensing.parabola import LEAST_OFF_MM, OUTLIERS
 from morfax.tracer.sensing.photocell import LEVEL, STEP_PX
 from morfax.tracer.sensing.probe import is_tip
 from morfax.tracer.sensing.ray import Ray, end_of_ink, seen_on

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.tracer.program.order import GAIN_MM
 
-GAIN_MM = 1e-9  # a smaller gain is rounding
 SPAN = 2000  # strokes in a stretch that is turned at most; by trial: the time stays that of the ink
 FIRSTS, SOME = (
     16,

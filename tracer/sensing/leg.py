@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import median
+from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import direction, heading_of, left_of
-from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, ROBUST, leg_through, parabola
+from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, leg_through, parabola
 
 # straight on is within this, and a leg turns off to a side by more than that
 STRAIGHT, TURNS_OFF = math.radians(40), math.radians(20)

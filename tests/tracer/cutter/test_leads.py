@@ -77,7 +77,7 @@ def test_without_a_cutter_a_lead_stays_a_quarter_of_a_millimetre_off_other_lines
     assert held(ARC) and held(STRAIGHT)
 
 
-@pytest.mark.parametrize(("away_mm", "is_held"), [(1.4, False), (1.6, True)])
+@pytest.mark.parametrize(("away_mm", "is_held"), [(1.49, False), (1.51, True)])
 def test_the_tool_goes_down_half_the_depth_off_every_cut(away_mm: float, is_held: bool) -> None:
     """An arc of 3 mm ends 3 mm deep, at (13, -3)."""
     low = -3 - away_mm

@@ -79,7 +79,8 @@ def test_leads_stand_before_and_after_the_path() -> None:
     assert run.xy_mm[-1] == pytest.approx(1.4 * at_degrees(30.0))
     assert length_mm(run.xy_mm[: run.first + 1]) == pytest.approx(3.0, abs=SAMPLE_MM)
     assert length_mm(run.xy_mm[run.last :]) == pytest.approx(2.0, abs=SAMPLE_MM)
-    assert PathRun.along(CIRCLE, Begin(30.0), FEED).leads is None
+    bare = PathRun.along(CIRCLE, Begin(30.0), FEED)
+    assert bare.leads is None and (bare.first, bare.last) == (0, len(bare.xy_mm) - 1)
 
 
 @pytest.mark.parametrize("lead", ["in", "out"])

@@ -85,3 +85,13 @@ def test_a_curl_where_the_head_swivelled_is_no_crossing() -> None:
         [arc((9, 9), 5, 0, 180), arc((4, 9.0), 0.1, 0, 360), arc((9, 9), 5, 180, 360)]
     )
     assert not sides.crossing([curl[:-1]]).any()
+
+
+@pytest.mark.parametrize(
+    ("wide_mm", "passes_mm"),
+    [(4.0, 3.95), (3.98, 3.95), (3.97, 3.9), (0.08, 0.05), (0.07, 0.0), (0.01, 0.0)],
+)
+def test_a_cutter_of_whole_twentieths_has_a_fortieth_to_spare(
+    wide_mm: float, passes_mm: float
+) -> None:
+    assert sides.Room((0.0, 0.0), wide_mm).passes_mm == pytest.approx(passes_mm)

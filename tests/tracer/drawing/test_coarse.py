@@ -11,10 +11,11 @@ import pytest
 
 from morfax.jobs.scale_doubts import scale_doubts
 from morfax.motion.contour import distance
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.coarse import finer
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
-from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
+from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, Points, arc, inked, polyline

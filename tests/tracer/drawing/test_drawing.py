@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from morfax.motion.faults import DrawingFault, FileFault
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.raster import MM_PER_INCH
 from tests.tracer.inked import UM, arc, inked, polyline
 
 DPI = (300.0, 300.0)

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from morfax.motion.faults import DrawingFault
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import raster
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.scan import MM_PER_INCH
 from tests.tracer.inked import inked, polyline
 
 LINE = polyline((4, 5), (34, 11))

@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 
 from morfax.motion.contour import distance
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import grain
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.noise import within
 from morfax.tracer.drawing.scale import Scale
-from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
+from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import DPI, UM, Points, arc, inked, polyline, together

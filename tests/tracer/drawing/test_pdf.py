@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from morfax.motion.faults import DrawingFault
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import raster
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
-from morfax.tracer.drawing.scan import MM_PER_INCH, Scan
+from morfax.tracer.drawing.scan import Scan
 from tests.tracer.inked import UM
 
 A4_MM = (210.0, 297.0)

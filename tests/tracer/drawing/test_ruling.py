@@ -14,11 +14,12 @@ import pytest
 
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import ruling
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.ruling import PaperKind, families
 from morfax.tracer.drawing.scale import Scale
-from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
+from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import DPI, UM, Points, arc, inked, polyline
 

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from morfax.motion.faults import DrawingFault
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.scale import Known, Scale
-from morfax.tracer.drawing.scan import MM_PER_INCH, Scan, Stated
+from morfax.tracer.drawing.scan import Scan, Stated
 
 SHEET = Scan(Path("scan.png"), np.zeros((3000, 2000), np.uint8))
 

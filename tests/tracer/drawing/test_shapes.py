@@ -17,8 +17,8 @@ from scipy.spatial import cKDTree
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.motion.motion import thin
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.raster import MM_PER_INCH
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines

@@ -16,8 +16,8 @@ import pytest
 
 from morfax.motion.arrays import Array
 from morfax.motion.contour import distance, length_mm
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.raster import MM_PER_INCH
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
