@@ -26,9 +26,8 @@ class OnLines:
 
     called: ClassVar[str]  # in the figures
     marked: ClassVar[str]  # in a picture
-    rows: ClassVar[
-        tuple[tuple[str, str], ...]
-    ]  # the figures of each place, and what they are of it
+    # the figures of each place, and what they are of it
+    rows: ClassVar[tuple[tuple[str, str], ...]]
 
     of_lines: tuple[tuple[int, Found], ...] = ()
 

@@ -115,3 +115,16 @@ def test_a_line_that_the_cutter_only_passes_by_may_have_no_stops(has_stop: bool)
         made, _ = with_cutter(trace, Cutter(6.0), FEED_MM_S)
         assert [line.number for line in made.lines] == [1]
         assert made.lines[0].xy_mm[:, 0].max() == pytest.approx(28.0, abs=1 * UM)
+
+
+def test_a_pocket_with_a_neck_too_narrow_is_cut_in_closed_pieces() -> None:
+    """Two rooms of 10 mm and a neck of 2 mm between them, for a tool of 4 mm."""
+    rooms = np.array(
+        [(0, 0), (10, 0), (10, 4), (14, 4), (14, 0), (24, 0),
+         (24, 10), (14, 10), (14, 6), (10, 6), (10, 10), (0, 10)], float
+    )  # fmt: skip
+    made, left = with_cutter(Trace((closed(rooms),)), Cutter(4.0, "inside"), FEED_MM_S)
+    assert [line.ending for line in made.lines] == ["closed", "closed"]
+    assert [line.number for line in made.lines] == [1, 1]
+    middles = sorted(float(line.xy_mm[:, 0].mean()) for line in made.lines)
+    assert middles == pytest.approx([5.0, 19.0], abs=0.1) and not left.lines
