@@ -101,8 +101,7 @@ class Scrap:
 
 def _off_its_line(lead_mm: Array, deep_mm: float) -> Array:
     """A lead from where it has left the line that it touches."""
-    across = lead_mm[-1] - lead_mm[0]
     come = np.hypot(*(lead_mm - lead_mm[0]).T)
     # depth of an arc after a chord c is c² / 2r; a straight lead is deeper
-    least_mm = math.sqrt(2 * TOUCHES_MM * max(deep_mm, float(np.hypot(*across)) / 2))
+    least_mm = math.sqrt(2 * TOUCHES_MM * deep_mm)
     return lead_mm[int(np.searchsorted(come, min(least_mm, 0.5 * come[-1]))) :]

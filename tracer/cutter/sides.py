@@ -120,7 +120,7 @@ def room(curves: Sequence[DriveCurve], number: int) -> Room | None:
     if not here.any() or here[0].any():  # the outermost cells are outside of all lines
         return None
     distances = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    away = np.where(here, distances, 0)
+    away = distances * here
     row, column = np.unravel_index(int(away.argmax()), away.shape)
     place = grid.low_mm + (np.array([column, row]) - MARGIN) * grid.cell_mm
     # 2. finer grids about the best cell

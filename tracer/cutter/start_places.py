@@ -83,16 +83,16 @@ class StartPlaces:
             places = path.from_told()
         lead_in = self.contouring.lead_in if joins_at is None else None
         asked = [lead for lead in (lead_in, self.contouring.lead_out) if lead is not None]
-        best, best_share = None, -1.0
+        best: tuple[float, Begin] | None = None
         for at in islice(places, TRIED):
             begin = self._led(path, at, lead_in)
             whole = sum(lead.size_mm for lead in asked)
             share = (begin.in_mm + begin.out_mm) / whole if asked else 1.0
-            if share > best_share:
-                best, best_share = begin, share
-            if best_share >= 1.0:
+            if best is None or share > best[0]:
+                best = share, begin
+            if share >= 1.0:
                 break
-        return best or Begin(joins_at or 0.0)
+        return best[1] if best is not None else Begin(joins_at or 0.0)
 
     def _led(self, path: _Path, at: float, lead_in: Lead | None) -> Begin:
         """A place of a path with the longest leads that have room there."""
