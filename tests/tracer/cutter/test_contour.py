@@ -260,3 +260,21 @@ def test_paths_are_met_in_the_order_of_the_line_that_crosses_them() -> None:
     assert [place.path for _, place in met] == [1, 0]
     assert [at for at, _ in met] == pytest.approx([0.25, 0.5])
     assert [place.at for _, place in met] == pytest.approx([0.5, 0.5])
+
+
+@pytest.mark.parametrize("degrees", [3.0, 100.0, 250.0])
+def test_on_a_circle_the_foot_is_at_the_end_of_the_radius(degrees: float) -> None:
+    """And not where another path is nearer: the heading is that of the contour at the place."""
+    angles = np.linspace(0, math.tau, 37_700)
+    unit = np.column_stack([np.cos(angles), np.sin(angles)])
+    line = Line(10 * unit, "closed", 0.5, 62.8)
+    tongue = np.array([[9.0, -0.5], [9.0, 0.5]]) @ np.array(
+        [[math.cos(math.radians(degrees + 4)), math.sin(math.radians(degrees + 4))],
+         [-math.sin(math.radians(degrees + 4)), math.cos(math.radians(degrees + 4))]]
+    )  # fmt: skip
+    paths = [OffsetPath(12 * unit, True, 0), OffsetPath(tongue, False, 1)]
+    beside = Beside(cut_of(line), False, 2.0, paths)
+    out = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
+    foot = beside.foot(10 * out)
+    assert foot.path == 0
+    assert beside.mm(foot) == pytest.approx(12 * out, abs=10 * UM)
