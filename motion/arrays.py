@@ -9,19 +9,6 @@ from morfax.motion.compiled import njit
 
 Array = NDArray[np.float64]
 
-ROWS_AT_ONCE = 64  # rows that a kernel moves in one stretch: enough for its vectors
-
-
-def moved(rows: Array, by: Array, scale: float = 1.0) -> Array:
-    """Rows (n, columns) times a scale, and moved by a length for each column.
-
-    numpy takes eight times as long: it goes over rows of three columns one by one.
-    """
-    out, steps = np.empty(rows.shape), np.empty((ROWS_AT_ONCE, len(by)))
-    steps[:] = by
-    _move(np.ascontiguousarray(rows).ravel(), steps.ravel(), scale, out.ravel())
-    return out
-
 
 def bounds(rows: NDArray[np.floating]) -> tuple[Array, Array]:
     """The lowest and the highest of each column of rows (n, columns).
@@ -41,15 +28,6 @@ def between(values: Array, at: float) -> float:
     return float(
         values[low] + (place - low) * (values[min(low + 1, len(values) - 1)] - values[low])
     )
-
-
-@njit(cache=True, nogil=True)
-def _move(rows, by, scale, out):  # type: ignore[no-untyped-def]
-    """Fill `out`, row after row, with as many at once as `by` is long."""
-    for first in range(0, len(rows), len(by)):
-        many = min(len(by), len(rows) - first)
-        for k in range(many):
-            out[first + k] = rows[first + k] * scale + by[k]
 
 
 @njit(cache=True, nogil=True)

@@ -1,0 +1,277 @@
+"""The drives: the loops of all axes and the monitor that watches them, row by row of the tape.
+
+Signals in: phase of each axis track in cycles (tape against reference); the reference, in cycles from row to
+row. Signals out: the place of each screw in mm, and the row from which nothing is certain.
+
+    phases ─► + phase changer 155 ─► loop of phase_lock.py ─► screw ─┬─► + place at rest ─► place, mm
+                     │                                               │
+                     └──────────► demand ─► monitor ◄────────────────┘
+
+Each loop waits most of the time for its own last step; so the axes are stepped beside each other, and the
+monitor of a row comes between its drives and those of the next.
+
+Source: patents ES 361967, figure 5, and ES 414458, figures 1 and 2. Questions: none.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
+from morfax.motion.drive import SOUND, as_rows, conditioned_step, limited
+from morfax.motion.ramp import positions_mm
+from morfax.player.monitor.following_limit import FollowingLimit, learn_table
+from morfax.player.monitor.monitor import Monitor, Watching, watch_axis
+from morfax.player.tape.comparator import compared, track_edges
+from morfax.player.tape.phase_lock import BACK_S, PhaseLock, place
+from morfax.player.tape.sector_wheel import SectorWheel, edges_since, last_edge
+
+TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout leaves unknown
+TRIED_SPEEDS = 16  # points of the table of following errors, up to the top speed
+ADJUSTING_MM_S = 10.0  # how fast the machine creeps while the phase changer is turned
+# 25 periods of the usual loop, after which a turned phase changer is at rest
+SETTLING_S = 0.1
+# columns of the state of an axis; SECTOR: the one that its cell saw last, COUNT: of the edges seen, LAST:
+# phase of the row before
+POSITION, SPEED, DEMAND, LEAD, ERROR, SECTOR, COUNT, LAST = range(8)
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """What the reference track does at the machine: cycles from row to row, and the wheels that it turns."""
+
+    cycles_per_row: float = 1.0
+    wheel: SectorWheel = field(default_factory=SectorWheel)
+
+
+class Loop(NamedTuple):
+    """A loop as the kernel takes it: figures of the comparator, of the networks and of the motor."""
+
+    steps: int  # from row to row
+    mm_per_cycle: float
+    range_mm: float
+    dt_s: float
+    back: float  # share of the integrator's way back, in a step
+    gain: float  # amplifier 161 and integrator 159, as `Network` has them
+    zero: float
+    lead_zero: float
+    lead_pole: float
+    motor_gain: float  # motor 163: share of the speed error made good in a step
+    largest_change_mm_s: float  # of its speed in a step
+    top_mm_s: float
+
+
+_NONE = np.zeros((0, 7))
+_UNWATCHED = Watching(np.zeros(4), np.zeros((1, 3)), _NONE, _NONE)
+
+
+class Drives:
+    """The axis drives; state is carried from block to block. `steps`: loop steps from row to row."""
+
+    def __init__(
+        self,
+        axes: int,
+        mm_per_cycle: float,
+        rate_hz: float,
+        settings: PhaseLock | None = None,
+        *,
+        steps: int = 1,
+        reference: Reference | None = None,
+    ) -> None:
+        self.settings = settings or PhaseLock()
+        self._rate_hz = rate_hz
+        reference = reference or Reference()
+        self._wheels = reference.wheel.wheels(axes, mm_per_cycle)
+        self._cycles = reference.cycles_per_row / steps  # of the reference in a step
+        self._stepped = 0
+        self._loop = _loop(self.settings, mm_per_cycle, rate_hz, steps)
+        self._state = np.zeros((axes, 8))
+        # before the first edge
+        self._state[:, SECTOR], self._state[:, COUNT] = self._wheels.sectors - 1, -1
+        self.conditions = [SOUND] * axes
+
+    def follow(self, cycles: Array) -> Array:
+        """Displacements (n, axes) in mm for phases (n, axes); fewer rows if a drive left the range."""
+        still = np.zeros(cycles.shape[1])
+        return self._through(cycles, (still, still), _UNWATCHED)[0]
+
+    def follow_watched(
+        self, cycles: Array, moved: tuple[Array, Array], monitor: Monitor
+    ) -> tuple[Array, int]:
+        """Places (n, axes) in mm as `follow` gives them, and the rows of them before a monitor stops.
+
+        `moved`: what is added to the phases of each axis, cycles, and to the places of the screws, mm.
+        """
+        watching = monitor.watching(len(cycles))
+        places_mm, (row, axis) = self._through(cycles, moved, watching)
+        if axis >= 0 or monitor.has_chart:
+            demand_mm = (cycles[: len(places_mm)] + moved[0]) * self._loop.mm_per_cycle + moved[
+                1
+            ]
+            monitor.take(demand_mm, places_mm, watching, (row, axis))
+        else:
+            monitor.rows_seen += row
+        return places_mm, row
+
+    def _through(
+        self, cycles: Array, moved: tuple[Array, Array], watching: Watching
+    ) -> tuple[Array, tuple[int, int]]:
+        """Step through a block; the places, mm, and the row and axis of the monitor's fault (-1: none)."""
+        cycles = np.ascontiguousarray(cycles, dtype=np.float64)
+        places_mm = np.empty_like(cycles)
+        steps, row, axis = _follow(
+            cycles,
+            moved,
+            (self._stepped, self._cycles),
+            self._loop,
+            self._wheels,
+            as_rows(self.conditions),
+            self._state,
+            watching,
+            places_mm,
+        )
+        self._stepped += steps
+        return places_mm[: steps // self._loop.steps], (row, axis)
+
+    def adjust(self, shift_mm: Array) -> None:
+        """Turn the phase changers 155 until the screws stand this far from before; the tape stands still."""
+        rate_hz = 1 / (self._loop.dt_s * self._loop.steps)
+        way = positions_mm(np.zeros(len(shift_mm)), shift_mm, ADJUSTING_MM_S, rate_hz=rate_hz)
+        still = np.repeat(way[-1:], round(SETTLING_S * rate_hz), axis=0)
+        self.follow(np.vstack([way, still]) / self._loop.mm_per_cycle)
+
+    @property
+    def cell_edges(self) -> Array:
+        """The edges that the cells 141 have given since the start, whole numbers."""
+        return self._state[:, COUNT].copy()
+
+    @property
+    def error_mm(self) -> Array:
+        """The comparators' last errors, mm."""
+        return self._state[:, ERROR].copy()
+
+
+def _loop(settings: PhaseLock, mm_per_cycle: float, rate_hz: float, steps: int) -> Loop:
+    """The loop for so many steps from row to row; raises ValueError if the motion rate is too low."""
+    dt_s, drive = 1 / (rate_hz * steps), settings.drive
+    network = place(settings, dt_s)
+    return Loop(
+        steps=steps,
+        mm_per_cycle=mm_per_cycle,
+        range_mm=settings.range_cycles * mm_per_cycle,
+        dt_s=dt_s,
+        back=-math.expm1(-dt_s / BACK_S),
+        gain=network.gain,
+        zero=network.zero,
+        lead_zero=network.lead_zero,
+        lead_pole=network.lead_pole,
+        motor_gain=drive.gain(dt_s),
+        largest_change_mm_s=drive.acceleration_mm_s2 * dt_s,
+        top_mm_s=drive.top_speed_mm_s,
+    )
+
+
+def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) -> FollowingLimit:
+    """The following error that a speed explains: the largest of a sound drive turned round at once.
+
+    No program whose axis runs at a speed can ask for a greater change than from there to as fast the other
+    way. A rate is held for twice the time in which the motor stops out of the fastest speed that it can be
+    stopped from at once.
+    """
+    range_mm, most_mm_s2 = (
+        settings.range_cycles * mm_per_cycle,
+        settings.drive.acceleration_mm_s2,
+    )
+    speeds = np.linspace(0, math.sqrt(range_mm * most_mm_s2 / 2), TRIED_SPEEDS + 1)[1:]
+    half = round(rate_hz * (0.05 + 4 * speeds[-1] / most_mm_s2))
+    turn = (half - np.abs(np.arange(2 * half) - half))[:, None] / rate_hz * speeds
+    sound = Drives(TRIED_SPEEDS, 1.0, rate_hz, replace(settings, range_cycles=math.inf)).follow(
+        turn
+    )
+    learnt = learn_table(turn, sound, rate_hz, [0.0, *(speeds[:-1] * (1 + 1e-6))])
+    hold_s = 2 * math.sqrt(2 * range_mm / most_mm_s2)
+    points = [(speed, min(error_mm, range_mm)) for speed, error_mm in learnt] + [
+        (float(speeds[-1]), range_mm)
+    ]
+    return FollowingLimit.table(points, TOLERANCE_CYCLES * mm_per_cycle, hold_s=hold_s)
+
+
+@njit(cache=True, nogil=True, _nrt=False)
+def _follow(cycles, moved, reference, loop, wheels, conditions, state, watching, places_mm):  # type: ignore[no-untyped-def]
+    """Step all axes through a block and watch them; the steps done before an error was out of range, and the
+    row and axis of the monitor's fault, from which on nothing is watched (else the rows done, and -1).
+
+    `reference`: steps before the block, and cycles of the reference in a step.
+    """
+    fault_row, fault_axis = -1, -1
+    for row in range(len(cycles)):
+        for step in range(loop.steps):
+            # the reference since the wheels' last whole turn; motor 116 turns them by it
+            done = row * loop.steps + step
+            told = (reference[0] + done) * reference[1]
+            turned = np.floor(told / wheels.sectors)
+            phase = told - turned * wheels.sectors
+            wheel_turned = phase / wheels.sectors
+            for axis in range(len(state)):
+                places_mm[row, axis] = state[axis, POSITION] + moved[1][axis]
+                track = cycles[row, axis] + moved[0][axis]
+                if loop.steps > 1:
+                    before = state[axis, LAST]
+                    track = before + (step + 1) / loop.steps * (track - before)
+                tape_count, tape_share = track_edges(phase, track)
+                tape = tape_count + turned * wheels.sectors, tape_share
+                if not _stepped(tape, wheel_turned, loop, wheels, conditions, state, axis):
+                    return done, row if fault_axis < 0 else fault_row, fault_axis
+        for axis in range(len(state)):
+            state[axis, LAST] = cycles[row, axis] + moved[0][axis]
+        if fault_axis < 0:
+            fault_row = row
+            for axis in range(len(watching.state)):
+                demand = (cycles[row, axis] + moved[0][axis]) * loop.mm_per_cycle + moved[1][
+                    axis
+                ]
+                places = demand, places_mm[row, axis]
+                limit, fault_axis = watch_axis(places, fault_axis, watching, axis)
+                if len(watching.limits_mm):
+                    watching.limits_mm[row, axis] = limit
+    rows = len(cycles)
+    return rows * loop.steps, rows if fault_axis < 0 else fault_row, fault_axis
+
+
+@njit(cache=True, inline="always", _nrt=False)
+def _stepped(tape, wheel_turned, loop, wheels, conditions, state, axis):  # type: ignore[no-untyped-def]
+    """Step the loop of an axis by what the tape tells (count, share); whether its error is in range."""
+    position, speed = state[axis, POSITION], state[axis, SPEED]
+    demand, lead = state[axis, DEMAND], state[axis, LEAD]
+    error, count = state[axis, ERROR], state[axis, COUNT]
+    # 1. the cell's edges (141, 157), the tape's (152), and how far they are apart (153, 158)
+    share = 0.0
+    if wheels.is_lit:
+        seen, share = last_edge(position, wheel_turned, axis, wheels)
+        count += edges_since(seen, state[axis, SECTOR], wheels.sectors)
+        state[axis, SECTOR], state[axis, COUNT] = seen, count
+    now = compared(tape, (count, share)) * loop.mm_per_cycle
+    state[axis, ERROR] = now
+    # 2. amplifier, integrator, motor
+    if not abs(now) <= loop.range_mm:  # fault circuit 162; also where the phase is no number
+        return False
+    lead_now = loop.lead_pole * lead + now - loop.lead_zero * error  # amplifier 161
+    demand += loop.gain * (lead_now - loop.zero * lead)  # integrator 159
+    # what the motor can answer: its current,
+    # mm/s that a demand may lie off the speed before the current is at its limit
+    reach = loop.largest_change_mm_s / loop.motor_gain
+    given = limited(demand, speed - reach, speed + reach)
+    given = limited(given, -loop.top_mm_s, loop.top_mm_s)  # and its speed
+    demand += loop.back * (given - demand)
+    # motor 163, tacho
+    motor = loop.motor_gain, loop.largest_change_mm_s
+    speed_now = conditioned_step(speed, given, motor[0], motor[1], conditions[axis])
+    speed_now = limited(speed_now, -loop.top_mm_s, loop.top_mm_s)
+    state[axis, POSITION] = position + (speed + speed_now) / 2 * loop.dt_s
+    state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = speed_now, demand, lead_now
+    return True
