@@ -29,7 +29,7 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 
 WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2

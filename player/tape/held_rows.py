@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from morfax.motion.arrays import Array, between
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 
 
 class HeldRows:

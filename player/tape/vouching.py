@@ -29,11 +29,11 @@ from morfax.player.tape.bridges import Gap
 from morfax.player.tape.check_reader import CheckReader
 from morfax.player.tape.counts import Counts, Off
 from morfax.player.tape.delays import Delay, corrected
-from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.held_rows import HeldRows
 from morfax.player.tape.lost_ways import Laid, LostWays, laid
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.tail import tail_of
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm

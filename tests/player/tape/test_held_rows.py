@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.held_rows import HeldRows
+from morfax.player.tape.phases import Phases
 
 AXES, FIRST_ROW = 2, 100
 LENGTHS = (5, 1, 0, 7, 3)  # rows of the blocks
