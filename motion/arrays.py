@@ -54,19 +54,22 @@ def _settled(values, at):  # type: ignore[no-untyped-def]
     """The value at a place of the ordered values, which are moved so that none before it is larger."""
     first, last = 0, len(values) - 1
     while first < last:
-        pivot, low, high = values[(first + last) // 2], first, last
-        while low <= high:
-            while values[low] < pivot:
-                low += 1
-            while values[high] > pivot:
-                high -= 1
-            if low <= high:
-                values[low], values[high] = values[high], values[low]
-                low, high = low + 1, high - 1
-        if at <= high:
-            last = high
-        elif at >= low:
-            first = low
-        else:
+        # 1. the smaller ones to the front, without a branch: which way it goes cannot be foreseen
+        pivot, low = values[(first + last) // 2], first
+        for k in range(first, last + 1):
+            value, values[k] = values[k], values[low]
+            values[low] = value
+            low += value < pivot
+        if at < low:
+            last = low - 1
+            continue
+        # 2. then those that are as large
+        high = low
+        for k in range(low, last + 1):
+            value, values[k] = values[k], values[high]
+            values[high] = value
+            high += value <= pivot
+        if at < high:
             break
+        first = high
     return values[at]

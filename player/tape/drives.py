@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.compiled import njit
+from morfax.motion.compiled import keeps_kinds, njit
 from morfax.motion.drive import SOUND, as_rows, conditioned_step, limited
 from morfax.motion.ramp import positions_mm
 from morfax.player.monitor.following_limit import FollowingLimit, learn_table
@@ -49,9 +49,7 @@ class Reference:
     wheel: SectorWheel = field(default_factory=SectorWheel)
 
 
-class Loop(NamedTuple):
-    """A loop as the kernel takes it: figures of the comparator, of the networks and of the motor."""
-
+class _Fields(NamedTuple):
     steps: int  # from row to row
     mm_per_cycle: float
     range_mm: float
@@ -64,6 +62,11 @@ class Loop(NamedTuple):
     motor_gain: float  # motor 163: share of the speed error made good in a step
     largest_change_mm_s: float  # of its speed in a step
     top_mm_s: float
+
+
+@keeps_kinds
+class Loop(_Fields):
+    """A loop as the kernel takes it: figures of the comparator, of the networks and of the motor."""
 
 
 _NONE = np.zeros((0, 7))

@@ -8,7 +8,7 @@ Source: our own. Questions: none.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -47,7 +47,8 @@ class Phases:
 
     def moved(self, rows: int) -> Phases:
         """The same rows, further on the tape by this many."""
-        return replace(self, first_row=self.first_row + rows)
+        first_row = self.first_row + rows
+        return Phases(first_row, self.cycles, self.surprise, self.levels, self.room)
 
     def cut(self, first: int, last: int) -> Phases:
         """The rows from `first` to before `last`."""

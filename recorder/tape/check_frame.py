@@ -24,8 +24,8 @@ from __future__ import annotations
 
 import math
 import zlib
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,8 +48,7 @@ LEAST_SPEED, LEAST_ACCELERATION = 0.5, 32.0  # cycles/s and cycles/s²: of code 
 Bits = NDArray[np.int8]
 
 
-@dataclass(frozen=True, slots=True)
-class CheckFrame:
+class CheckFrame(NamedTuple):
     """What one track says: cycles, cycles/s and cycles/s²; speed and acceleration as rounded up.
 
     `middle_cycles`: in the middle of the frame, modulo one; None: not told, or to be told as at its start.
