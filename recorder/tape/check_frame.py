@@ -114,6 +114,10 @@ def _crc_of_bytes() -> NDArray[np.uint32]:
 
 
 _WHITE = _whitening()
+_WHITE_WORD = int.from_bytes(np.packbits(_WHITE).tobytes(), "big")
+_SYMBOLS_OF_BYTE: Bits = (
+    np.unpackbits(np.arange(256, dtype=np.uint8)[:, None], axis=1).astype(np.int8) * 2 - 1
+)
 # the whitening, and the CRC-32 of each byte, for `tell`
 TABLES = (_WHITE, _crc_of_bytes())
 SYNC: Bits = np.array(
@@ -135,10 +139,11 @@ def to_bits(frame: CheckFrame) -> Bits:
         (to_code(frame.acceleration, LEAST_ACCELERATION), _CODE_BITS),
     ):
         told = told << bits | value
-    data = told.to_bytes(_TOLD_BYTES, "big")
-    data += zlib.crc32(data).to_bytes(_CRC_BYTES, "big")
-    white = np.unpackbits(np.frombuffer(data, np.uint8)) ^ _WHITE
-    return np.concatenate([SYNC, white.astype(np.int8) * 2 - 1])
+    crc = zlib.crc32(told.to_bytes(_TOLD_BYTES, "big"))
+    data = ((told << 8 * _CRC_BYTES | crc) ^ _WHITE_WORD).to_bytes(
+        _TOLD_BYTES + _CRC_BYTES, "big"
+    )
+    return np.concatenate([SYNC, _SYMBOLS_OF_BYTE[np.frombuffer(data, np.uint8)].ravel()])
 
 
 def from_bits(bits: Bits) -> list[CheckFrame | None]:
