@@ -23,11 +23,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.compiled import njit
+from morfax.motion.compiled import keeps_kinds, njit
 from morfax.player.tape.band_filter import branches, translating_taps
 from morfax.player.tape.phases import Phases
 from morfax.player.tape.predictor import count_turns, predictor_gains
@@ -40,11 +41,26 @@ ROOM_ROWS = (
 )
 
 Frames = NDArray[np.float32 | np.int16]
+Float32s = NDArray[np.float32]
 
 
 def _behind(tail: Frames, frames: Frames) -> Frames:
     """Frames behind those of a tail, which may be none; a copy."""
     return np.concatenate([tail, frames]) if len(tail) else frames.copy()
+
+
+class _Fields(NamedTuple):
+    taps: Float32s
+    turns_re: Float32s
+    turns_im: Float32s
+    columns: Float32s  # (frame within the row · tracks + track, rows)
+    sums: Float32s  # (2, tracks, rows)
+    level: Float32s
+
+
+@keeps_kinds
+class Bench(_Fields):
+    """The filter, as `branches` has it, and the arrays in which a chunk of rows goes through it."""
 
 
 class Discriminator:
@@ -64,10 +80,19 @@ class Discriminator:
             )
         self.decimation = decimation
         self.filter_frames = len(translating_taps(sample_rate_hz, reference_hz, decimation)[0])
-        self._filter = branches(sample_rate_hz, reference_hz, decimation, GROUP)
         self._half = self.filter_frames // 2
         # rows that the filter reaches beyond its first
         self._reach = 2 * self._half // decimation
+        taps, turns_re, turns_im = branches(sample_rate_hz, reference_hz, decimation, GROUP)
+        length = CHUNK_ROWS + max(self._reach, taps.shape[2])
+        self._bench = Bench(
+            np.ascontiguousarray(taps),
+            turns_re,
+            turns_im,
+            np.zeros((decimation * tracks, length), np.float32),
+            np.empty((2, tracks, CHUNK_ROWS), np.float32),
+            np.empty(CHUNK_ROWS, np.float32),
+        )
         self.gains = predictor_gains(sample_rate_hz / decimation)
         self.state = np.full((tracks - 1, 3), np.nan)
         self._tail: Frames = np.zeros((0, tracks), np.float32)
@@ -119,7 +144,7 @@ class Discriminator:
             whole = frames[: (many + self._reach) * self.decimation]
             rows = whole.reshape(many + self._reach, -1)
             scale = np.float32(1 / 32768 if rows.dtype == np.int16 else 1)
-            _wrap(rows, scale, *self._filter, (done, many), phase, levels[own])
+            _wrap(rows, scale, (done, many), self._bench, phase, levels[own])
             done += many
         count_turns(phase, self.gains, self.state, cycles[own], surprise[own])
         # before the first full row it is held
@@ -155,29 +180,27 @@ def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iter
 
 
 @njit(cache=True, nogil=True)
-def _wrap(rows, scale, taps, turns_re, turns_im, part, phase, levels):  # type: ignore[no-untyped-def]
+def _wrap(rows, scale, part, bench, phase, levels):  # type: ignore[no-untyped-def]
     """Fill `phase` (axes, n), -0.5 to 0.5 cycle, and `levels` from a row on, so many rows (`part`), by chunks
     that fit the processor's cache.
 
-    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; the filter as
-    `branches` has it.
+    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample.
     """
     tracks = levels.shape[1]
     begin, count = part
     reach = len(rows) - count  # rows that a filter reaches beyond its first
-    columns = np.zeros((rows.shape[1], CHUNK_ROWS + max(reach, taps.shape[2])), np.float32)
-    re, im = (
-        np.empty((tracks, CHUNK_ROWS), np.float32),
-        np.empty((tracks, CHUNK_ROWS), np.float32),
-    )
-    level = np.empty(CHUNK_ROWS, np.float32)
+    columns, re, im, level = bench.columns, bench.sums[0], bench.sums[1], bench.level
+    filled = bench.taps.shape[2]
     for first in range(0, count, CHUNK_ROWS):
         last = min(first + CHUNK_ROWS, count)
         out = slice(begin + first, begin + last)
         _unlace(rows[first : last + reach], scale, columns)
+        # what taps of zero meet must be a number
+        columns[:, last - first + reach : last - first + filled] = 0
         for track in range(tracks):
             track_re, track_im = re[track, : last - first], im[track, : last - first]
-            _translate(columns, track, taps, turns_re, turns_im, track_re, track_im)
+            turns = bench.turns_re, bench.turns_im
+            _translate(columns, track, bench.taps, turns, track_re, track_im)
             _amplitude(track_re, track_im, level)
             levels[out, track] = level[: last - first]
         for axis in range(tracks - 1):
@@ -196,14 +219,14 @@ def _unlace(rows, scale, columns):  # type: ignore[no-untyped-def]
 # meaning. Eight taps at a time: with one, most of the time went into taking the sums out of memory and
 # putting them back.
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
-def _translate(columns, track, taps, turns_re, turns_im, re, im):  # type: ignore[no-untyped-def]
+def _translate(columns, track, taps, turns, re, im):  # type: ignore[no-untyped-def]
     """Filter one track's columns, one output per row."""
     re[:] = 0
     im[:] = 0
     tracks = len(columns) // taps.shape[1]
     for branch in range(len(taps)):
         for column in range(taps.shape[1]):
-            turn_re, turn_im = turns_re[branch, column], turns_im[branch, column]
+            turn_re, turn_im = turns[0][branch, column], turns[1][branch, column]
             for row in range(0, taps.shape[2], GROUP):
                 h0, h1, h2, h3, h4, h5, h6, h7 = _group(taps[branch, column], row)
                 x = columns[column * tracks + track, row:]

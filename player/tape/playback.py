@@ -208,13 +208,12 @@ class TapePlayback(Supervised):
         drives.conditions = self.conditions
         rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
         monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
-        for phases, bearings, gap in self._read():
+        for read in self._read():
+            phases = read.rows
             self.notes = () if self.reader.is_checked else (NOT_VOUCHED,)
-            found = (
-                bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
-            )
+            found = read.first_fault(fmt.motion_rate_hz, self.end_mm.tolist())
             sound = len(phases) if found is None else min(found[0], len(phases))
-            zero_cycles = self._zero_mm * fmt.cycles_per_mm - bearings.zero_cycles
+            zero_cycles = self._zero_mm * fmt.cycles_per_mm - read.bearings.zero_cycles
             monitor.rows_seen = phases.first_row
             moved = zero_cycles, rest_mm
             places_mm, rows = drives.follow_watched(phases.cycles[:sound], moved, monitor)

@@ -44,7 +44,23 @@ from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
 
 
-Read = tuple[Phases, Bearings, tuple[int, Fault] | None]
+class Read(NamedTuple):
+    """Rows, the bearings they count from, what watches them (None: nothing), and the fault behind them.
+
+    Who reads ahead leaves it to the machine's side to look at the rows: both have about as much to do then.
+    """
+
+    rows: Phases
+    bearings: Bearings
+    watch: Watch | None
+    ended: tuple[int, Fault] | None
+
+    def first_fault(self, rate_hz: float, stands_mm: list[float]) -> tuple[int, Fault] | None:
+        """The first row that is not certain, with its fault; the machine stands at `stands_mm`."""
+        found = self.bearings.first_fault(self.rows, rate_hz, stands_mm)
+        if found is None and self.watch is not None:
+            found = self.watch.first_fault(self.rows, lambda: stands_mm)
+        return found or self.ended
 
 
 class _Run(NamedTuple):
@@ -161,10 +177,10 @@ class TapeReader:
             wrong = steadiest.wrong(held[-1], time_s) if watched else None
             if wrong is not None:
                 raise wrong
-            yield out, bearings, watch.first_fault(out, stands_mm) or fault
+            yield Read(out, bearings, watch, fault)
         rest = _certain(gaps, phases.cut(len(phases), len(phases)), last=True)
         out, fault = warrant.feed(rest, stands_mm, last=True)
-        yield out, bearings, fault
+        yield Read(out, bearings, None, fault)
         if self._resume_at_s:
             return  # what was before is not known
         doubt = steadiest.doubtful(time_s) if watched else None
