@@ -33,15 +33,19 @@ from morfax.player.monitor.following_limit import FollowingLimit, allowed_mm, pa
 
 # columns of the state of an axis; PART: of the table, that the speed was in last
 DEMAND, SPEED, COUNTED, FAULTY, LARGEST, SHARE, PART = range(7)
+STRETCH_ROWS = 64  # that are watched axis by axis, as long as none is faulty
 NEARLY = 1 - 1e-9  # of the largest share: beyond it the exact one is made; rounding is 1e-15
 
 
 class Watching(NamedTuple):
-    """A monitor as kernels take it: figures, table, state of the axes, and limits, if they are noted."""
+    """A monitor as kernels take it: figures, table, state of the axes before and after some rows, and limits,
+    if they are noted, in the rows of a block.
+    """
 
     settings: Array
     table: Array
     state: Array
+    after: Array
     limits_mm: Array
 
 
@@ -107,7 +111,7 @@ class Monitor:
             raise ValueError(
                 f"demand {demand.shape} and actual {actual.shape}: both must be (n, {len(self.axes)})"
             )
-        watching, row = self.watching(len(demand)), 0
+        watching, row = self._watching(len(demand)), 0
         while row < len(demand):
             row, axis = _watch(demand, actual, row, watching)
             if axis < 0:
@@ -119,23 +123,11 @@ class Monitor:
         self._note(row, demand, actual, watching)
         return row
 
-    def watching(self, rows: int) -> Watching:
-        """What a kernel needs to watch so many rows; what it has watched is taken by `take`."""
-        limits = np.zeros((rows if self.has_chart else 0, len(self.axes)))
-        return Watching(self._settings, self._table, self._state, limits)
-
-    def take(
-        self, demand_mm: Array, actual_mm: Array, watching: Watching, end: tuple[int, int]
-    ) -> None:
-        """Take a block that was watched up to a row and the axis of a fault there (-1: none)."""
-        if end[1] >= 0:
-            self._warn(end[1], end[0], demand_mm, actual_mm)
-        self._note(end[0], demand_mm, actual_mm, watching)
-
-    @property
-    def has_chart(self) -> bool:
-        """Whether a pen takes the run down."""
-        return self._chart is not None
+    def _watching(self, rows: int) -> Watching:
+        """What the kernel needs to watch so many rows."""
+        limits = np.zeros((0 if self._chart is None else rows, len(self.axes)))
+        after = np.zeros_like(self._state)
+        return Watching(self._settings, self._table, self._state, after, limits)
 
     def _note(self, row: int, demand_mm: Array, actual_mm: Array, watching: Watching) -> None:
         """Count the rows up to one, and take them down, that of a fault too."""
@@ -185,47 +177,80 @@ class Supervised:
         return self.monitor.largest_error_mm
 
 
-@njit(cache=True, inline="always", _nrt=False)
-def watch_axis(row, found, watching, axis):  # type: ignore[no-untyped-def]
-    """Watch an axis in a row (demand, actual): its limit, mm, and the axis of the row's fault (-1: none).
-
-    `found`: that of the axes before it. One fault at a time: another one is found in the next row.
-    """
-    demand, actual = row
-    table, state = watching.table, watching.state
-    rate_hz, share, fade, tolerance_mm = watching.settings
-    speed = state[axis, SPEED]
-    before = demand if math.isnan(state[axis, DEMAND]) else state[axis, DEMAND]
-    speed += ((demand - before) * rate_hz - speed) * share
-    counted = max(abs(speed), state[axis, COUNTED] * fade)
-    part = part_at(counted, table, int(state[axis, PART]))
-    limit = allowed_mm(counted, part, table, tolerance_mm)
-    error = abs(demand - actual)
-    state[axis, DEMAND], state[axis, SPEED] = demand, speed
-    state[axis, COUNTED], state[axis, PART] = counted, part
-    state[axis, LARGEST] = max(state[axis, LARGEST], error)
-    # nearly all are less than the largest, and need no division
-    if limit > 0 and error > NEARLY * limit * state[axis, SHARE]:
-        state[axis, SHARE] = max(state[axis, SHARE], error / limit)
-    faulty = not error <= limit  # also where there is no number
-    if faulty and state[axis, FAULTY] == 0:
-        if found >= 0:
-            return limit, found
-        found = axis
-    state[axis, FAULTY] = faulty
-    return limit, found
-
-
 @njit(cache=True, nogil=True, _nrt=False)
 def _watch(demand_mm, actual_mm, first, watching):  # type: ignore[no-untyped-def]
     """Watch from a row on; the row and the axis of the next fault, or the number of rows and -1."""
-    for row in range(first, len(demand_mm)):
-        found = -1
-        for axis in range(len(watching.state)):
-            places = demand_mm[row, axis], actual_mm[row, axis]
-            limit, found = watch_axis(places, found, watching, axis)
+    row = first
+    while row < len(demand_mm):
+        last = min(row + STRETCH_ROWS, len(demand_mm))
+        if _calm(demand_mm, actual_mm, row, last, watching):
+            row = last
+        while row < last:
+            found = _watch_row(demand_mm, actual_mm, row, watching)
+            if found >= 0:
+                return row, found
+            row += 1
+    return len(demand_mm), -1
+
+
+@njit(cache=True, nogil=True, _nrt=False)
+def _calm(demand_mm, actual_mm, first, last, watching):  # type: ignore[no-untyped-def]
+    """Watch some rows of each axis by itself, if none is faulty there; else nothing is done, and False."""
+    table, state, after = watching.table, watching.state, watching.after
+    rate_hz, share, fade, tolerance_mm = watching.settings
+    for axis in range(len(state)):
+        if state[axis, FAULTY] != 0:
+            return False
+        before, speed, counted = state[axis, DEMAND], state[axis, SPEED], state[axis, COUNTED]
+        largest, most, part = state[axis, LARGEST], state[axis, SHARE], int(state[axis, PART])
+        before = demand_mm[first, axis] if math.isnan(before) else before
+        for row in range(first, last):
+            demand = demand_mm[row, axis]
+            speed += ((demand - before) * rate_hz - speed) * share
+            counted, before = max(abs(speed), counted * fade), demand
+            part = part_at(counted, table, part)
+            limit = allowed_mm(counted, part, table, tolerance_mm)
+            error = abs(demand - actual_mm[row, axis])
+            if not error <= limit:
+                return False
+            largest = max(largest, error)
+            # nearly all are less than the largest, and need no division
+            if limit > 0 and error > NEARLY * limit * most:
+                most = max(most, error / limit)
             if len(watching.limits_mm):
                 watching.limits_mm[row, axis] = limit
-        if found >= 0:
-            return row, found
-    return len(demand_mm), -1
+        after[axis, DEMAND], after[axis, SPEED], after[axis, COUNTED] = before, speed, counted
+        after[axis, LARGEST], after[axis, SHARE], after[axis, PART] = largest, most, part
+    for axis in range(len(state)):
+        for column in range(state.shape[1]):
+            state[axis, column] = after[axis, column]
+    return True
+
+
+@njit(cache=True, nogil=True, _nrt=False)
+def _watch_row(demand_mm, actual_mm, row, watching):  # type: ignore[no-untyped-def]
+    """Watch all axes in a row; the axis of its fault, -1 without one."""
+    found, table, state = -1, watching.table, watching.state
+    rate_hz, share, fade, tolerance_mm = watching.settings
+    for axis in range(len(state)):
+        demand, speed = demand_mm[row, axis], state[axis, SPEED]
+        before = demand if math.isnan(state[axis, DEMAND]) else state[axis, DEMAND]
+        speed += ((demand - before) * rate_hz - speed) * share
+        counted = max(abs(speed), state[axis, COUNTED] * fade)
+        part = part_at(counted, table, int(state[axis, PART]))
+        limit = allowed_mm(counted, part, table, tolerance_mm)
+        error = abs(demand - actual_mm[row, axis])
+        state[axis, DEMAND], state[axis, SPEED] = demand, speed
+        state[axis, COUNTED], state[axis, PART] = counted, part
+        state[axis, LARGEST] = max(state[axis, LARGEST], error)
+        if limit > 0:
+            state[axis, SHARE] = max(state[axis, SHARE], error / limit)
+        if len(watching.limits_mm):
+            watching.limits_mm[row, axis] = limit
+        faulty = not error <= limit  # also where there is no number
+        if faulty and state[axis, FAULTY] == 0:
+            if found >= 0:
+                continue  # one fault at a time: this one is found in the next row
+            found = axis
+        state[axis, FAULTY] = faulty
+    return found

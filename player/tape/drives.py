@@ -1,16 +1,15 @@
-"""The drives: the loops of all axes and the monitor that watches them, row by row of the tape.
+"""The drives: the loops of all axes, stepped row by row of the tape.
 
 Signals in: phase of each axis track in cycles (tape against reference); the reference, in cycles from row to
-row. Signals out: the place of each screw in mm, and the row from which nothing is certain.
+row. Signals out: the place of each screw in mm, what was demanded of it, and the row from which a drive is
+out of its range.
 
-    phases ─► + phase changer 155 ─► loop of phase_lock.py ─► screw ─┬─► + place at rest ─► place, mm
-                     │                                               │
-                     └──────────► demand ─► monitor ◄────────────────┘
+    phases ─► + phase changer 155 ─► loop of phase_lock.py ─► screw ─► + place at rest ─► place, mm
+                     └─────────────────────────────────────────────► + place at rest ─► demand, mm
 
-Each loop waits most of the time for its own last step; so the axes are stepped beside each other, and the
-monitor of a row comes between its drives and those of the next.
+Each loop waits most of the time for its own last step, so the axes are stepped beside each other.
 
-Source: patents ES 361967, figure 5, and ES 414458, figures 1 and 2. Questions: none.
+Source: patent ES 361967, figure 5. Questions: none.
 """
 
 from __future__ import annotations
@@ -26,10 +25,9 @@ from morfax.motion.compiled import keeps_kinds, njit
 from morfax.motion.drive import SOUND, as_rows, conditioned_step, limited
 from morfax.motion.ramp import positions_mm
 from morfax.player.monitor.following_limit import FollowingLimit, learn_table
-from morfax.player.monitor.monitor import Monitor, Watching, watch_axis
 from morfax.player.tape.comparator import compared, track_edges
 from morfax.player.tape.phase_lock import BACK_S, PhaseLock, place
-from morfax.player.tape.sector_wheel import SectorWheel, edges_since, last_edge
+from morfax.player.tape.sector_wheel import SectorWheel, Wheels, edges_since, last_edge
 
 TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout leaves unknown
 TRIED_SPEEDS = 16  # points of the table of following errors, up to the top speed
@@ -62,15 +60,13 @@ class _Fields(NamedTuple):
     motor_gain: float  # motor 163: share of the speed error made good in a step
     largest_change_mm_s: float  # of its speed in a step
     top_mm_s: float
+    wheels: Wheels
+    state: Array  # (axes, columns above)
 
 
 @keeps_kinds
-class Loop(_Fields):
-    """A loop as the kernel takes it: figures of the comparator, of the networks and of the motor."""
-
-
-_NONE = np.zeros((0, 7))
-_UNWATCHED = Watching(np.zeros(4), np.zeros((1, 3)), _NONE, _NONE)
+class Machine(_Fields):
+    """The loops as the kernel takes them: figures of comparator, networks and motor; wheels; their state."""
 
 
 class Drives:
@@ -87,66 +83,48 @@ class Drives:
         reference: Reference | None = None,
     ) -> None:
         self.settings = settings or PhaseLock()
-        self._rate_hz = rate_hz
         reference = reference or Reference()
-        self._wheels = reference.wheel.wheels(axes, mm_per_cycle)
+        wheels = reference.wheel.wheels(axes, mm_per_cycle)
         self._cycles = reference.cycles_per_row / steps  # of the reference in a step
         self._stepped = 0
-        self._loop = _loop(self.settings, mm_per_cycle, rate_hz, steps)
-        self._state = np.zeros((axes, 8))
+        dt_s = 1 / (rate_hz * steps)
+        self._machine = _machine(self.settings, mm_per_cycle, dt_s, steps, wheels, axes)
+        self._state = self._machine.state
         # before the first edge
-        self._state[:, SECTOR], self._state[:, COUNT] = self._wheels.sectors - 1, -1
+        self._state[:, SECTOR], self._state[:, COUNT] = wheels.sectors - 1, -1
         self.conditions = [SOUND] * axes
 
     def follow(self, cycles: Array) -> Array:
         """Displacements (n, axes) in mm for phases (n, axes); fewer rows if a drive left the range."""
         still = np.zeros(cycles.shape[1])
-        return self._through(cycles, (still, still), _UNWATCHED)[0]
+        return self.run(cycles, still, still)[0]
 
-    def follow_watched(
-        self, cycles: Array, moved: tuple[Array, Array], monitor: Monitor
-    ) -> tuple[Array, int]:
-        """Places (n, axes) in mm as `follow` gives them, and the rows of them before a monitor stops.
+    def run(self, cycles: Array, zero_cycles: Array, rest_mm: Array) -> tuple[Array, Array]:
+        """Places of the screws and demands (n, axes) in mm, for phases, as `follow`.
 
-        `moved`: what is added to the phases of each axis, cycles, and to the places of the screws, mm.
+        `zero_cycles` are added to the phases of each axis, `rest_mm` is where its screw stood at first.
         """
-        watching = monitor.watching(len(cycles))
-        places_mm, (row, axis) = self._through(cycles, moved, watching)
-        if axis >= 0 or monitor.has_chart:
-            demand_mm = (cycles[: len(places_mm)] + moved[0]) * self._loop.mm_per_cycle + moved[
-                1
-            ]
-            monitor.take(demand_mm, places_mm, watching, (row, axis))
-        else:
-            monitor.rows_seen += row
-        return places_mm, row
-
-    def _through(
-        self, cycles: Array, moved: tuple[Array, Array], watching: Watching
-    ) -> tuple[Array, tuple[int, int]]:
-        """Step through a block; the places, mm, and the row and axis of the monitor's fault (-1: none)."""
         cycles = np.ascontiguousarray(cycles, dtype=np.float64)
-        places_mm = np.empty_like(cycles)
-        steps, row, axis = _follow(
+        places_mm, demands_mm = np.empty((2, *cycles.shape))
+        steps = _follow(
             cycles,
-            moved,
+            (zero_cycles, rest_mm),
             (self._stepped, self._cycles),
-            self._loop,
-            self._wheels,
+            self._machine,
             as_rows(self.conditions),
-            self._state,
-            watching,
             places_mm,
+            demands_mm,
         )
         self._stepped += steps
-        return places_mm[: steps // self._loop.steps], (row, axis)
+        rows = steps // self._machine.steps
+        return places_mm[:rows], demands_mm[:rows]
 
     def adjust(self, shift_mm: Array) -> None:
         """Turn the phase changers 155 until the screws stand this far from before; the tape stands still."""
-        rate_hz = 1 / (self._loop.dt_s * self._loop.steps)
+        rate_hz = 1 / (self._machine.dt_s * self._machine.steps)
         way = positions_mm(np.zeros(len(shift_mm)), shift_mm, ADJUSTING_MM_S, rate_hz=rate_hz)
         still = np.repeat(way[-1:], round(SETTLING_S * rate_hz), axis=0)
-        self.follow(np.vstack([way, still]) / self._loop.mm_per_cycle)
+        self.follow(np.vstack([way, still]) / self._machine.mm_per_cycle)
 
     @property
     def cell_edges(self) -> Array:
@@ -159,11 +137,13 @@ class Drives:
         return self._state[:, ERROR].copy()
 
 
-def _loop(settings: PhaseLock, mm_per_cycle: float, rate_hz: float, steps: int) -> Loop:
-    """The loop for so many steps from row to row; raises ValueError if the motion rate is too low."""
-    dt_s, drive = 1 / (rate_hz * steps), settings.drive
+def _machine(
+    settings: PhaseLock, mm_per_cycle: float, dt_s: float, steps: int, wheels: Wheels, axes: int
+) -> Machine:
+    """The loops for so many steps from row to row; raises ValueError if the motion rate is too low."""
+    drive = settings.drive
     network = place(settings, dt_s)
-    return Loop(
+    return Machine(
         steps=steps,
         mm_per_cycle=mm_per_cycle,
         range_mm=settings.range_cycles * mm_per_cycle,
@@ -176,6 +156,8 @@ def _loop(settings: PhaseLock, mm_per_cycle: float, rate_hz: float, steps: int) 
         motor_gain=drive.gain(dt_s),
         largest_change_mm_s=drive.acceleration_mm_s2 * dt_s,
         top_mm_s=drive.top_speed_mm_s,
+        wheels=wheels,
+        state=np.zeros((axes, 8)),
     )
 
 
@@ -205,50 +187,43 @@ def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) ->
 
 
 @njit(cache=True, nogil=True, _nrt=False)
-def _follow(cycles, moved, reference, loop, wheels, conditions, state, watching, places_mm):  # type: ignore[no-untyped-def]
-    """Step all axes through a block and watch them; the steps done before an error was out of range, and the
-    row and axis of the monitor's fault, from which on nothing is watched (else the rows done, and -1).
+def _follow(cycles, moved, reference, machine, conditions, places_mm, demands_mm):  # type: ignore[no-untyped-def]
+    """Step all axes through a block; the steps done before an error was out of range.
 
-    `reference`: steps before the block, and cycles of the reference in a step.
+    `moved`: cycles added to the phases, mm to the places; `reference`: steps before the block, and cycles of
+    the reference in a step.
     """
-    fault_row, fault_axis = -1, -1
+    state, sectors = machine.state, machine.wheels.sectors
+    zero_cycles, rest_mm = moved
     for row in range(len(cycles)):
-        for step in range(loop.steps):
+        for step in range(machine.steps):
             # the reference since the wheels' last whole turn; motor 116 turns them by it
-            done = row * loop.steps + step
+            done = row * machine.steps + step
             told = (reference[0] + done) * reference[1]
-            turned = np.floor(told / wheels.sectors)
-            phase = told - turned * wheels.sectors
-            wheel_turned = phase / wheels.sectors
+            turned = np.floor(told / sectors)
+            phase = told - turned * sectors
+            wheel_turned = phase / sectors
             for axis in range(len(state)):
-                places_mm[row, axis] = state[axis, POSITION] + moved[1][axis]
-                track = cycles[row, axis] + moved[0][axis]
-                if loop.steps > 1:
+                places_mm[row, axis] = state[axis, POSITION] + rest_mm[axis]
+                track = cycles[row, axis] + zero_cycles[axis]
+                if machine.steps > 1:
                     before = state[axis, LAST]
-                    track = before + (step + 1) / loop.steps * (track - before)
+                    track = before + (step + 1) / machine.steps * (track - before)
                 tape_count, tape_share = track_edges(phase, track)
-                tape = tape_count + turned * wheels.sectors, tape_share
-                if not _stepped(tape, wheel_turned, loop, wheels, conditions, state, axis):
-                    return done, row if fault_axis < 0 else fault_row, fault_axis
+                tape = tape_count + turned * sectors, tape_share
+                if not _stepped(tape, wheel_turned, machine, conditions, axis):
+                    return done
         for axis in range(len(state)):
-            state[axis, LAST] = cycles[row, axis] + moved[0][axis]
-        if fault_axis < 0:
-            fault_row = row
-            for axis in range(len(watching.state)):
-                demand = (cycles[row, axis] + moved[0][axis]) * loop.mm_per_cycle + moved[1][
-                    axis
-                ]
-                places = demand, places_mm[row, axis]
-                limit, fault_axis = watch_axis(places, fault_axis, watching, axis)
-                if len(watching.limits_mm):
-                    watching.limits_mm[row, axis] = limit
-    rows = len(cycles)
-    return rows * loop.steps, rows if fault_axis < 0 else fault_row, fault_axis
+            track = cycles[row, axis] + zero_cycles[axis]
+            demands_mm[row, axis] = track * machine.mm_per_cycle + rest_mm[axis]
+            state[axis, LAST] = track
+    return len(cycles) * machine.steps
 
 
 @njit(cache=True, inline="always", _nrt=False)
-def _stepped(tape, wheel_turned, loop, wheels, conditions, state, axis):  # type: ignore[no-untyped-def]
+def _stepped(tape, wheel_turned, machine, conditions, axis):  # type: ignore[no-untyped-def]
     """Step the loop of an axis by what the tape tells (count, share); whether its error is in range."""
+    state, wheels = machine.state, machine.wheels
     position, speed = state[axis, POSITION], state[axis, SPEED]
     demand, lead = state[axis, DEMAND], state[axis, LEAD]
     error, count = state[axis, ERROR], state[axis, COUNT]
@@ -258,23 +233,23 @@ def _stepped(tape, wheel_turned, loop, wheels, conditions, state, axis):  # type
         seen, share = last_edge(position, wheel_turned, axis, wheels)
         count += edges_since(seen, state[axis, SECTOR], wheels.sectors)
         state[axis, SECTOR], state[axis, COUNT] = seen, count
-    now = compared(tape, (count, share)) * loop.mm_per_cycle
+    now = compared(tape, (count, share)) * machine.mm_per_cycle
     state[axis, ERROR] = now
     # 2. amplifier, integrator, motor
-    if not abs(now) <= loop.range_mm:  # fault circuit 162; also where the phase is no number
+    if not abs(now) <= machine.range_mm:  # fault circuit 162; also where the phase is no number
         return False
-    lead_now = loop.lead_pole * lead + now - loop.lead_zero * error  # amplifier 161
-    demand += loop.gain * (lead_now - loop.zero * lead)  # integrator 159
+    lead_now = machine.lead_pole * lead + now - machine.lead_zero * error  # amplifier 161
+    demand += machine.gain * (lead_now - machine.zero * lead)  # integrator 159
     # what the motor can answer: its current,
     # mm/s that a demand may lie off the speed before the current is at its limit
-    reach = loop.largest_change_mm_s / loop.motor_gain
+    reach = machine.largest_change_mm_s / machine.motor_gain
     given = limited(demand, speed - reach, speed + reach)
-    given = limited(given, -loop.top_mm_s, loop.top_mm_s)  # and its speed
-    demand += loop.back * (given - demand)
+    given = limited(given, -machine.top_mm_s, machine.top_mm_s)  # and its speed
+    demand += machine.back * (given - demand)
     # motor 163, tacho
-    motor = loop.motor_gain, loop.largest_change_mm_s
+    motor = machine.motor_gain, machine.largest_change_mm_s
     speed_now = conditioned_step(speed, given, motor[0], motor[1], conditions[axis])
-    speed_now = limited(speed_now, -loop.top_mm_s, loop.top_mm_s)
-    state[axis, POSITION] = position + (speed + speed_now) / 2 * loop.dt_s
+    speed_now = limited(speed_now, -machine.top_mm_s, machine.top_mm_s)
+    state[axis, POSITION] = position + (speed + speed_now) / 2 * machine.dt_s
     state[axis, SPEED], state[axis, DEMAND], state[axis, LEAD] = speed_now, demand, lead_now
     return True

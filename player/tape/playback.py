@@ -215,9 +215,9 @@ class TapePlayback(Supervised):
             sound = len(phases) if found is None else min(found[0], len(phases))
             zero_cycles = self._zero_mm * fmt.cycles_per_mm - read.bearings.zero_cycles
             monitor.rows_seen = phases.first_row
-            moved = zero_cycles, rest_mm
-            places_mm, rows = drives.follow_watched(phases.cycles[:sound], moved, monitor)
+            places_mm, demands_mm = drives.run(phases.cycles[:sound], zero_cycles, rest_mm)
             self.cell_edges = drives.cell_edges - adjusted_edges
+            rows = monitor.watch(demands_mm, places_mm)
             if rows:
                 self._rows, self.end_mm = phases.first_row + rows, places_mm[rows - 1]
                 yield self._motion(places_mm[:rows], phases.first_row)

@@ -1,4 +1,4 @@
-"""The drives under their monitor: one kernel does what drives and monitor do by themselves."""
+"""The drives of all axes: where their phases are counted from, and their kernel."""
 
 from __future__ import annotations
 
@@ -6,16 +6,11 @@ import numpy as np
 import pytest
 
 from morfax.motion.drive import SOUND, Condition
-from morfax.player.monitor.chart import Chart
-from morfax.player.monitor.monitor import Monitor
 from morfax.player.tape import drives as organ
-from morfax.player.tape.drives import Drives, following_limit
-from morfax.player.tape.phase_lock import PhaseLock
+from morfax.player.tape.drives import Drives
 from tests.player.carriers import MOTION_RATE_HZ, circle
 
 Q_MM = 0.05
-AXES = ("x", "y", "z")
-LIMIT = following_limit(PhaseLock(), Q_MM, MOTION_RATE_HZ)
 ZERO_CYCLES, REST_MM = np.array([0.25, -3.0, 0.0]), np.array([40.0, 12.0, 2.0])
 
 
@@ -25,41 +20,35 @@ def phases(rows: int) -> np.ndarray:
     return circle(3.0, 40.0)(t_s) / Q_MM - ZERO_CYCLES
 
 
-def run(condition: Condition, steps: int, together: bool) -> list[object]:
-    """What drives, one of them broken, and monitor tell of a run in two blocks."""
-    drives = Drives(3, Q_MM, MOTION_RATE_HZ, steps=steps)
-    drives.conditions = [SOUND, condition, SOUND]
-    chart = Chart(0.002)
-    monitor, told = Monitor(AXES, MOTION_RATE_HZ, LIMIT, chart=chart), phases(3000)
-    out: list[object] = []
-    for block in (told[:1000], told[1000:]):
-        if together:
-            places_mm, rows = drives.follow_watched(block, (ZERO_CYCLES, REST_MM), monitor)
-        else:
-            cycles = block + ZERO_CYCLES
-            places_mm = drives.follow(cycles) + REST_MM
-            demand_mm = cycles[: len(places_mm)] * Q_MM + REST_MM
-            rows = monitor.watch(demand_mm, places_mm)
-        out += [places_mm.tobytes(), rows]
-    out += [str(fault) for fault in monitor.warnings]
-    out += [monitor.largest_error_mm.tolist(), monitor.largest_share.tolist()]
-    return [*out, monitor.rows_seen, chart.error_mm.tobytes(), chart.limit_mm.tobytes()]
+def drives(steps: int) -> Drives:
+    """Drives of three axes, the second one weak."""
+    found = Drives(3, Q_MM, MOTION_RATE_HZ, steps=steps)
+    found.conditions = [SOUND, Condition(gain_share=0.9), SOUND]
+    return found
 
 
 @pytest.mark.parametrize("steps", [1, 3])
-@pytest.mark.parametrize(
-    ("condition", "faults"),
-    [(SOUND, 0), (Condition(stuck=True), 1), (Condition(gain_share=0.1), 1)],
-)
-def test_together_they_do_what_they_do_one_after_the_other(
-    condition: Condition, faults: int, steps: int
+def test_phases_count_from_the_zero_and_places_from_where_the_screws_stood(steps: int) -> None:
+    told, moved, plain = phases(1200), drives(steps), drives(steps)
+    for block in (told[:500], told[500:]):
+        places_mm, demands_mm = moved.run(block, ZERO_CYCLES, REST_MM)
+        cycles = block + ZERO_CYCLES
+        assert np.array_equal(places_mm, plain.follow(cycles) + REST_MM)
+        assert np.array_equal(demands_mm, cycles * Q_MM + REST_MM)
+
+
+def test_out_of_range_places_and_demands_end_with_the_row_before() -> None:
+    told = phases(400)
+    told[300:, 2] += 9.0
+    places_mm, demands_mm = drives(2).run(told, ZERO_CYCLES, REST_MM)
+    assert len(places_mm) == len(demands_mm) == 300
+
+
+@pytest.mark.parametrize("steps", [1, 2])
+def test_the_compiled_kernel_is_the_plain_one(
+    steps: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    together = run(condition, steps, together=True)
-    assert together == run(condition, steps, together=False)
-    assert sum("does not follow" in str(each) for each in together) == faults
-
-
-def test_the_compiled_kernel_is_the_plain_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    compiled = run(Condition(gain_share=0.1), 2, together=True)
+    told = phases(300)
+    compiled = drives(steps).run(told, ZERO_CYCLES, REST_MM)
     monkeypatch.setattr(organ, "_follow", organ._follow.py_func)
-    assert run(Condition(gain_share=0.1), 2, together=True) == compiled
+    assert np.array_equal(drives(steps).run(told, ZERO_CYCLES, REST_MM), compiled)
