@@ -21,7 +21,8 @@ from morfax.player.gcode.feed_control import feed_number
 from morfax.player.gcode.pulse_servo import PulseServos
 from morfax.player.gcode.residues import COUNTER_CLOCKWISE, Feed, ResidueInterpolator
 from morfax.player.gcode.rs274 import parse_rs274
-from morfax.player.monitor.monitor import FollowingLimit, Monitor
+from morfax.player.monitor.following_limit import FollowingLimit
+from morfax.player.monitor.monitor import Monitor
 from morfax.player.monitor.position_servo import PositionServos
 
 RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ

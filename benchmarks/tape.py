@@ -2,13 +2,15 @@
 time.
 
 All run in turn, three times, and the best of each counts, so that other load hits all alike. The tape is
-a minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit. Memory is the most that Python and numpy
-hold at once, for that tape and for one ten times as long.
+a minute of circles at 50 mm/s, four tracks of 48 kHz and 16 bit; ten minutes of it, bare and with the check
+signal, are played by the clock on the wall and by the processors' time of both threads. Memory is the most
+that Python and numpy hold at once, for a minute and for ten.
 """
 
 from __future__ import annotations
 
 import tempfile
+import time
 import tracemalloc
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -150,6 +152,39 @@ def speed_rows(folder: Path) -> list[Row]:
     ]
 
 
+def playing_rows(folder: Path) -> list[Row]:
+    """Playing and recording of ten minutes: wall time and processor time, against decoding alone."""
+    bare, checked = folder / "bare.wav", folder / "checked.wav"
+    motion = list(circles(10 * MINUTE_S))
+    for file, fmt in ((bare, TapeFormat()), (checked, TapeFormat(checked=True))):
+        record(motion, file, fmt)
+        play_whole(file)
+    again = folder / "again.wav"
+    tasks = {
+        "decoding a bare tape": lambda: decode(bare),
+        "playing a bare tape": lambda: play_whole(bare),
+        "playing, with the checks": lambda: play_whole(checked),
+        "recording a bare tape": lambda: _record(motion, again),
+        "recording, with the check signal": lambda: _record(motion, again, checked=True),
+    }
+    rows = []
+    for how, clock in (("wall", time.perf_counter), ("processor", time.process_time)):
+        took = best_s(tasks, clock)
+        decoding, playing = took["decoding a bare tape"], took["playing a bare tape"]
+        ratios = {
+            "playing a bare tape": (playing / decoding, "decoding's time"),
+            "playing, with the checks": (
+                playing / took["playing, with the checks"],
+                "the speed of a bare one",
+            ),
+        }
+        rows += [
+            Row(f"{what}, {how}", 10 * MINUTE_S / took_s, "x real time", *ratios.get(what, ()))
+            for what, took_s in took.items()
+        ]
+    return rows
+
+
 def memory_rows(folder: Path) -> list[Row]:
     """Memory of play for a minute and for ten."""
     peaks = []
@@ -167,7 +202,8 @@ def memory_rows(folder: Path) -> list[Row]:
 def rows() -> list[Row]:
     """All figures of this benchmark."""
     with tempfile.TemporaryDirectory() as folder:
-        return speed_rows(Path(folder)) + memory_rows(Path(folder))
+        place = Path(folder)
+        return speed_rows(place) + playing_rows(place) + memory_rows(place)
 
 
 def main() -> None:
@@ -175,10 +211,10 @@ def main() -> None:
     tell("tape: four tracks, 48 kHz, 16 bit", rows())
 
 
-def _record(motion: list[Motion], file: Path) -> None:
+def _record(motion: list[Motion], file: Path, *, checked: bool = False) -> None:
     """Record over whatever was there."""
     file.unlink(missing_ok=True)
-    record(motion, file, TapeFormat())
+    record(motion, file, TapeFormat(checked=checked))
 
 
 if __name__ == "__main__":

@@ -9,20 +9,6 @@ from morfax.motion.compiled import njit
 
 Array = NDArray[np.float64]
 
-ROWS_AT_ONCE = 64  # rows that a kernel moves in one stretch: enough for its vectors
-
-
-def moved(rows: Array, by: Array, scale: float = 1.0) -> Array:
-    """Rows (n, columns) times a scale, and moved by a length for each column.
-
-    numpy takes eight times as long: it goes over rows of three columns one by one.
-    """
-    out = np.empty(rows.shape)
-    steps = np.empty((ROWS_AT_ONCE, len(by)))
-    steps[:] = by
-    _move(np.ascontiguousarray(rows).ravel(), steps.ravel(), scale, out.ravel())
-    return out
-
 
 def bounds(rows: NDArray[np.floating]) -> tuple[Array, Array]:
     """The lowest and the highest of each column of rows (n, columns).
@@ -44,15 +30,6 @@ def between(values: Array, at: float) -> float:
     return float(
         values[low] + (place - low) * (values[min(low + 1, len(values) - 1)] - values[low])
     )
-
-
-@njit(cache=True, nogil=True)
-def _move(rows, by, scale, out):  # type: ignore[no-untyped-def]
-    """Fill `out`, row after row, with as many at once as `by` is long."""
-    for first in range(0, len(rows), len(by)):
-        many = min(len(by), len(rows) - first)
-        for k in range(many):
-            out[first + k] = rows[first + k] * scale + by[k]
 
 
 @njit(cache=True, nogil=True)
@@ -79,19 +56,22 @@ def _settled(values, at):  # type: ignore[no-untyped-def]
     """The value at a place of the ordered values, which are moved so that none before it is larger."""
     first, last = 0, len(values) - 1
     while first < last:
-        pivot, low, high = values[(first + last) // 2], first, last
-        while low <= high:
-            while values[low] < pivot:
-                low += 1
-            while values[high] > pivot:
-                high -= 1
-            if low <= high:
-                values[low], values[high] = values[high], values[low]
-                low, high = low + 1, high - 1
-        if at <= high:
-            last = high
-        elif at >= low:
-            first = low
-        else:
+        # 1. the smaller ones to the front, without a branch: which way it goes cannot be foreseen
+        pivot, low = values[(first + last) // 2], first
+        for k in range(first, last + 1):
+            value, values[k] = values[k], values[low]
+            values[low] = value
+            low += value < pivot
+        if at < low:
+            last = low - 1
+            continue
+        # 2. then those that are as large
+        high = low
+        for k in range(low, last + 1):
+            value, values[k] = values[k], values[high]
+            values[high] = value
+            high += value <= pivot
+        if at < high:
             break
+        first = high
     return values[at]

@@ -223,10 +223,10 @@ def _add_kinds(args: tuple[Any, ...], of: list[Any]) -> None:
     """
     for arg in args:
         kind = type(arg)
-        if kind in _PLAIN:
-            of.append(kind)
-        elif kind is np.ndarray:
+        if kind is _Array:
             of += (arg.dtype, arg.ndim, arg.flags.num & _FLAGS)
+        elif kind in _PLAIN:
+            of.append(kind)
         elif kind in _KEPT_KINDS:
             if not hasattr(arg, "number_of_kinds"):
                 arg.number_of_kinds = _number(arg)
@@ -245,6 +245,7 @@ def _add_kinds(args: tuple[Any, ...], of: list[Any]) -> None:
                 of.append(arg.dtype)
 
 
+_Array = np.ndarray  # one look-up where there were two
 _dtype = np.generic.dtype.__get__  # type: ignore[attr-defined]  # a record looks among its fields first
 _PLAIN = {float: "f8", int: "i8", bool: "b1", np.float64: "f8", np.int64: "i8", np.bool_: "b1"}
 _PLAIN |= {kind: kind.__name__ for kind in (np.float32, np.int32, np.uint8, np.uint32)}

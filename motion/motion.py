@@ -140,7 +140,7 @@ def _closed_door(first_mm: Array) -> Array:
     return state
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _swing(positions_mm, first_index, state, tolerance_mm):  # type: ignore[no-untyped-def]
     """Pass a block through the door; the rows (index, position…) that must be kept."""
     n, axes = positions_mm.shape

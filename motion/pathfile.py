@@ -32,6 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.decimals import lines_of
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.motion import AXES, IN_WORK_BELOW_MM, Path
@@ -52,13 +53,11 @@ def write_rows(path: Path, out: TextIO, *, header: bool = False) -> None:
     """Write the rows of a path, or of a piece of one, to an open file, `header`: after the names."""
     if header:
         out.write(_header(path))
-    places_mm = np.round(path.positions_mm, 5)
-    columns = [np.round(path.t_s, 7), places_mm[:, :3], path.tool, places_mm[:, 3:]]
-    rows = np.column_stack(columns) + 0.0  # no minus zero
-    line = "%.7f,%.5f,%.5f,%.5f,%d" + ",%.5f" * len(path.axes[3:]) + "\n"
+    places_mm = path.positions_mm
+    rows = np.column_stack([path.t_s, places_mm[:, :3], path.tool, places_mm[:, 3:]])
+    decimals = [7, 5, 5, 5, 0, *[5] * len(path.axes[3:])]
     for first in range(0, len(rows), _ROWS_AT_ONCE):
-        some = rows[first : first + _ROWS_AT_ONCE]
-        out.write(line * len(some) % tuple(some.ravel()))
+        out.write(lines_of(rows[first : first + _ROWS_AT_ONCE], decimals))
 
 
 def _header(path: Path) -> str:

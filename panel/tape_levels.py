@@ -24,7 +24,7 @@ from morfax.motion.files import for_soundfile
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
-    from morfax.player.tape.discriminator import Phases
+    from morfax.player.tape.phases import Phases
     from morfax.recorder.tape.tape import Tape
 
 COLUMNS = 800  # stretches: more than a strip has pixels

@@ -21,7 +21,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.files import check_name
 from morfax.motion.motion import Motion
 from morfax.player.monitor.chart import Chart
-from morfax.player.monitor.monitor import FollowingLimit, Monitor
+from morfax.player.monitor.following_limit import FollowingLimit
+from morfax.player.monitor.monitor import Monitor
 
 if TYPE_CHECKING:
     from morfax.recorder.sound.source import Source

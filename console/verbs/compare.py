@@ -12,6 +12,7 @@ from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT, drawing_options
 from morfax.console.options.files import FILE, PICTURES, Result
 from morfax.console.options.groups import Verb, given, option, renamed
+from morfax.console.options.output import FORCE
 from morfax.console.options.systems import Systems
 from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.console.options.types import CUTTER, LENGTH, LINES, PLACE, SPEED, ZERO
@@ -66,6 +67,7 @@ Examples:
     "--systems "
     "also a report in one file (.html).",
 )
+@FORCE
 @option(
     "Systems",
     "--start",

@@ -12,6 +12,7 @@ from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT
 from morfax.console.options.files import FILE, PATHS, PICTURES, ProgramPath, Result
 from morfax.console.options.groups import Verb, option, renamed
+from morfax.console.options.output import FORCE
 from morfax.console.options.sound import intake_options
 from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.console.options.types import NUMBER, PLACES, REACH, SHARE, TIME
@@ -67,6 +68,7 @@ Examples:
     help="Keep every sample of the motion.  [default: thinned to within 0.2 um, following errors every "
     "10 ms]",
 )
+@FORCE
 @option(
     "Machine",
     "--resume-at",

@@ -17,7 +17,8 @@ from morfax.motion.ramp import Ramp, positions_mm
 from morfax.player.gcode.feed_control import feed_number
 from morfax.player.gcode.residues import Feed, ResidueInterpolator
 from morfax.player.monitor.chart import Chart
-from morfax.player.monitor.monitor import FollowingLimit, Monitor
+from morfax.player.monitor.following_limit import FollowingLimit
+from morfax.player.monitor.monitor import Monitor
 from morfax.player.monitor.position_servo import PositionServos
 
 BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1121f", "#2a7f3f", "#888888"

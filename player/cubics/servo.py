@@ -21,7 +21,7 @@ import numpy as np
 from morfax.motion.compiled import njit
 from morfax.motion.drive import Drive, conditioned_step
 from morfax.player.cubics.scales import Scales, measured
-from morfax.player.monitor.monitor import FollowingLimit
+from morfax.player.monitor.following_limit import FollowingLimit
 
 REGISTER_DIGITS = 12  # of register 34, sign apart
 _TOLERANCE_MM = 0.005  # of following: a tenth of the lag at 10 mm/s

@@ -45,7 +45,8 @@ from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
 from morfax.player.gcode.pulse_servo import HISTORIC, PulseServo, PulseServos
 from morfax.player.gcode.residues import LINE, Feed, ResidueInterpolator
-from morfax.player.monitor.monitor import FollowingLimit, Supervised
+from morfax.player.monitor.following_limit import FollowingLimit
+from morfax.player.monitor.monitor import Supervised
 
 LARGEST_ARC = math.radians(170)  # below the half turn that the residue loops take
 STANDSTILL_S = 0.25  # before the first move and behind the last: the lag runs off

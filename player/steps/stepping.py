@@ -39,7 +39,8 @@ from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.compiled import njit
 from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, Motion
-from morfax.player.monitor.monitor import FollowingLimit, Supervised
+from morfax.player.monitor.following_limit import FollowingLimit
+from morfax.player.monitor.monitor import Supervised
 from morfax.player.steps.motor import SOUND, Motor, Motors
 from morfax.player.steps.ring_memory import ring_memory
 from morfax.recorder.steps.file import (

@@ -25,7 +25,7 @@ from collections.abc import Sequence
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.format import TapeFormat

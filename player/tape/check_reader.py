@@ -122,7 +122,8 @@ class CheckReader:
         self._zero_turns = np.zeros(fmt.tracks)
         self._number, self._theta = 0, 0.0  # the next frame, and where it begins
         self._erasures = Erasures(fmt.tracks)
-        self._quiet = QuietFrames(fmt.tracks, reference_hz, self._erasures)
+        turns = (self._turns, self._zero_turns)
+        self._quiet = QuietFrames(fmt.tracks, reference_hz, self._erasures, turns)
         self._clock_lost = False  # whether the reference said nothing in the last frame
         self._sound_from = -1.0  # the last point before which the reference is counted right
         if self.is_checked:
@@ -229,7 +230,7 @@ class CheckReader:
         """Read the next frame of all tracks."""
         self._put_right()
         held = (self._turns, self._zero_turns)
-        quiet = self._quiet.read(self._points, self._theta, held)
+        quiet = self._quiet.read(self._points, self._theta)
         if quiet is not None:
             self._clock_lost = False
             rows = self._rows_of(quiet.frames)

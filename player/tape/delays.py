@@ -29,7 +29,7 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 
 WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2
@@ -78,9 +78,10 @@ class Delay:
         while len(self._used) < settled:
             last = self._used[-1] if self._used else 0.0
             self._used.append(_towards(last, self._settled(len(self._used))))
-        gone = max(min(len(self._used), len(self._rows) - WINDOW) - KEPT, 0)
-        self._is_whole = self._is_whole and not gone
-        del self._rows[:gone], self._told[:gone], self._used[:gone]
+        gone = min(len(self._used), len(self._rows) - WINDOW) - KEPT
+        if gone > 0:
+            self._is_whole = False
+            del self._rows[:gone], self._told[:gone], self._used[:gone]
 
     def corrected(self, cycles: Array, first_row: int) -> Array:
         """The phases of some rows without the delay; the first and last rows only lend their speed."""

@@ -22,58 +22,45 @@ is what beats the tape's noise. A square-wave trigger would be a hundred times c
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.compiled import njit
+from morfax.motion.compiled import keeps_kinds, njit
 from morfax.player.tape.band_filter import branches, translating_taps
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.predictor import count_turns, predictor_gains
 
 SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
 CHUNK_ROWS = 1024  # what the kernel has in the processor's cache at a time
 GROUP = 8  # taps that the kernel has in its registers at a time
+ROOM_ROWS = (
+    512  # before the first of a block: dropouts hold back 13 to 170 rows of the one before it
+)
 
 Frames = NDArray[np.float32 | np.int16]
 Float32s = NDArray[np.float32]
-Float64s = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class Phases:
-    """A block of rows at the motion rate; row 0 is row `first_row` of the tape."""
+def _behind(tail: Frames, frames: Frames) -> Frames:
+    """Frames behind those of a tail, which may be none; a copy."""
+    return np.concatenate([tail, frames]) if len(tail) else frames.copy()
 
-    first_row: int
-    cycles: Float64s
-    surprise: Float32s
-    levels: Float32s
 
-    def __len__(self) -> int:
-        return len(self.cycles)
+class _Fields(NamedTuple):
+    taps: Float32s
+    turns_re: Float32s
+    turns_im: Float32s
+    columns: Float32s  # (frame within the row · tracks + track, rows)
+    sums: Float32s  # (2, tracks, rows)
+    level: Float32s
 
-    def joined(self, after: Phases) -> Phases:
-        """These rows and the rows after them."""
-        names = ("cycles", "surprise", "levels")
-        return Phases(
-            self.first_row,
-            *(np.concatenate([getattr(self, n), getattr(after, n)]) for n in names),
-        )
 
-    def moved(self, rows: int) -> Phases:
-        """The same rows, further on the tape by this many."""
-        return Phases(self.first_row + rows, self.cycles, self.surprise, self.levels)
-
-    def cut(self, first: int, last: int) -> Phases:
-        """The rows from `first` to before `last`."""
-        rows = slice(max(first, 0), max(last, first, 0))
-        return Phases(
-            self.first_row + rows.start,
-            self.cycles[rows],
-            self.surprise[rows],
-            self.levels[rows],
-        )
+@keeps_kinds
+class Bench(_Fields):
+    """The filter, as `branches` has it, and the arrays in which a chunk of rows goes through it."""
 
 
 class Discriminator:
@@ -93,10 +80,19 @@ class Discriminator:
             )
         self.decimation = decimation
         self.filter_frames = len(translating_taps(sample_rate_hz, reference_hz, decimation)[0])
-        self._filter = branches(sample_rate_hz, reference_hz, decimation, GROUP)
         self._half = self.filter_frames // 2
         # rows that the filter reaches beyond its first
         self._reach = 2 * self._half // decimation
+        taps, turns_re, turns_im = branches(sample_rate_hz, reference_hz, decimation, GROUP)
+        length = CHUNK_ROWS + max(self._reach, taps.shape[2])
+        self._bench = Bench(
+            np.ascontiguousarray(taps),
+            turns_re,
+            turns_im,
+            np.zeros((decimation * tracks, length), np.float32),
+            np.empty((2, tracks, CHUNK_ROWS), np.float32),
+            np.empty(CHUNK_ROWS, np.float32),
+        )
         self.gains = predictor_gains(sample_rate_hz / decimation)
         self.state = np.full((tracks - 1, 3), np.nan)
         self._tail: Frames = np.zeros((0, tracks), np.float32)
@@ -106,21 +102,28 @@ class Discriminator:
 
     def feed(self, frames: Frames) -> Phases:
         """Take the next frames (n, tracks) of the tape; the rows complete by now, perhaps none."""
-        frames = (
-            np.concatenate([self._tail, frames])
-            if len(self._tail)
-            else np.ascontiguousarray(frames)
-        )
-        row = max(self._row, -(-self._half // self.decimation))
-        skipped = row * self.decimation - self._half - self._tail_frame
-        count = max((len(frames) - skipped) // self.decimation - self._reach, 0)
-        keep = skipped + count * self.decimation if count else 0
-        self._tail, self._tail_frame = frames[keep:].copy(), self._tail_frame + keep
+        step, held = self.decimation, len(self._tail)
+        row = max(self._row, -(-self._half // step))
+        # frames before the first of the row's filter
+        skipped = row * step - self._half - self._tail_frame
+        count = max((held + len(frames) - skipped) // step - self._reach, 0)
         if not count:
+            self._tail = _behind(self._tail, frames)
             return self._held(0)
-        whole = frames[skipped : skipped + (count + self._reach) * self.decimation]
-        phases = self._demodulated(whole.reshape(count + self._reach, -1), row)
-        self._row, self._last = row + count, phases
+        # 1. rows whose filter begins in the tail, and those that lie in these frames alone
+        early = min(max(-(-(held - skipped) // step), 0), count)
+        own = skipped + early * step - held
+        parts = []
+        if early:
+            needed = frames[: max(own + self._reach * step, 0)]
+            parts.append((_behind(self._tail[skipped:], needed), early))
+        if count > early:
+            parts.append((frames[own:], count - early))
+        phases = self._demodulated(parts, row)
+        # 2. what the next rows need
+        keep = skipped + count * step
+        self._tail = _behind(self._tail[keep:], frames[max(keep - held, 0) :])
+        self._row, self._last, self._tail_frame = row + count, phases, self._tail_frame + keep
         return phases
 
     def finish(self) -> Phases:
@@ -129,27 +132,28 @@ class Discriminator:
             -(-(self._tail_frame + len(self._tail)) // self.decimation) - self._row
         )
 
-    def _demodulated(self, rows: Frames, row: int) -> Phases:
-        """Run the kernels; before the tape's first full row that row is held."""
-        count = len(rows) - self._reach
-        tracks = rows.shape[1] // self.decimation
-        phase = np.empty((tracks - 1, count))
-        levels = np.empty((count, tracks), np.float32)
-        cycles, surprise = (
-            np.empty((count, tracks - 1)),
-            np.empty((count, tracks - 1), np.float32),
+    def _demodulated(self, parts: Sequence[tuple[Frames, int]], row: int) -> Phases:
+        """Run the kernels on frames for so many rows each; before the tape's first full row that is held."""
+        tracks, count = self._tail.shape[1], sum(many for _, many in parts)
+        lead = row - self._row
+        phase, axes = np.empty((tracks - 1, count)), (ROOM_ROWS + lead + count, tracks - 1)
+        cycles, surprise = np.empty(axes), np.empty(axes, np.float32)
+        levels = np.empty((len(cycles), tracks), np.float32)
+        own, done = slice(ROOM_ROWS + lead, None), 0
+        for frames, many in parts:
+            whole = frames[: (many + self._reach) * self.decimation]
+            rows = whole.reshape(many + self._reach, -1)
+            scale = np.float32(1 / 32768 if rows.dtype == np.int16 else 1)
+            _wrap(rows, scale, (done, many), self._bench, phase, levels[own])
+            done += many
+        count_turns(phase, self.gains, self.state, cycles[own], surprise[own])
+        # before the first full row it is held
+        held = slice(ROOM_ROWS, ROOM_ROWS + lead)
+        cycles[held], surprise[held], levels[held] = (
+            told[own.start] for told in (cycles, surprise, levels)
         )
-        scale = np.float32(1 / 32768 if rows.dtype == np.int16 else 1)
-        _wrap(rows, scale, *self._filter, phase, levels)
-        count_turns(phase, self.gains, self.state, cycles, surprise)
-        lead = ((row - self._row, 0), (0, 0))
-        if row > self._row:
-            cycles = np.pad(cycles, lead, mode="edge")
-            surprise, levels = (
-                np.pad(surprise, lead, mode="edge"),
-                np.pad(levels, lead, mode="edge"),
-            )
-        return Phases(self._row, cycles, surprise, levels)
+        told = slice(ROOM_ROWS, None)
+        return Phases(self._row, cycles[told], surprise[told], levels[told], ROOM_ROWS)
 
     def _held(self, count: int) -> Phases:
         """The last row, `count` times over."""
@@ -176,30 +180,31 @@ def discriminate(blocks: Iterable[Frames], discriminator: Discriminator) -> Iter
 
 
 @njit(cache=True, nogil=True)
-def _wrap(rows, scale, taps, turns_re, turns_im, phase, levels):  # type: ignore[no-untyped-def]
-    """Fill `phase` (axes, n), -0.5 to 0.5 cycle, and `levels`, by chunks that fit the processor's cache.
+def _wrap(rows, scale, part, bench, phase, levels):  # type: ignore[no-untyped-def]
+    """Fill `phase` (axes, n), -0.5 to 0.5 cycle, and `levels` from a row on, so many rows (`part`), by chunks
+    that fit the processor's cache.
 
-    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample; the filter as
-    `branches` has it.
+    `rows` of the tape (n, frame within the row · tracks + track), `scale` of a sample.
     """
     tracks = levels.shape[1]
-    reach = len(rows) - len(levels)  # rows that a filter reaches beyond its first
-    columns = np.zeros((rows.shape[1], CHUNK_ROWS + max(reach, taps.shape[2])), np.float32)
-    re, im = (
-        np.empty((tracks, CHUNK_ROWS), np.float32),
-        np.empty((tracks, CHUNK_ROWS), np.float32),
-    )
-    level = np.empty(CHUNK_ROWS, np.float32)
-    for first in range(0, len(levels), CHUNK_ROWS):
-        last = min(first + CHUNK_ROWS, len(levels))
+    begin, count = part
+    reach = len(rows) - count  # rows that a filter reaches beyond its first
+    columns, re, im, level = bench.columns, bench.sums[0], bench.sums[1], bench.level
+    filled = bench.taps.shape[2]
+    for first in range(0, count, CHUNK_ROWS):
+        last = min(first + CHUNK_ROWS, count)
+        out = slice(begin + first, begin + last)
         _unlace(rows[first : last + reach], scale, columns)
+        # what taps of zero meet must be a number
+        columns[:, last - first + reach : last - first + filled] = 0
         for track in range(tracks):
             track_re, track_im = re[track, : last - first], im[track, : last - first]
-            _translate(columns, track, taps, turns_re, turns_im, track_re, track_im)
+            turns = bench.turns_re, bench.turns_im
+            _translate(columns, track, bench.taps, turns, track_re, track_im)
             _amplitude(track_re, track_im, level)
-            levels[first:last, track] = level[: last - first]
+            levels[out, track] = level[: last - first]
         for axis in range(tracks - 1):
-            turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[axis, first:last])
+            turn(re[axis + 1], im[axis + 1], re[0], im[0], phase[axis, out])
 
 
 @njit(cache=True, nogil=True)
@@ -214,14 +219,14 @@ def _unlace(rows, scale, columns):  # type: ignore[no-untyped-def]
 # meaning. Eight taps at a time: with one, most of the time went into taking the sums out of memory and
 # putting them back.
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
-def _translate(columns, track, taps, turns_re, turns_im, re, im):  # type: ignore[no-untyped-def]
+def _translate(columns, track, taps, turns, re, im):  # type: ignore[no-untyped-def]
     """Filter one track's columns, one output per row."""
     re[:] = 0
     im[:] = 0
     tracks = len(columns) // taps.shape[1]
     for branch in range(len(taps)):
         for column in range(taps.shape[1]):
-            turn_re, turn_im = turns_re[branch, column], turns_im[branch, column]
+            turn_re, turn_im = turns[0][branch, column], turns[1][branch, column]
             for row in range(0, taps.shape[2], GROUP):
                 h0, h1, h2, h3, h4, h5, h6, h7 = _group(taps[branch, column], row)
                 x = columns[column * tracks + track, row:]

@@ -32,8 +32,9 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, Side, side
-from morfax.player.tape.discriminator import Discriminator, Phases
+from morfax.player.tape.discriminator import Discriminator
 from morfax.player.tape.motion_edges import END_ROWS, furthest
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.predictor import recount
 from morfax.player.tape.riding import Riding
 from morfax.player.tape.standstill import LEVEL_STEADY
@@ -46,11 +47,9 @@ SIDE_S = 0.006  # of sound tape on each side
 LONGEST_S = 0.1  # a track that is away longer has ended
 # the same with a check signal: 1 s is asked, and the filter reaches 2 ms further; levels need some time
 LONGEST_CHECKED_S = 1.1
-
 # a frame of the check signal is read two symbols (10 ms at the lowest reference) behind its end
 TOLD_LATE_S = 0.02
-# of looking for surprises: what lies behind one that was bridged surprises less, or in another place
-TRIES = 3
+TRIES = 3  # of looking for surprises: behind one that was bridged others are less, or elsewhere
 
 
 def under_way(rows: Phases, discriminator: Discriminator) -> Array:
@@ -84,6 +83,13 @@ def _furthest(gap: Gap, cycles: Array, within: tuple[int, int]) -> float:
     return furthest((cycles[a - END_ROWS : a], behind), gap.laid(), most, gap.noise)
 
 
+def _longer(marks: NDArray[np.bool_], rows: int) -> NDArray[np.bool_]:
+    """Marks of rows (n, columns), and so many rows that are not marked."""
+    longer = np.zeros((len(marks) + rows, marks.shape[1]), bool)
+    longer[: len(marks)] = marks
+    return longer
+
+
 class Gaps:
     """Bridges the gaps of one tape; holds rows back that the next rows may show to be lost."""
 
@@ -100,17 +106,18 @@ class Gaps:
         self._new: list[Gap] = []
         self._rate_hz, self._names = fmt.motion_rate_hz, fmt.axes
         self._place_mm = place_mm
-        self._levels, self._tracked = levels, levels.copy()
+        self._least, self._tracked = levels * LEVEL_KEPT, levels.copy()
+        self._follow = LEVEL_STEADY, 1 - math.exp(-1 / (STEADY_S * fmt.motion_rate_hz))
         self._side = max(round(SIDE_S * self._rate_hz), 6)
         self._spread = -(-discriminator.filter_frames // (2 * discriminator.decimation))
         self._surprises = Surprises(discriminator.gains, fmt)
         told_late = 0 if riding.bounds is None else math.ceil(TOLD_LATE_S * self._rate_hz)
         self._held = max(self._spread, told_late)
         self._longest_s = LONGEST_S if riding.bounds is None else LONGEST_CHECKED_S
-        # from `side` rows before the first that is not yet given out
-        self._rows: Phases | None = None
-        self._lost = np.zeros((0, len(levels)), bool)
-        self._surprised = np.zeros((0, len(fmt.axes)), bool)
+        self._rows: Phases | None = None  # from `side` before the first not yet given out on
+        self._lost, self._surprised = (
+            np.zeros((0, columns), bool) for columns in (fmt.tracks, len(fmt.axes))
+        )
         self._given: int | None = None  # the row up to which rows were given out
         # tape time in s and axis: length in s
         self.bridged: dict[tuple[float, str], float] = {}
@@ -124,13 +131,10 @@ class Gaps:
         self, phases: Phases, *, last: bool = False
     ) -> tuple[Phases, tuple[int, Fault] | None]:
         """Take the next rows; the rows that are certain now, and the first that is not, with its fault."""
-        lost = np.zeros((len(phases), len(self._levels)), bool)
-        share = 1 - np.exp(-1 / (STEADY_S * self._rate_hz))
-        _mark(
-            phases.levels, self._levels * LEVEL_KEPT, LEVEL_STEADY, share, self._tracked, lost
-        )
-        self._lost = np.vstack([self._lost, lost])
-        self._surprised = np.vstack([self._surprised, np.zeros_like(lost[:, 1:])])
+        held = len(self._lost)
+        self._lost = _longer(self._lost, len(phases))
+        self._surprised = _longer(self._surprised, len(phases))
+        _mark(phases.levels, self._least, self._follow, self._tracked, self._lost[held:])
         self._given = phases.first_row if self._given is None else self._given
         rows = phases if self._rows is None else self._rows.joined(phases)
         self._rows = rows
@@ -280,11 +284,12 @@ class Gaps:
 
 
 @njit(cache=True, nogil=True)
-def _mark(levels, least, steady, share, tracked, lost):  # type: ignore[no-untyped-def]
-    """Mark the rows whose level is off; `tracked` follows the others.
+def _mark(levels, least, follow, tracked, lost):  # type: ignore[no-untyped-def]
+    """Mark the rows whose level is off; `tracked` follows the others: a share of the way from row to row.
 
     All tracks row by row: each waits for its own last row, and they can wait together.
     """
+    steady, share = follow
     for row in range(len(levels)):
         for track in range(levels.shape[1]):
             level, slow = levels[row, track], tracked[track]

@@ -19,8 +19,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
 from morfax.player.tape.frame_report import FrameReport
@@ -45,14 +43,13 @@ class FrameOrder:
         self._names, self._rate_hz = fmt.axes, fmt.motion_rate_hz
         self._frame_s = CYCLES_PER_FRAME / fmt.reference_hz
         self._told: list[list[float]] = [[] for _ in range(fmt.tracks)]  # delays of a frame, s
-        self._missing = np.zeros(fmt.tracks, int)
-        self._is_last = np.zeros(fmt.tracks, bool)
+        self._missing, self._is_last = [0] * fmt.tracks, [False] * fmt.tracks
         self._number: int | None = None  # of the next frame
 
     @property
     def ended(self) -> bool:
         """Whether the last frame of every track said that the tape ends."""
-        return bool(self._is_last.all())
+        return all(self._is_last)
 
     def fault(self, report: FrameReport) -> Fault | None:
         """Take the next frame; the fault of the first track in which it is not as it should be."""
@@ -63,9 +60,11 @@ class FrameOrder:
             if said is None:
                 found = found or self._unreadable(track, report)
                 continue
-            found = found or self._swinging(track, report)
+            if report.swing_s[track] > LARGEST_SWING_S:
+                found = found or self._swinging(track, report)
             self._missing[track], self._is_last[track] = 0, said.last
-            found = found or self._misplaced(track, said, expected, report)
+            if said.track != track or (said.number - expected) % NUMBERS:
+                found = found or self._misplaced(track, said, expected, report)
             found = found or self._too_late(track, report)
             told = report.delay_s[track]
             if math.isfinite(sum(told)):
@@ -110,12 +109,12 @@ class FrameOrder:
 
     def _too_late(self, track: int, report: FrameReport) -> Fault | None:
         """The fault of a track whose delay is too long, or makes a step: samples were lost or repeated."""
-        time_s, late_s = report.row / self._rate_hz, report.late_s[track]
-        delays_s = report.delay_s[track]
+        late_s, delays_s = report.late_s[track], report.delay_s[track]
         if not math.isfinite(sum(delays_s)):
             delays_s = [delay for delay in delays_s if math.isfinite(delay)]
         told = self._told[track] + delays_s
         longest_s = max(max(told), -min(told)) if told else 0.0
+        time_s = report.row / self._rate_hz
         if abs(late_s) > LARGEST_LATE_S or longest_s > LARGEST_DELAY_S + TOLD_WITHIN_S:
             late_s = late_s if abs(late_s) > LARGEST_LATE_S else longest_s
             return faults.too_late(track, self._names, late_s, LARGEST_DELAY_S, time_s)

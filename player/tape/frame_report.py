@@ -7,13 +7,12 @@ Source: our own. Questions: none.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from morfax.recorder.tape.check_frame import CheckFrame
 
 
-@dataclass(frozen=True, slots=True)
-class FrameReport:
+class FrameReport(NamedTuple):
     """A frame of all tracks: its number, rows of its start, its middle, and the middle of its parts.
 
     `said`: what each track says, None where its check sum is wrong; `late_s` against the clock of the

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from morfax.motion.arrays import Array, between
-from morfax.player.tape.discriminator import Phases
+from morfax.motion.arrays import Array
+from morfax.player.tape.phases import Phases
 
 
 class HeldRows:
@@ -71,19 +71,24 @@ class HeldRows:
             first, last = first - len(block), last - len(block)
         return parts[0] if len(parts) == 1 else np.concatenate([np.zeros(0), *parts])
 
-    def place(self, axis: int, at: float) -> float:
-        """The place of one axis between two rows, straight from one to the next, cycles."""
-        at = min(max(at, 0.0), len(self) - 1.0)
+    def places(self, at: float) -> list[float]:
+        """The places of all axes between two rows, straight from one to the next, cycles."""
+        at = min(max(at, 0.0), self._count - self._dropped - 1.0)
         low = int(at)
-        row = low + self._dropped
+        row, share = low + self._dropped, at - low
         for block in self._blocks:
-            if row + 1 < len(block.cycles):
-                before, after = block.cycles[row : row + 2, axis].tolist()
-                return float(before + (at - low) * (after - before))
-            if row < len(block.cycles):
-                break  # between this block and the next
-            row -= len(block.cycles)
-        return between(self.axis(axis, low, low + 2), at - low)
+            cycles = block.cycles
+            if row + 1 < len(cycles):
+                near = cycles[row : row + 2].tolist()
+                break
+            if row < len(cycles):  # between this block and the next
+                near = self.cut(low, low + 2).cycles.tolist()
+                break
+            row -= len(cycles)
+        return [
+            before + share * (after - before)
+            for before, after in zip(near[0], near[-1], strict=True)
+        ]
 
     def become(self, rows: Phases) -> None:
         """Hold these rows in place of all."""

@@ -25,7 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.player.tape.bridges import Bound, Gap
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 
 COUNT_CYCLES = 0.25  # as the end is checked
 # of a symbol: half of the window through which a symbol is seen is a quarter, and what the filter before it

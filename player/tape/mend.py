@@ -153,13 +153,12 @@ def _mend(place: Place, found: Bridge, reader: TapeReader, fmt: TapeFormat) -> M
 def _read(playback: TapePlayback) -> Iterator[tuple[int, Array]]:
     """Read the tape: blocks of places in mm with their first row; raises the tape's faults."""
     place_mm, fmt = playback.start_mm.copy(), playback.format
-    for phases, bearings, fault in playback.reader.read(lambda: place_mm.tolist()):
-        fault = bearings.first_fault(phases, fmt.motion_rate_hz, place_mm.tolist()) or fault
+    for read in playback.reader.read(lambda: place_mm.tolist()):
+        fault = read.first_fault(fmt.motion_rate_hz, place_mm.tolist())
         if fault is not None:
             raise fault[1]
-        places_mm = (
-            playback.start_mm + (phases.cycles - bearings.zero_cycles) * fmt.mm_per_cycle
-        )
+        phases, zero_cycles = read.rows, read.bearings.zero_cycles
+        places_mm = playback.start_mm + (phases.cycles - zero_cycles) * fmt.mm_per_cycle
         if len(places_mm):
             place_mm[:] = places_mm[-1]
             yield phases.first_row, places_mm

@@ -27,15 +27,16 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from morfax.motion.arrays import Array, moved
+from morfax.motion.arrays import Array
 from morfax.motion.drive import SOUND
 from morfax.motion.faults import Fault, LockFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import Supervised
 from morfax.player.tape.ahead import ReadAhead
 from morfax.player.tape.bare import NOT_VOUCHED
+from morfax.player.tape.drives import Drives, Reference, following_limit
 from morfax.player.tape.lock_faults import Stood, ended_elsewhere, out_of_range
-from morfax.player.tape.phase_lock import Drives, PhaseLock, Reference, following_limit
+from morfax.player.tape.phase_lock import PhaseLock
 from morfax.player.tape.reader import Read, TapeReader
 from morfax.player.tape.sector_wheel import SectorWheel
 from morfax.player.tape.setting import Setting, check_resumption
@@ -207,19 +208,16 @@ class TapePlayback(Supervised):
         drives.conditions = self.conditions
         rest_mm = self.start_mm - self._zero_mm  # where the screws stood before that
         monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
-        for phases, bearings, gap in self._read():
+        for read in self._read():
+            phases = read.rows
             self.notes = () if self.reader.is_checked else (NOT_VOUCHED,)
-            found = (
-                bearings.first_fault(phases, fmt.motion_rate_hz, self.end_mm.tolist()) or gap
-            )
+            found = read.first_fault(fmt.motion_rate_hz, self.end_mm.tolist())
             sound = len(phases) if found is None else min(found[0], len(phases))
-            zero_cycles = self._zero_mm * fmt.cycles_per_mm - bearings.zero_cycles
-            cycles = moved(phases.cycles[:sound], zero_cycles)
-            places_mm = moved(drives.follow(cycles), rest_mm)
-            self.cell_edges = drives.cell_edges - adjusted_edges
-            demand_mm = moved(cycles[: len(places_mm)], rest_mm, fmt.mm_per_cycle)
+            zero_cycles = self._zero_mm * fmt.cycles_per_mm - read.bearings.zero_cycles
             monitor.rows_seen = phases.first_row
-            rows = monitor.watch(demand_mm, places_mm)
+            places_mm, demands_mm = drives.run(phases.cycles[:sound], zero_cycles, rest_mm)
+            self.cell_edges = drives.cell_edges - adjusted_edges
+            rows = monitor.watch(demands_mm, places_mm)
             if rows:
                 self._rows, self.end_mm = phases.first_row + rows, places_mm[rows - 1]
                 yield self._motion(places_mm[:rows], phases.first_row)

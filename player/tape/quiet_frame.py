@@ -14,9 +14,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.compiled import lasting, njit
+from morfax.motion.compiled import keeps_kinds, lasting, njit
 from morfax.player.tape.erasures import Erasures, weigh
 from morfax.player.tape.subcarrier import Subcarrier, interpolate
 from morfax.player.tape.symbols import (
@@ -52,51 +53,76 @@ class Read(NamedTuple):
     figures: list[list[float]]
 
 
+class _Fields(NamedTuple):
+    gates: Gates
+    usual: Array  # strength and size of a symbol, as `weigh` has them
+    size: Array
+    held: tuple[Array, Array]  # turns of each track, as `count_on` has them
+    told: NDArray[np.int64]
+    is_read: NDArray[np.bool_]
+    counts: NDArray[np.int64]
+    weights: Array
+    frames: Array
+    figures: Array
+
+
+@keeps_kinds
+class _Room(_Fields):
+    """The arrays in which the frames of one tape are read, the same for all."""
+
+
 class QuietFrames:
-    """Reads the quiet frames of one tape; `gates` are those of the frame that was read last."""
+    """Reads the quiet frames of one tape; `gates` are those of the frame that was read last.
 
-    def __init__(self, tracks: int, reference_hz: float, erasures: Erasures) -> None:
+    `held`: turns of each track, as `count_on` has them.
+    """
+
+    def __init__(
+        self, tracks: int, reference_hz: float, erasures: Erasures, held: tuple[Array, Array]
+    ) -> None:
         self.gates: Gates = gates_of(tracks)
-        self._cycle_s, self._erasures = 1 / reference_hz, erasures
-        self._told, self._is_read = np.empty(tracks, np.int64), np.empty(tracks, bool)
-        self._counts = np.empty((tracks, 3), np.int64)
-        self._weights = np.empty((2, tracks, 2))
-        self._frames, self._figures = np.empty(len(MOMENTS)), np.empty((tracks, FIGURES))
+        self._cycle_s = 1 / reference_hz
+        self._room = _Room(
+            self.gates,
+            erasures.usual,
+            erasures.size,
+            held,
+            np.empty(tracks, np.int64),
+            np.empty(tracks, bool),
+            np.empty((tracks, 3), np.int64),
+            np.empty((2, tracks, 2)),
+            np.empty(len(MOMENTS)),
+            np.empty((tracks, FIGURES)),
+        )
 
-    def read(self, points: Subcarrier, begins: float, held: tuple[Array, Array]) -> Read | None:
-        """Read the frame that begins at a count of the reference; None where it is not quiet.
-
-        `held`: turns of each track, as `count_on` has them.
-        """
+    def read(self, points: Subcarrier, begins: float) -> Read | None:
+        """Read the frame that begins at a count of the reference; None where it is not quiet."""
+        clock, room = (points.first, points.hop, points.cycles_per_frame), self._room
         seen = (points.points, points.theta, begins)
-        clock = (points.first, points.hop, points.cycles_per_frame, self._cycle_s)
-        usual = (self._erasures.usual, self._erasures.size)
-        room = (self._told, self._is_read, self._counts, self._weights)
-        out = (self._frames, self._figures)
-        if not _read_quiet(seen, clock, _FIXED, self.gates, (usual, held), room, out):
+        if not _read_quiet(seen, clock, self._cycle_s, _FIXED, room):
             return None
-        said = tuple([said_by(told) for told in self._told.view(np.uint64).tolist()])
-        return Read(said, self._frames.tolist(), self._figures.tolist())
+        said = tuple([said_by(told) for told in room.told.view(np.uint64).tolist()])
+        return Read(said, room.frames.tolist(), room.figures.tolist())
 
 
 @njit(cache=True, nogil=True)
-def _read_quiet(seen, clock, fixed, gates, held, room, out):  # type: ignore[no-untyped-def]
+def _read_quiet(seen, clock, cycle_s, fixed, room):  # type: ignore[no-untyped-def]
     """Fill the gates of a frame and, if it is quiet, all else; whether it is."""
     points, theta, begins = seen
-    first, hop, step, cycle_s = clock
     word, white, byte_crcs, moments = fixed
-    told, is_read, counts, weights = room
+    gates, is_read, counts, weights = room.gates, room.is_read, room.counts, room.weights
     # 1. the symbols, what they tell, and how strong they are
     read_gates(points, theta, begins, word, gates)
-    tell(gates.bits, white, byte_crcs, told, is_read)
+    tell(gates.bits, white, byte_crcs, room.told, is_read)
     if not is_read.all():
         return False
-    weigh((gates.strengths, gates.sizes, gates.shares), held[0], weights[1], weights[0], counts)
+    strong = (gates.strengths, gates.sizes, gates.shares)
+    weigh(strong, (room.usual, room.size), weights[1], weights[0], counts)
     if counts.any() or not np.isfinite(gates.turns).all():
         return False
     # 2. the phases
-    count_on(gates, is_read, held[1], cycle_s, out[1])
-    held[0][0][:], held[0][1][:] = weights[1, :, 0], weights[1, :, 1]
+    count_on(gates, is_read, room.held, cycle_s, room.figures)
+    room.usual[:], room.size[:] = weights[1, :, 0], weights[1, :, 1]
     # 3. where it lies
-    interpolate(begins + moments, theta, (first, hop, step), out[0])
+    interpolate(begins + moments, theta, clock, room.frames)
     return True

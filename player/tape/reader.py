@@ -29,11 +29,13 @@ from morfax.motion.faults import Fault, TapeFault
 from morfax.player.tape.bare import BareTape
 from morfax.player.tape.bridges import Bound, Bridge
 from morfax.player.tape.check_reader import CheckReader, read_ahead, read_check
-from morfax.player.tape.discriminator import Discriminator, Phases, discriminate
+from morfax.player.tape.discriminator import Discriminator, discriminate
 from morfax.player.tape.dropouts import Gaps, under_way
 from morfax.player.tape.lost_ways import Laid
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.riding import Riding
 from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
+from morfax.player.tape.steadiest import Steadiest
 from morfax.player.tape.vouching import Vouching
 from morfax.player.tape.warrant import Certain, Warrant
 from morfax.player.tape.watch import Watch, demand_apart
@@ -42,7 +44,23 @@ from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
 
 
-Read = tuple[Phases, Bearings, tuple[int, Fault] | None]
+class Read(NamedTuple):
+    """Rows, the bearings they count from, what watches them (None: nothing), and the fault behind them.
+
+    Who reads ahead leaves it to the machine's side to look at the rows: both have about as much to do then.
+    """
+
+    rows: Phases
+    bearings: Bearings
+    watch: Watch | None
+    ended: tuple[int, Fault] | None
+
+    def first_fault(self, rate_hz: float, stands_mm: list[float]) -> tuple[int, Fault] | None:
+        """The first row that is not certain, with its fault; the machine stands at `stands_mm`."""
+        found = self.bearings.first_fault(self.rows, rate_hz, stands_mm)
+        if found is None and self.watch is not None:
+            found = self.watch.first_fault(self.rows, lambda: stands_mm)
+        return found or self.ended
 
 
 class _Run(NamedTuple):
@@ -52,6 +70,7 @@ class _Run(NamedTuple):
     bearings: Bearings
     gaps: Gaps
     watch: Watch
+    steadiest: Steadiest
 
 
 class TapeReader:
@@ -139,7 +158,8 @@ class TapeReader:
         watch = Watch(fmt, bearings)
         # a check signal says which track is which, and how late
         watch.takes_skew = not warrant.is_checked
-        return _Run(warrant, bearings, gaps, watch)
+        steadiest = Steadiest(fmt, bearings.reference_hz)
+        return _Run(warrant, bearings, gaps, watch, steadiest)
 
     def _through(
         self,
@@ -149,21 +169,21 @@ class TapeReader:
         stands_mm: Callable[[], Sequence[float]],
     ) -> Iterator[Read]:
         """All rows of the tape through its gaps, its warrant and the watch; `held`: the last block of it."""
-        warrant, bearings, gaps, watch = run
+        warrant, bearings, gaps, watch, steadiest = run
         watched = not (self._resume_at_s or warrant.is_checked)
         for phases in rows:
             out, fault = warrant.feed(_certain(gaps, phases), stands_mm)
             time_s = self._time_s(phases)
-            wrong = watch.wrong_reference(held[-1], time_s) if watched else None
+            wrong = steadiest.wrong(held[-1], time_s) if watched else None
             if wrong is not None:
                 raise wrong
-            yield out, bearings, watch.first_fault(out, stands_mm) or fault
+            yield Read(out, bearings, watch, fault)
         rest = _certain(gaps, phases.cut(len(phases), len(phases)), last=True)
         out, fault = warrant.feed(rest, stands_mm, last=True)
-        yield out, bearings, fault
+        yield Read(out, bearings, None, fault)
         if self._resume_at_s:
             return  # what was before is not known
-        doubt = watch.doubtful_reference(time_s) if watched else None
+        doubt = steadiest.doubtful(time_s) if watched else None
         if doubt is not None:
             raise doubt
         warrant.end(time_s)

@@ -5,7 +5,7 @@ Signals in: the blocks of a motion that is to be recorded, mm. Signals out: the 
 tape could not be read; and, told at the end, where a drive could not follow it.
 
     motion ──► cycles ──┬──► predictor ──► jumps, shaking (watch.py)      no player reads such a tape: a fault
-                        └──► axis drives ──► lock lost (phase_lock.py)    followed perhaps at another override
+                        └──► axis drives ──► lock lost (drives.py)        followed perhaps at another override
 
 Source: our own. Questions: the tape's filter rounds a jump a little, so it is found here at speeds up to 0.5
 % lower; noise, which no rehearsal knows, comes on top.
@@ -24,7 +24,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.median import medians
 from morfax.motion.motion import Motion
-from morfax.player.tape.phase_lock import Drives, PhaseLock, Reference
+from morfax.player.tape.drives import Drives, Reference
+from morfax.player.tape.phase_lock import PhaseLock
 from morfax.player.tape.predictor import count_turns, predictor_gains
 from morfax.player.tape.standstill import SURPRISE_CYCLES
 from morfax.player.tape.watch import SHAKE_CYCLES, SHAKE_STRIDE, shake_rows

@@ -30,7 +30,7 @@ from morfax.player.tape.bridges import (
     side,
     turned,
 )
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.standstill import SILENT_LEVEL
 from morfax.player.tape.told_bounds import ToldBounds
 

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import Fault, LockFault, TapeFault
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
@@ -204,7 +204,7 @@ def evened(phases: Phases, fmt: TapeFormat) -> Phases:
     most = fmt.largest_deviation_hz  # what the phase does in a dropout is no speed
     levels = phases.levels.copy()
     levels[:, 1:] /= 1 + np.clip(speed, -most, most) / fmt.reference_hz
-    return replace(phases, levels=levels)
+    return replace(phases, levels=levels, room=0)
 
 
 def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:

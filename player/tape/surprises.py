@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array, median
 from morfax.motion.compiled import njit
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.predictor import count_turns
 from morfax.player.tape.standstill import SILENT_LEVEL
 from morfax.player.tape.told_bounds import ToldBounds

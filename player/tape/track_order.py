@@ -23,8 +23,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.player.tape.check_reader import CheckReader, read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, discriminate
-from morfax.player.tape.standstill import Bearings, strongest_hz, take_bearings
-from morfax.player.tape.watch import Watch
+from morfax.player.tape.standstill import strongest_hz, take_bearings
+from morfax.player.tape.steadiest import Steadiest
 from morfax.recorder.tape.tape import Tape, full_scale
 
 # of a tape that stands for so long nothing is known beforehand; the watch goes on
@@ -49,19 +49,18 @@ def found_order(tape: Tape) -> tuple[tuple[int, ...] | None, CheckReader | None]
 def _by_the_watch(tape: Tape) -> tuple[int, ...] | None:
     """The order of the tracks of a bare tape, if the reference is not the first."""
     fmt = tape.format
-    watch: Watch | None = None
+    watch: Steadiest | None = None
     time_s = 0.0
     for block in tape.stored_blocks():
         if watch is None:
-            levels, zero = np.zeros(fmt.tracks), np.zeros(fmt.tracks - 1)
             still_hz = strongest_hz(full_scale(block[:, 0]), fmt.sample_rate_hz)
-            watch = Watch(fmt, Bearings(levels, zero, still_hz, fmt.axes))
+            watch = Steadiest(fmt, still_hz)
         time_s += len(block) / fmt.sample_rate_hz
-        fault = watch.wrong_reference(block, time_s)
+        fault = watch.wrong(block, time_s)
         if fault is not None:
             _demand_tape(tape)
-            return _by_the_end(tape, watch.steadiest, fault)
-        if watch.reference_is_steady or time_s > SEARCHED_S:
+            return _by_the_end(tape, watch.track, fault)
+        if watch.is_reference or time_s > SEARCHED_S:
             return None
     return None
 

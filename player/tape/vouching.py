@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 from morfax.motion.arrays import Array, between
 from morfax.motion.faults import Fault
@@ -29,11 +28,11 @@ from morfax.player.tape.bridges import Gap
 from morfax.player.tape.check_reader import CheckReader
 from morfax.player.tape.counts import Counts, Off
 from morfax.player.tape.delays import Delay, corrected
-from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.held_rows import HeldRows
 from morfax.player.tape.lost_ways import Laid, LostWays, laid
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.tail import tail_of
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
@@ -135,11 +134,11 @@ class Vouching:
     def _hold(self, certain: Certain) -> None:
         """Hold the next rows, further on by what mending has put back."""
         self._ways.take(certain.gaps)
-        rows = certain.rows
+        rows, cycles = certain.rows, certain.rows.cycles
         if self._ways.shift_cycles.any():
-            rows = replace(rows, cycles=rows.cycles + self._ways.shift_cycles)
+            cycles = cycles + self._ways.shift_cycles
         # the levels of the tracks have said what they say
-        self._rows.add(replace(rows, levels=rows.levels[:0]))
+        self._rows.add(Phases(rows.first_row, cycles, rows.surprise, rows.levels[:0]))
 
     def _check_end(self, certain: Certain) -> None:
         """Note the fault of a tape that ends where it does not say so, or in a dropout."""
@@ -217,7 +216,8 @@ class Vouching:
                 return
             row = due.row
             open_ = [axis for axis in due.told if not self._ways.covers(axis, row)]
-            off = {axis: self._counts.off(axis, self._place(axis, row), due) for axis in open_}
+            places = self._places(row)
+            off = {axis: self._counts.off(axis, places[axis], due) for axis in open_}
             if due.is_middle:
                 self._check_middle(row, off, stands_mm)
                 continue
@@ -242,15 +242,17 @@ class Vouching:
         name = self._format.axes[axis]
         return faults.miscounted(name, off, row / self._rate_hz, stands_mm()[axis])
 
-    def _place(self, axis: int, row: float) -> float:
-        """Where an axis is at a row that is held, cycles, without the delay of its track."""
-        held, delay, span = self._rows, self._delays[axis], 2 * self._delays[axis].span
-        if not delay.moves:
-            return held.place(axis, row - held.first_row)
-        at = max(int(row) - held.first_row, 0)
-        first = max(at - span, 0)
-        near = delay.corrected(held.axis(axis, first, at + span + 1), held.first_row + first)
-        return between(near, row - held.first_row - first)
+    def _places(self, row: float) -> list[float]:
+        """Where the axes are at a row that is held, cycles, without the delays of their tracks."""
+        held = self._rows
+        places = held.places(row - held.first_row)
+        for axis, delay in enumerate(self._delays):
+            if delay.moves:
+                at = max(int(row) - held.first_row, 0)
+                first, last = max(at - 2 * delay.span, 0), at + 2 * delay.span + 1
+                near = delay.corrected(held.axis(axis, first, last), held.first_row + first)
+                places[axis] = between(near, row - held.first_row - first)
+        return places
 
     def _settle(self, axis: int, row: float, off: Off, stands_mm: StandsMm) -> None:
         """Let a count vouch for the way until there; or note which gap lost it, or lay that gap anew."""
@@ -289,10 +291,9 @@ class Vouching:
         known = None
         if behind is not None:
             row = math.ceil(behind[0])
-            places_mm = tuple(
-                self._place_mm(axis, self._place(axis, row) - round(off.cycles))
-                for axis, off in sorted(behind[1].items())
-            )
+            places = self._places(row)
+            off = [(axis, round(off.cycles)) for axis, off in sorted(behind[1].items())]
+            places_mm = tuple(self._place_mm(axis, places[axis] - whole) for axis, whole in off)
             known = faults.Behind(row / self._rate_hz, places_mm, behind[1][gap.axis].cycles)
         name, place_mm = self._format.axes[gap.axis], self._place_mm(gap.axis, gap.before.place)
         return faults.lost_way(gap, name, self._rate_hz, place_mm, known)

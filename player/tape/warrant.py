@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
 from morfax.player.tape.bridges import Gap
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.tape import Stored
 

@@ -1,10 +1,7 @@
-"""The watch: whether track 1 is the reference, skew and shaking are small enough, and no two tracks are one.
+"""The watch: whether skew and shaking are small enough, and no two tracks are one.
 
-Signals in: blocks of frames (n, tracks) and rows of phases; out: nothing, or a fault.
+Signals in: rows of phases, and the first frames (n, tracks); out: nothing, or a fault.
 
-    reference     the frequency of each track at 64 moments of a block, against that at standstill; all tracks
-                  share the tape's speed. The reference is the steadiest track: one twice as steady as track 1
-                  is it. At the end any steadier track is: flutter may hide how much steadier
     skew          a track that is late by s seconds stands s · reference off at standstill, and is wrong by
                   s · deviation under way:       |zero| / reference · speed / q  <  0.05 cycle
     shaking       the median of the predictor's surprise within 96 ms: noise, crosstalk and print-through beat
@@ -26,18 +23,11 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
-from morfax.player.tape.band_filter import translating_taps
-from morfax.player.tape.discriminator import Frames, Phases
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.standstill import ALLOWED_CYCLES, Bearings, track_name
 from morfax.player.tape.warrant import StandsMm
 from morfax.recorder.tape.format import TapeFormat
 
-MOMENTS = 64  # in a block
-STEADIER = 4.0  # of the mean square, before another track is taken for the reference
-LEAST_MOTION_HZ = 8.0  # of track 1, RMS: 0.4 mm/s; 30 dB of noise leave 3
-FEWEST_MOMENTS = 64  # one block, before the watch says anything
-MOVED = 2.0  # of the mean square at standstill: a track that moved against track 1
-LEAST_APART_HZ = 1.0  # RMS: 0.05 mm/s, below which a track stands against track 1
 SHAKE_S = 0.096  # 576 rows at 6 kHz
 SHAKE_STRIDE = 4  # rows: the filter spans eight, so the rows between say little more
 # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
@@ -54,82 +44,7 @@ class Watch:
 
     def __init__(self, fmt: TapeFormat, bearings: Bearings) -> None:
         self._format, self._bearings = fmt, bearings
-        re, im = translating_taps(fmt.sample_rate_hz, fmt.reference_hz, fmt.samples_per_motion)
-        self._taps = np.array([re, im], np.float64)
-        self._still_hz = bearings.reference_hz
         self.takes_skew = True  # False: the check signal tells it, and it is taken out
-        self._sums, self._apart, self._moments = np.zeros(fmt.tracks), np.zeros(fmt.tracks), 0
-        # mean square of a frequency less that of track 1, at standstill
-        self._noise: Array | None = None
-
-    def wrong_reference(self, frames: Frames, time_s: float) -> TapeFault | None:
-        """The fault of a track 1 that moves more than another; takes the frames of one block."""
-        found = self._frequencies(frames)
-        self._sums += np.square(found - self._still_hz).sum(axis=0)
-        self._moments += len(found)
-        apart = np.square(found - found[:, :1])
-        self._apart += apart.sum(axis=0)
-        if self._noise is None and len(apart):
-            self._noise = apart[: len(apart) // 2].mean(axis=0)
-        if self._moments < FEWEST_MOMENTS:
-            return None
-        mean = self._sums / self._moments
-        steadiest = int(np.argmin(mean))
-        if mean[0] < LEAST_MOTION_HZ**2 or mean[0] < STEADIER * mean[steadiest]:
-            return None
-        return self._elsewhere(steadiest, mean, time_s)
-
-    @property
-    def steadiest(self) -> int:
-        """The track that has moved least so far, from 0."""
-        return int(np.argmin(self._sums))
-
-    @property
-    def reference_is_steady(self) -> bool:
-        """Whether another track has moved, and far more than track 1."""
-        most = float(self._sums.max()) / max(self._moments, 1)
-        return most >= LEAST_MOTION_HZ**2 and most >= STEADIER * float(self._sums[0]) / max(
-            self._moments, 1
-        )
-
-    def doubtful_reference(self, time_s: float) -> Fault | None:
-        """The fault of a track that moved against track 1 and was steadier over the whole tape."""
-        if self._moments < FEWEST_MOMENTS or self._noise is None:
-            return None
-        mean, apart = self._sums / self._moments, self._apart / self._moments
-        steadier = (mean < mean[0]) & (apart > MOVED * self._noise + LEAST_APART_HZ**2)
-        return (
-            self._elsewhere(int(np.argmin(np.where(steadier, mean, np.inf))), mean, time_s)
-            if steadier.any()
-            else None
-        )
-
-    def _elsewhere(self, steadiest: int, mean: Array, time_s: float) -> TapeFault:
-        """The fault of a reference that is on another track; `mean` squares in Hz²."""
-        name = track_name(steadiest, self._format.axes)
-        return TapeFault(
-            f"track 1 moves by {np.sqrt(mean[0]):.0f} Hz and track {steadiest + 1} ({name}) stands at "
-            f"{np.sqrt(mean[steadiest]):.0f} Hz, so the reference is on track {steadiest + 1}, "
-            f"found at {time_s:.3f} s, or "
-            f"missing, and then no place can be known; "
-            f"say which tracks are reference, {', '.join(axis.upper() for axis in self._format.axes)} "
-            f"(--tracks {steadiest + 1},...)",
-            time_s=time_s,
-        )
-
-    def _frequencies(self, frames: Frames) -> Array:
-        """Frequency of each track at some moments, Hz (moments, tracks)."""
-        step = self._format.samples_per_motion
-        spare = len(frames) - self._taps.shape[1] - step
-        if spare < MOMENTS:
-            return np.zeros((0, frames.shape[1]))
-        starts = np.linspace(0, spare, MOMENTS).astype(np.int64)
-        first, after = filtered = np.empty((2, MOMENTS, frames.shape[1]), np.complex128)
-        _filtered(frames, starts, step, self._taps, filtered)
-        rate_hz, hz = self._format.sample_rate_hz / step, self._format.reference_hz
-        # the taps do not turn along
-        turned = np.angle(after * first.conj()) / (2 * np.pi) - hz / rate_hz
-        return np.asarray(hz + (turned - np.round(turned)) * rate_hz)
 
     def first_fault(self, phases: Phases, stands_mm: StandsMm) -> tuple[int, Fault] | None:
         """The first row that skew or shaking make uncertain, with its fault."""
@@ -202,30 +117,17 @@ class Watch:
         )
 
 
-# The order of the sums is free (reassoc, contract), so that they run in vectors.
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
-def _filtered(frames, starts, step, taps, out):  # type: ignore[no-untyped-def]
-    """The tracks through a filter (re and im, taps) that begins at some frames, and `step` further on.
-
-    `out` (2, moments, tracks).
-    """
-    length = taps.shape[1]
-    seen = np.empty(length + step)
-    for moment in range(len(starts)):
-        for track in range(frames.shape[1]):
-            for k in range(len(seen)):
-                seen[k] = frames[starts[moment] + k, track]
-            for late in range(2):
-                re, im = 0.0, 0.0
-                for k in range(length):
-                    re += taps[0, k] * seen[late * step + k]
-                    im += taps[1, k] * seen[late * step + k]
-                out[late, moment, track] = complex(re, im)
-
-
 @njit(cache=True, nogil=True)
 def _any_skewed(cycles, stride, travel_s, skew_s):  # type: ignore[no-untyped-def]
     """Whether an axis travels, in so many rows, so far that its skew makes `travel_s` of it, cycles · s."""
+    # 1. one loop for all, in vectors, with the largest skew
+    places, apart, skewed = cycles.ravel(), stride * cycles.shape[1], 0
+    most_s = skew_s.max()
+    for k in range(len(places) - apart):
+        skewed += abs(places[k + apart] - places[k]) * most_s > travel_s
+    if skewed == 0:
+        return False
+    # 2. each axis with its own
     skewed = 0
     for axis in range(cycles.shape[1]):
         for row in range(len(cycles) - stride):

@@ -115,7 +115,6 @@ class FileSource:
         """The next block; raises TapeFault where the file ends early or cannot be decoded."""
         # libsndfile is slow to make one of the other
         kind = "int16" if self.sample == "PCM_16" else "float32"
-        fault = _cut_short(self.file, done / self.rate_hz, self.frames / self.rate_hz)
         try:
             block: Stored = (
                 self._sound.read(frames, dtype=kind, always_2d=True)
@@ -123,10 +122,14 @@ class FileSource:
                 else self._plain.read(done, min(frames, self.frames - done))
             )
         except (soundfile.SoundFileError, OSError) as error:
-            raise fault from error
+            raise self._ends_at(done) from error
         if not len(block):
-            raise fault
+            raise self._ends_at(done)
         return block
+
+    def _ends_at(self, done: int) -> TapeFault:
+        """The fault of a file that cannot be read beyond a frame."""
+        return _cut_short(self.file, done / self.rate_hz, self.frames / self.rate_hz)
 
 
 def full_scale(frames: Stored) -> Frames:

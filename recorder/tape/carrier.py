@@ -41,6 +41,7 @@ from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
 FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate, as drawn above
 # samples that the next frames still need: the neighbour before, and two not yet played
 _HELD_BACK = 3
+ROWS_AT_ONCE = 8
 CHUNK_PERIODS = 64  # made at a time: they stay in the processor's first cache
 
 Frames = NDArray[np.float32]
@@ -69,6 +70,7 @@ class Carrier:
     def __init__(self, pick_up: PickUp, start_mm: ArrayLike) -> None:
         self._pick_up = pick_up
         self._start_mm = np.atleast_1d(np.asarray(start_mm, np.float64))
+        self._starts_mm = np.tile(self._start_mm, ROWS_AT_ONCE)
         self._held = np.empty((0, len(self._start_mm)))  # displacement in cycles
         self._periods = 0
         # a track stays above two thirds of the reference
@@ -77,12 +79,22 @@ class Carrier:
 
     def frames(self, positions_mm: ArrayLike) -> Frames:
         """Frames (n, 1 + axes) from positions (n, axes) in mm; the last two samples are held back."""
-        positions = np.asarray(positions_mm, np.float64)
+        return self.frames_of(self.displacements(positions_mm))
+
+    def displacements(self, positions_mm: ArrayLike) -> NDArray[np.float64]:
+        """How far positions (n, axes) in mm are from the start, cycles."""
+        positions = np.ascontiguousarray(positions_mm, np.float64)
         if positions.ndim != 2 or positions.shape[1] != len(self._start_mm):
             raise ValueError(
                 f"positions of shape {positions.shape} do not fit; give (n, {len(self._start_mm)}) mm"
             )
-        cycles = (positions - self._start_mm) * self._pick_up.cycles_per_mm
+        cycles = np.empty(positions.shape)
+        cycles_per_mm = self._pick_up.cycles_per_mm
+        _displace(positions.ravel(), self._starts_mm, cycles_per_mm, cycles.ravel())
+        return cycles
+
+    def frames_of(self, cycles: NDArray[np.float64]) -> Frames:
+        """Frames as `frames` makes them, from displacements in cycles."""
         if not len(self._held):
             # the screws stood at the first position before
             cycles = np.vstack([cycles[:1], cycles])
@@ -111,6 +123,14 @@ class Carrier:
 
 
 @njit(cache=True, nogil=True)
+def _displace(positions_mm, start_mm, cycles_per_mm, cycles):  # type: ignore[no-untyped-def]
+    """Fill the displacements of positions, row after row; as many at once as `start_mm` is long."""
+    for first in range(0, len(positions_mm), len(start_mm)):
+        for k in range(min(len(start_mm), len(positions_mm) - first)):
+            cycles[first + k] = (positions_mm[first + k] - start_mm[k]) * cycles_per_mm
+
+
+@njit(cache=True, nogil=True)
 def _write(cycles, first_period, reference_cycles, level, frames):  # type: ignore[no-untyped-def]
     """Fill frames (periods · steps, 1 + axes) from displacements (periods + 3, axes) in cycles.
 
@@ -120,16 +140,21 @@ def _write(cycles, first_period, reference_cycles, level, frames):  # type: igno
     periods, axes = cycles.shape[0] - 3, cycles.shape[1]
     steps = frames.shape[0] // periods
     columns = np.empty((axes + 1, steps, CHUNK_PERIODS), np.float32)
+    is_even = (
+        np.floor(reference_cycles) == reference_cycles
+    )  # all periods of the reference are alike
+    turned = np.empty(CHUNK_PERIODS)
     c0, c1 = np.empty(CHUNK_PERIODS), np.empty(CHUNK_PERIODS)
     c2, c3 = np.empty(CHUNK_PERIODS), np.empty(CHUNK_PERIODS)
     for first in range(0, periods, CHUNK_PERIODS):
         count = min(CHUNK_PERIODS, periods - first)
-        _turned(first_period + first, reference_cycles, c0)
-        c1[:], c2[:], c3[:] = reference_cycles / steps, 0.0, 0.0
-        for k in range(steps):
-            _sines(c0, c1, c2, c3, float(k), level, columns[0, k])
+        _turned(first_period + first, reference_cycles, turned)
+        if first == 0 or not is_even:
+            c1[:], c2[:], c3[:] = reference_cycles / steps, 0.0, 0.0
+            for k in range(steps):
+                _sines(turned, c1, c2, c3, float(k), level, columns[0, k])
         for axis in range(axes):
-            _turned(first_period + first, reference_cycles, c0)
+            c0[:] = turned
             _cubics(cycles[first : first + count + 3, axis], reference_cycles, c0, c1, c2, c3)
             for k in range(steps):
                 _sines(c0, c1, c2, c3, k / steps, level, columns[1 + axis, k])

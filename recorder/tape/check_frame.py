@@ -24,8 +24,8 @@ from __future__ import annotations
 
 import math
 import zlib
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,8 +48,7 @@ LEAST_SPEED, LEAST_ACCELERATION = 0.5, 32.0  # cycles/s and cycles/s²: of code 
 Bits = NDArray[np.int8]
 
 
-@dataclass(frozen=True, slots=True)
-class CheckFrame:
+class CheckFrame(NamedTuple):
     """What one track says: cycles, cycles/s and cycles/s²; speed and acceleration as rounded up.
 
     `middle_cycles`: in the middle of the frame, modulo one; None: not told, or to be told as at its start.
@@ -115,6 +114,10 @@ def _crc_of_bytes() -> NDArray[np.uint32]:
 
 
 _WHITE = _whitening()
+_WHITE_WORD = int.from_bytes(np.packbits(_WHITE).tobytes(), "big")
+_SYMBOLS_OF_BYTE: Bits = (
+    np.unpackbits(np.arange(256, dtype=np.uint8)[:, None], axis=1).astype(np.int8) * 2 - 1
+)
 # the whitening, and the CRC-32 of each byte, for `tell`
 TABLES = (_WHITE, _crc_of_bytes())
 SYNC: Bits = np.array(
@@ -136,10 +139,11 @@ def to_bits(frame: CheckFrame) -> Bits:
         (to_code(frame.acceleration, LEAST_ACCELERATION), _CODE_BITS),
     ):
         told = told << bits | value
-    data = told.to_bytes(_TOLD_BYTES, "big")
-    data += zlib.crc32(data).to_bytes(_CRC_BYTES, "big")
-    white = np.unpackbits(np.frombuffer(data, np.uint8)) ^ _WHITE
-    return np.concatenate([SYNC, white.astype(np.int8) * 2 - 1])
+    crc = zlib.crc32(told.to_bytes(_TOLD_BYTES, "big"))
+    data = ((told << 8 * _CRC_BYTES | crc) ^ _WHITE_WORD).to_bytes(
+        _TOLD_BYTES + _CRC_BYTES, "big"
+    )
+    return np.concatenate([SYNC, _SYMBOLS_OF_BYTE[np.frombuffer(data, np.uint8)].ravel()])
 
 
 def from_bits(bits: Bits) -> list[CheckFrame | None]:

@@ -22,6 +22,7 @@ from morfax.motion.compiled import njit
 
 STATED_CYCLES = 1.0  # an axis that moves by less is stated
 OWN_CYCLES = 0.5  # an axis that moves by less has no motion of its own
+ROWS_AT_ONCE = 8
 MAKES_CONTOUR = ("x", "y")  # a tool's depth and further axes stand in many programs
 
 
@@ -37,6 +38,7 @@ class OwnMotion:
             np.full(len(one), -np.inf),
         )
         self._first: Array | None = None
+        self._open = bool(len(one))  # whether any two may still run alike
 
     def feed(self, cycles: Array) -> None:
         """Take the next rows (n, axes)."""
@@ -45,15 +47,10 @@ class OwnMotion:
         if self._first is None:
             self._first = cycles[0].copy()
         rows = np.ascontiguousarray(cycles, float)
-        for axis, place in enumerate(self._first):
-            least, most = _range(rows, axis, -1)
-            self._low[axis] = min(self._low[axis], least - place)
-            self._high[axis] = max(self._high[axis], most - place)
-        open_ = np.flatnonzero(self._apart_high - self._apart_low < STATED_CYCLES)
-        for pair in open_.tolist():
-            least, most = _range(rows, self._one[pair], self._other[pair])
-            self._apart_low[pair] = min(self._apart_low[pair], least)
-            self._apart_high[pair] = max(self._apart_high[pair], most)
+        _widen(rows.ravel(), self._first, self._low, self._high)
+        if self._open:
+            _widen_apart(rows, (self._one, self._other), self._apart_low, self._apart_high)
+            self._open = bool((self._apart_high - self._apart_low < STATED_CYCLES).any())
 
     @property
     def range_cycles(self) -> Array:
@@ -100,14 +97,44 @@ class OwnMotion:
 
 
 @njit(cache=True, nogil=True)
-def _range(rows, one, other):  # type: ignore[no-untyped-def]
-    """The least and the most of a column, or of its difference from another one (-1: none); nan where one of
-    them is none.
+def _widen(places, first, low, high):  # type: ignore[no-untyped-def]
+    """Widen the ranges of axes, about their first places, by places, axis after axis and row after row.
+
+    An axis with a place that is no number tells nothing. As many rows at once as fill the vectors.
     """
-    least, most = np.inf, -np.inf
-    for k in range(len(rows)):
-        value = rows[k, one] - rows[k, other] if other >= 0 else rows[k, one]
-        if np.isnan(value):
-            return np.nan, np.nan
-        least, most = min(least, value), max(most, value)
-    return least, most
+    axes = len(first)
+    width = ROWS_AT_ONCE * axes
+    least, most, wrong = np.full(width, np.inf), np.full(width, -np.inf), np.zeros(width)
+    for begin in range(0, len(places), width):
+        for k in range(min(width, len(places) - begin)):
+            place = places[begin + k]
+            least[k], most[k] = min(least[k], place), max(most[k], place)
+            wrong[k] += place - place  # no number, if place is none
+    for k in range(axes, width):
+        least[k % axes] = min(least[k % axes], least[k])
+        most[k % axes] = max(most[k % axes], most[k])
+        wrong[k % axes] += wrong[k]
+    for axis in range(axes):
+        if wrong[axis] == 0.0:
+            low[axis] = min(low[axis], least[axis] - first[axis])
+            high[axis] = max(high[axis], most[axis] - first[axis])
+
+
+@njit(cache=True, nogil=True)
+def _widen_apart(rows, pairs, low, high):  # type: ignore[no-untyped-def]
+    """Widen the ranges of the differences of two axes each, as far as these may still run alike.
+
+    A pair with a place that is no number tells nothing.
+    """
+    for pair in range(len(low)):
+        if high[pair] - low[pair] >= STATED_CYCLES:
+            continue
+        one, other = pairs[0][pair], pairs[1][pair]
+        least, most = np.inf, -np.inf
+        for k in range(len(rows)):
+            apart = rows[k, one] - rows[k, other]
+            if np.isnan(apart):
+                break
+            least, most = min(least, apart), max(most, apart)
+        else:
+            low[pair], high[pair] = min(low[pair], least), max(high[pair], most)

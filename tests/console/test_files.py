@@ -62,6 +62,28 @@ def test_a_made_up_name_that_is_taken_is_left_alone_unless_forced(
     )  # a name that was given is written over
 
 
+def test_verbs_that_write_over_a_given_name_take_force_too(
+    morfax: Morfax, here: Path, path_file: Path, tape_file: Path
+) -> None:
+    for words, name in (
+        (("play", tape_file), "played.csv"),
+        (("compare", path_file, path_file), "error.svg"),
+    ):
+        (here / name).write_text("of yesterday")
+        assert morfax(*words, "-o", name, "--force").exit_code == 0
+        with_it = (here / name).read_bytes()
+        assert morfax(*words, "-o", name).exit_code == 0  # as without it
+        assert len((here / name).read_bytes()) == len(with_it) > 100
+
+
+def test_force_writes_no_result_over_what_it_is_made_from(
+    morfax: Morfax, here: Path, tape_file: Path
+) -> None:
+    shutil.copy(tape_file, here / "tape.csv")  # a tape under the name of a path file
+    answer = morfax("play", "tape.csv", "-o", "tape.csv", "--force")
+    assert answer.exit_code == 8 and "made from" in answer.fault
+
+
 def test_an_ending_that_says_no_kind_of_file_is_wrong_use(
     morfax: Morfax, here: Path, tape_file: Path
 ) -> None:

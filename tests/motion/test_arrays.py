@@ -1,17 +1,11 @@
-"""Rows scaled and moved, places between values, medians in kernels."""
+"""Places between values, medians in kernels."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from morfax.motion.arrays import between, bounds, median, moved
-
-
-def test_rows_are_moved_as_numpy_moves_them() -> None:
-    rows, by = np.random.default_rng(1).normal(size=(150, 3)), np.array([1.0, -2.0, 0.25])
-    assert (moved(rows, by) == rows + by).all()
-    assert (moved(rows[::2], by, 0.05) == rows[::2] * 0.05 + by).all()
+from morfax.motion.arrays import between, bounds, median
 
 
 def test_bounds_are_those_of_numpy() -> None:

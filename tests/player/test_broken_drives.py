@@ -17,7 +17,7 @@ from morfax.motion.faults import FollowingFault, LockFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion
 from morfax.motion.ramp import Ramp, positions_mm
 from morfax.player.controls import play
-from morfax.player.monitor.monitor import FollowingLimit
+from morfax.player.monitor.following_limit import FollowingLimit
 from morfax.player.steps.motor import MotorCondition
 from morfax.recorder.media import record
 

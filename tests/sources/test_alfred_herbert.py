@@ -23,7 +23,7 @@ from morfax.motion.ramp import CONSTANT, UP, count_ramp
 from morfax.player.gcode.positioning import PositionControl, PositionPlayback
 from morfax.player.gcode.rs274 import parse_rs274
 from morfax.player.monitor import position_servo
-from morfax.player.monitor.monitor import FollowingLimit
+from morfax.player.monitor.following_limit import FollowingLimit
 from morfax.player.monitor.position_servo import CONSTANT as AT_FEED
 from morfax.player.monitor.position_servo import DOWN as ON_THE_WAY_DOWN
 from morfax.player.monitor.position_servo import UP as ON_THE_WAY_UP

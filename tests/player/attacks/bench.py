@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from unittest import mock
 
 import numpy as np
@@ -176,7 +176,7 @@ def to_bits_of_version_1(frame: CheckFrame) -> Bits:
     """A frame as earlier versions of the recorder wrote it; what the reference says in it are counts."""
     finer = COUNTS_PER_CYCLE[frame.version] / COUNTS_PER_CYCLE[1]
     cycles = frame.cycles * (1 if frame.track else finer)
-    return to_bits(replace(frame, version=1, cycles=cycles))
+    return to_bits(frame._replace(version=1, cycles=cycles))
 
 
 def earlier_benches(folder: object) -> tuple[Bench, Bench]:

@@ -15,7 +15,13 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.ramp import Ramp, positions_mm
 from morfax.player.monitor import monitor, position_servo
 from morfax.player.monitor.chart import Chart
-from morfax.player.monitor.monitor import FollowingLimit, Monitor, allowed_mm, learn_table
+from morfax.player.monitor.following_limit import (
+    FollowingLimit,
+    allowed_mm,
+    learn_table,
+    part_at,
+)
+from morfax.player.monitor.monitor import Monitor
 from morfax.player.monitor.position_servo import PositionServo, PositionServos
 
 INCREMENT_MM = PositionServo().increment_mm
@@ -233,14 +239,48 @@ def test_the_compiled_kernels_are_the_plain_ones(monkeypatch: pytest.MonkeyPatch
     for plain in (False, True):
         if plain:
             monkeypatch.setattr(position_servo, "_follow", position_servo._follow.py_func)
-            monkeypatch.setattr(monitor, "_watch", monitor._watch.py_func)
+            for name in ("_watch", "_calm", "_watch_row"):
+                monkeypatch.setattr(monitor, name, getattr(monitor, name).py_func)
         actual = run(demand, 300, broken)
         watch = Monitor("xy", MOTION_RATE_HZ, limit, stop=False)
         watch.watch(demand, actual)
         results.append((actual, [(fault.axis, fault.time_s) for fault in watch.warnings]))
     assert np.abs(results[0][0] - results[1][0]).max() < 1e-9
     assert results[0][1] == results[1][1] != []
-    assert allowed_mm(3.5, limit.rows, 0.01) == allowed_mm.py_func(3.5, limit.rows, 0.01)
+    assert allowed_mm(3.5, 1, limit.rows, 0.01) == allowed_mm.py_func(3.5, 1, limit.rows, 0.01)
+
+
+def test_stretches_of_an_axis_tell_what_rows_of_all_axes_tell(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    random = np.random.default_rng(5)
+    demand = np.cumsum(random.normal(0, 5e-4, (700, 3)), axis=0)
+    actual = demand + random.normal(0, 2e-3, demand.shape)
+    actual[300:310, 1], actual[305:320, 2] = demand[300:310, 1] + 0.2, demand[305:320, 2] - 0.2
+    limit = FollowingLimit.table(
+        [(0, 0), (2, 0.01), (4, 0.03)], 0.02, settle_s=1e-3, hold_s=2e-3
+    )
+    told = []
+    for by_rows in (False, True):
+        if by_rows:
+            monkeypatch.setattr(monitor, "_watch", monitor._watch.py_func)
+            monkeypatch.setattr(monitor, "_calm", lambda *_: False)
+        chart = Chart(0.0)
+        watch = Monitor("xyz", MOTION_RATE_HZ, limit, stop=False, chart=chart)
+        watch.watch(demand[:333], actual[:333])
+        watch.watch(demand[333:], actual[333:])
+        figures = watch.largest_error_mm.tolist(), watch.largest_share.tolist()
+        told.append((figures, [str(one) for one in watch.warnings], chart.limit_mm.tolist()))
+    assert told[0] == told[1]
+    assert len(told[0][1]) == 2
+
+
+def test_the_part_of_the_table_is_found_from_any_other() -> None:
+    rows = FollowingLimit.table([(0, 0), (3, 0.02), (4, 0.1), (9, 0.2)], 0.01).rows
+    for speed, part in ((0.0, 0), (2.9, 0), (3.0, 1), (3.9, 1), (8.9, 2), (9.0, 3), (50.0, 3)):
+        for begun in range(4):
+            assert part_at(speed, rows, begun) == part_at.py_func(speed, rows, begun) == part
+    assert part_at(np.nan, rows, 3) == 0
 
 
 def test_a_speed_counts_on_while_the_drive_catches_up_after_a_stop() -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.held_rows import HeldRows
+from morfax.player.tape.phases import Phases
 
 AXES, FIRST_ROW = 2, 100
 LENGTHS = (5, 1, 0, 7, 3)  # rows of the blocks
@@ -47,9 +47,9 @@ def test_any_stretch_is_what_one_array_would_hold(dropped: int) -> None:
 def test_a_place_between_two_rows_lies_between_them_over_the_edge_of_a_block_too() -> None:
     rows = held()
     for at in np.arange(0.0, len(rows) - 1.0, 0.5).tolist():
-        assert rows.place(1, at) == FIRST_ROW + at + 0.25
-    assert rows.place(0, -3.0) == FIRST_ROW
-    assert rows.place(0, 1e6) == FIRST_ROW + len(rows) - 1
+        assert rows.places(at)[1] == FIRST_ROW + at + 0.25
+    assert rows.places(-3.0)[0] == FIRST_ROW
+    assert rows.places(1e6)[0] == FIRST_ROW + len(rows) - 1
 
 
 def test_rows_that_are_laid_anew_take_the_place_of_all() -> None:

@@ -11,8 +11,9 @@ from scipy.signal import dlsim, dlti
 from morfax.motion.contour import distance
 from morfax.motion.drive import Drive
 from morfax.player.monitor.monitor import Monitor
-from morfax.player.tape import phase_lock as organ
-from morfax.player.tape.phase_lock import Drives, PhaseLock, following_limit, place
+from morfax.player.tape import drives as organ
+from morfax.player.tape.drives import Drives, following_limit
+from morfax.player.tape.phase_lock import PhaseLock, place
 from tests.player.carriers import (
     CYCLES_PER_MM,
     MOTION_RATE_HZ,

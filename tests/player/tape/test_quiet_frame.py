@@ -50,7 +50,7 @@ def test_a_quiet_frame_is_read_as_a_damaged_one_is(
     quiet = reports(blocks, tape)
     read = [0]
 
-    def none(self: QuietFrames, points: Subcarrier, begins: float, held: object) -> None:
+    def none(self: QuietFrames, points: Subcarrier, begins: float) -> None:
         """Read the gates, and say that the frame is not quiet."""
         read_gates(points.points, points.theta, begins, WORD, self.gates)
         read[0] += 1

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.player.tape.comparator import compared, track_edges
-from morfax.player.tape.phase_lock import Drives, Reference
+from morfax.player.tape.drives import Drives, Reference
 from morfax.player.tape.sector_wheel import (
     SectorWheel,
     Wheels,

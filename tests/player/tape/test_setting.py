@@ -15,7 +15,8 @@ from morfax.motion.faults import FollowingFault, LockFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion, join, thin
 from morfax.motion.ramp import Ramp
 from morfax.motion.ramp import positions_mm as ramped_mm
-from morfax.player.tape.phase_lock import MOTORS, Drives, place
+from morfax.player.tape.drives import Drives
+from morfax.player.tape.phase_lock import MOTORS, place
 from morfax.player.tape.playback import play
 from morfax.player.tape.setting import LARGEST_ZERO_MM, OVERRIDES, Setting
 from morfax.recorder.tape.tape import record

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from morfax.motion.faults import LockFault, TapeFault
-from morfax.player.tape.discriminator import Discriminator, Phases
+from morfax.player.tape.discriminator import Discriminator
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.standstill import Bearings, decibels, strongest_hz, take_bearings
 from morfax.recorder.tape.format import TapeFormat
 from tests.player.carriers import (

@@ -9,7 +9,7 @@ import pytest
 
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.bridges import Bound
-from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.phases import Phases
 from morfax.player.tape.playback import play
 from morfax.player.tape.predictor import count_turns, predictor_gains
 from morfax.player.tape.surprises import Surprises, acceleration_gain

@@ -14,7 +14,8 @@ from morfax.recorder.tape import own_motion as organ
 def own(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> organ.OwnMotion:
     """Ranges by a compiled kernel, and by plain Python."""
     if request.param:
-        monkeypatch.setattr(organ, "_range", organ._range.py_func)
+        for name in ("_widen", "_widen_apart"):
+            monkeypatch.setattr(organ, name, getattr(organ, name).py_func)
     return organ.OwnMotion(3)
 
 
