@@ -49,7 +49,7 @@ def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
     small[[*lines, *lettering(sheet)]] = False
     chosen = np.flatnonzero(small)
     chosen = chosen[np.argsort(-across_mm[chosen], kind="stable")][:MOST_RINGS]
-    return tuple(SmallPatch.of(sheet, p) for p in chosen.tolist() if _is_ring(sheet, p))
+    return tuple(SmallPatch.of(sheet, p) for p in chosen.tolist() if is_ring(sheet, p))
 
 
 def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPatch, ...]:
@@ -58,7 +58,7 @@ def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPat
     return tuple(sorted(patches, key=lambda patch: -patch.across_mm))
 
 
-def _is_ring(sheet: Sheet, patch: int) -> bool:
+def is_ring(sheet: Sheet, patch: int) -> bool:
     """Whether a patch of ink has paper within."""
     top, bottom, left, right = sheet.patches.boxes[patch].tolist()
     own: NDArray[np.bool_] = np.zeros(sheet.patches.count, bool)
