@@ -55,6 +55,11 @@ def test_a_tip_where_two_sides_meet_is_none(tip_deg: float) -> None:
     assert stubs(line((0.0, 0.0), (20.0, 0.0), leg, (0.0, 10.0))) == []
 
 
+def test_a_finger_at_a_corner_whose_sides_are_half_a_line_apart_is_none() -> None:
+    finger = (20.9, 0.0), (20.9, 0.25), (20.0, 0.25)
+    assert stubs(line((0.0, 0.0), (20.0, 0.0), *finger, (20.0, 10.0), (0.0, 10.0))) == []
+
+
 def test_one_on_the_seam_of_a_closed_line_is_told_too() -> None:
     stub = (0.0, 5.0), (-0.9, 5.0), (0.0, 5.0)
     begun_on_it = (
