@@ -10,8 +10,8 @@ pen draws on paper there is summed,
 
     over = (sum((drawn - seen)²) - what the paper's noise leaves) · area of a pixel / width²
 
-and a way is beside its ink where that is large, and far above that of most of its line. Ink that the pen does
-not draw tells nothing: another line, a tick or a blot leaves it, too.
+and so is the ink that it leaves; a way is beside its ink where the lesser of both is large, and far above
+that of most of its line. By itself neither tells: another line or a tick leaves ink, and a gap is paper.
 
 Signals: the drawing and lines that were followed in; stretches of closed ones beside their ink out.
 
@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.median import percentile
+from morfax.motion.median import median, percentile
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
@@ -71,7 +71,7 @@ class Ways(NamedTuple):
     @property
     def pen_px(self) -> float:
         """Half the width of most closed lines."""
-        return float(np.median(self.half_px[self.closed]))
+        return median(self.half_px[self.closed])
 
 
 def beside(drawing: Drawing, lines: Sequence[Line]) -> Iterator[Beside]:
@@ -115,8 +115,10 @@ def _judged(
 ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
     """The stations of closed lines, tile by tile: line, number of the place, and what is over."""
     tile = np.floor(ways.places_px / TILE_PX).astype(int)
+    across = 1 + int(tile[:, 0].max())
     is_station = ways.closed[ways.line] & (np.arange(len(tile)) % _every(ways) == 0)
-    for column, row in np.unique(tile[is_station], axis=0).tolist():
+    for number in np.unique(tile[is_station] @ (1, across)).tolist():
+        row, column = divmod(number, across)
         near = np.flatnonzero(np.abs(tile - (column, row)).max(axis=1) <= 1)
         stations = near[is_station[near] & (tile[near] == (column, row)).all(axis=1)]
         margin = math.ceil(2 * (REACH_WIDTHS + 1) * ways.pen_px) + 1
@@ -152,19 +154,23 @@ def _over(
     i, j = np.nonzero((owner >= 0) & ways.closed[owner])
     away, half = away_px[i, j], ways.half_px[owner[i, j]]
     dark, drawn = np.minimum(seen[i, j], DARKEST), np.empty(len(i))
-    # 2. the pen of some widths that explains each box best, and what it draws on paper
+    # 2. the pen of some widths that explains each box best: what it draws on paper, and what ink it leaves
     side = 2 * round(half_px) + 1
-    least, over = np.full(seen.shape, np.inf), np.zeros(seen.shape)
+    least = np.full(seen.shape, np.inf)
+    over, left = np.zeros(seen.shape), np.zeros(seen.shape)
+    noise = 0.5 * drawing.noise.paper**2
     for share in OF_WIDTH:
         pen.ink(away - (share - 1) * half, half_px, drawing.noise.softness_px, drawn)
-        wrong, noise = drawn - dark, drawing.noise.paper**2
-        both, beyond = (
-            _in_boxes(seen.shape, (i, j), squares, side)
-            for squares in (wrong**2 - noise, np.maximum(wrong, 0.0) ** 2 - 0.5 * noise)
+        on_paper, on_ink = (
+            _in_boxes(seen.shape, (i, j), np.maximum(wrong, 0.0) ** 2 - noise, side)
+            for wrong in (drawn - dark, dark - drawn)
         )
-        over = np.where(both < least, beyond, over)
-        least = np.minimum(least, both)
-    worst = cv2.dilate(over, np.ones((side, side), np.uint8))
+        is_better = on_paper + on_ink < least
+        over, left = np.where(is_better, on_paper, over), np.where(is_better, on_ink, left)
+        least = np.minimum(least, on_paper + on_ink)
+    # 3. about each pixel: a way over paper without ink beside it crosses a gap
+    about = np.ones((side, side), np.uint8)
+    worst = np.minimum(cv2.dilate(over, about), cv2.dilate(left, about))
     return np.asarray(worst / (2 * half_px) ** 2)
 
 

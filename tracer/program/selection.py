@@ -9,7 +9,7 @@ with its number (mm on the sheet).
 
 Source: patent ES 361967 has one contour to a tape; several are our own. Questions: what is a line and what a
 speck, a letter or a burr? A patch of ink shorter than 4 mm, or than six of its widths, is no line unless it
-reaches over 12 mm, or is a hole (see `drawing.holes`): the hole of 2 mm that is drawn with 0.8 mm has 6.3 mm
+reaches over 12 mm, or is a hole (see `drawing.inner_rings`): the hole of 2 mm that is drawn with 0.8 mm has 6.3 mm
 and eight widths, and a long line that runs into a blot has a large mean width. A larger letter is a line, and
 is left out by asking for the others by number.
 """
@@ -29,7 +29,7 @@ from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
 from morfax.motion.nesting import lies_inside, size_mm
 from morfax.motion.polyline import nearest_mm
-from morfax.tracer.drawing.holes import holes
+from morfax.tracer.drawing.inner_rings import inner_rings
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.line import Line
 from morfax.tracer.marks.reference import LARGEST_MM
@@ -122,7 +122,7 @@ def lines_of(sheet: Sheet) -> NDArray[np.int64]:
     """The patches that are lines, the longest first; every patch along the edge of a filled shape is one."""
     shortest_mm = 0.0 if sheet.drawing.edges_mm else least_mm(sheet.widths_mm)
     are_lines = (sheet.lengths_mm >= shortest_mm) | (_reach_mm(sheet) >= LETTER_MM)
-    are_lines[holes(sheet, are_lines)] = True
+    are_lines[inner_rings(sheet, are_lines)] = True
     return np.asarray(sheet.longest_first(np.flatnonzero(are_lines)), np.int64)
 
 

@@ -20,7 +20,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array, bounds
+from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import length_mm
@@ -33,21 +33,22 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.program.small_rings import is_ring
+from morfax.tracer.program.small_rings import LEAST_HOLE_PX, paper_within_px
 from morfax.tracer.tangles.compass import Core, RingInk, explained
 
-SMALL_WIDTHS = 16.0  # a longer loop has sides as long as a leg; chosen
+SMALL_WIDTHS = 16.0  # a longer loop has sides as long as a leg, ...
+# ... but one whose sides are no further apart than this, in the mean, has ends too narrow for the head; that
+# is looked for on loops up to this long; chosen
+NARROW_WIDTHS, LONG_WIDTHS = 3.0, 60.0
 ONCE = 1.5  # of the length of its ink: a way that is longer goes round twice
-ACROSS_WIDTHS = 0.5 * SMALL_WIDTHS + 2  # of its ink, at most
-# for each width of the loop's length: what the compass leaves of lines that it explains, at most; a scan of
-# 150 dpi leaves 0.013 of a circle
-LIKE = 0.02
+# for each width of the loop's length: what the compass leaves of lines that it explains, at most. Scans leave
+# 0.013 of a circle of 0.5 mm at 150 dpi, and 0.027 of a slot of 0.35 mm at 200
+LIKE = 0.035
 # the same: the compass lays a loop if it leaves so much less than the head's own way. Noise of a scan is a
 # fifth of that; a corner that is cut short by 40 um leaves as much
 GAIN = 0.001
-BESIDE_WIDTHS = 1.5  # a loop's ink reaches no further beyond the loop
 ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
-MOST_PLACES = 700  # enough to place a circle within 5 um
+MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
 DARKEST = 1.05  # times the line's darkness
 
@@ -80,10 +81,7 @@ class SmallLoops:
         if is_marked or line.is_dot or line.on_edge:
             return line
         patch = self.sheet.patch_at(line.xy_mm[0])
-        ink_mm = float(self.sheet.lengths_mm[patch])
-        if ink_mm > SMALL_WIDTHS * line.width_mm:
-            return line
-        goes_once = line.length_mm < ONCE * ink_mm
+        goes_once = line.length_mm < ONCE * float(self.sheet.lengths_mm[patch])
         if line.ending == "closed" and goes_once:
             loop = self.of_way(line.xy_mm, line.width_mm)
         else:
@@ -108,7 +106,7 @@ class SmallLoops:
         or no core explains its ink.
         """
         patch = self.sheet.patch_at(way[0])
-        if not self._may_be(patch, width_mm) or not self._is_all_of(patch, way, width_mm):
+        if not self._may_be(patch, width_mm):
             return None
         ink = self._ink(patch, width_mm)
         return self._laid(ink, ink.misfit_along(one_in(way, THINNED)))
@@ -120,25 +118,17 @@ class SmallLoops:
         return self._laid(self._ink(patch, width_mm), math.inf)
 
     def _may_be(self, patch: int, width_mm: float) -> bool:
-        """Whether a patch may be a small loop: it has paper within, and the pen is known."""
-        across_mm = float(self.sheet.patches.longer_sides[patch]) * self.sheet.drawing.pitch_mm
-        if across_mm > ACROSS_WIDTHS * width_mm or patch in self.passed_by:
+        """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""
+        long_mm, pitch_mm = float(self.sheet.lengths_mm[patch]), self.sheet.drawing.pitch_mm
+        if long_mm > LONG_WIDTHS * width_mm or patch in self.passed_by:
             return False
-        return self.sheet.drawing.noise.softness_px > 0 and is_ring(self.sheet, patch)
-
-    def _is_all_of(self, patch: int, way: Array, width_mm: float) -> bool:
-        """Whether a patch has no ink far beside a way."""
-        low, high = self._box_mm(patch)
-        way_low, way_high = bounds(way)
-        beside_mm = (0.5 + BESIDE_WIDTHS) * width_mm
-        return bool(np.all(low > way_low - beside_mm) and np.all(high < way_high + beside_mm))
-
-    def _box_mm(self, patch: int) -> tuple[Array, Array]:
-        """The lowest and the highest place of a patch, mm."""
-        top, bottom, left, right = self.sheet.patches.boxes[patch].tolist()
-        rows, pitch_mm = self.sheet.drawing.darkness.shape[0], self.sheet.drawing.pitch_mm
-        low, high = np.array([left, rows - bottom]), np.array([right, rows - top])
-        return pitch_mm * low, pitch_mm * high
+        within_px = paper_within_px(self.sheet, patch)
+        within_mm2 = within_px * pitch_mm**2 + 0.5 * long_mm * width_mm
+        is_narrow = 2 * within_mm2 < NARROW_WIDTHS * width_mm * long_mm
+        is_small = long_mm < SMALL_WIDTHS * width_mm or is_narrow
+        return (
+            is_small and within_px >= LEAST_HOLE_PX and self.sheet.drawing.noise.softness_px > 0
+        )
 
     def _ink(self, patch: int, width_mm: float) -> RingInk:
         """The ink of a patch, and the paper about it and within, as far as that is no other patch's."""

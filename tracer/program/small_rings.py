@@ -49,7 +49,8 @@ def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
     small[[*lines, *lettering(sheet)]] = False
     chosen = np.flatnonzero(small)
     chosen = chosen[np.argsort(-across_mm[chosen], kind="stable")][:MOST_RINGS]
-    return tuple(SmallPatch.of(sheet, p) for p in chosen.tolist() if is_ring(sheet, p))
+    rings = [p for p in chosen.tolist() if paper_within_px(sheet, p) >= LEAST_HOLE_PX]
+    return tuple(SmallPatch.of(sheet, patch) for patch in rings)
 
 
 def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPatch, ...]:
@@ -58,8 +59,8 @@ def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPat
     return tuple(sorted(patches, key=lambda patch: -patch.across_mm))
 
 
-def is_ring(sheet: Sheet, patch: int) -> bool:
-    """Whether a patch of ink has paper within."""
+def paper_within_px(sheet: Sheet, patch: int) -> float:
+    """The largest area of paper that a patch of ink goes round, pixels."""
     top, bottom, left, right = sheet.patches.boxes[patch].tolist()
     own: NDArray[np.bool_] = np.zeros(sheet.patches.count, bool)
     own[patch] = True
@@ -68,4 +69,4 @@ def is_ring(sheet: Sheet, patch: int) -> bool:
     count, _, stats, _ = cv2.connectedComponentsWithStats(paper, connectivity=4)
     around = 1  # the first piece of paper in the first row is what is around the patch
     within = [stats[k, cv2.CC_STAT_AREA] for k in range(1, count) if k != around]
-    return max(within, default=0) >= LEAST_HOLE_PX
+    return float(max(within, default=0))

@@ -30,7 +30,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import stroke_order
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress
-from morfax.tracer.program.small_loops import SMALL_WIDTHS, SmallLoops
+from morfax.tracer.program.small_loops import SmallLoops
 from morfax.tracer.program.trace_solids import of_silhouettes, with_outlines
 
 NEWEST_BYTES = 8_000_000  # of the newest strokes are kept in memory, 0.8 m at 10 mm/s; chosen
@@ -102,8 +102,7 @@ def _strokes(
 
 def _mended(loops: SmallLoops, stroke: InkStroke) -> InkStroke:
     """A stroke as it is; a small loop that fails its ink as the compass lays it."""
-    is_small = stroke.length_mm < SMALL_WIDTHS * stroke.width_mm
-    loop = loops.of_way(stroke.way_mm, stroke.width_mm) if is_small and stroke.closed else None
+    loop = loops.of_way(stroke.way_mm, stroke.width_mm) if stroke.closed else None
     if loop is None:
         return stroke
     long_mm = length_mm(loop.way_mm)

@@ -38,9 +38,12 @@ FAR_MM = 1e3  # from all that is drawn
 # for each width of the way's length: what a core leaves to begin with, at most; of 58 that settled on the ink
 # of a loop the worst left 0.21
 BEGIN = 0.3
-SURE = 0.01  # the same: a core that leaves less is taken, for scans of 150 dpi leave more of a true one
-MOST_SETTLED = 4  # of the cores, those that explain most to begin with
+SURE = 0.003  # the same: a core that leaves less is taken at once
+MOST_SETTLED = 3  # of the cores, those that explain most to begin with
 STEPS = 40  # times that the ink is drawn for each figure of a core, at the most
+SHARPEST = (
+    0.3  # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
+)
 ARC_RAD = math.radians(2.0)  # between the places of an arc: they lie within 1 um of one of 6 mm
 
 
@@ -183,7 +186,8 @@ def _starts(ink: RingInk) -> Iterator[Core]:
     middle = dark.mean(axis=0)
     hull = cv2.convexHull((dark - middle).astype(np.float32))[:, 0].astype(float)
     for points in ROUNDED[:2]:
-        yield _slot(dark, middle, points, ink.half_mm)
+        core = _slot(hull, points, ink.half_mm)
+        yield core._replace(points_mm=core.points_mm + middle)
     for points in SHARP:
         polygon = _within(_reduced(hull, points), ink.half_mm)
         yield Core(middle + polygon, 0.0, ink.half_mm)
@@ -192,14 +196,19 @@ def _starts(ink: RingInk) -> Iterator[Core]:
             yield Core(middle + CORE * polygon, radius_mm, ink.half_mm)
 
 
-def _slot(dark: Array, middle: Array, points: int, half_mm: float) -> Core:
-    """A circle or a slot that is as long and as wide as the ink."""
-    _, _, axes = np.linalg.svd(dark - middle, full_matrices=False)
-    along, across = np.abs((dark - middle) @ axes.T).max(axis=0) - half_mm
+def _slot(hull: Array, points: int, half_mm: float) -> Core:
+    """A circle or a slot that is as long and as wide as the ink, whose hull (n, 2) is given."""
+    corners = cv2.boxPoints(cv2.minAreaRect(hull.astype(np.float32))).astype(float)
+    middle, sides = corners.mean(axis=0), np.diff(corners[:3], axis=0)
+    across_mm, along_mm = np.sort(np.hypot(*sides.T)) - 2 * half_mm
     if points == 1:
-        return Core(middle[None], 0.5 * (along + across), half_mm)
-    reach = max(along - across, 0.1 * half_mm) * axes[0]
-    return Core(np.array([middle - reach, middle + reach]), across, half_mm)
+        return Core(middle[None], 0.25 * (along_mm + across_mm), half_mm)
+    along = sides[int(np.argmax(np.hypot(*sides.T)))]
+    reach_mm = max(0.5 * (along_mm - across_mm), 0.1 * half_mm)
+    reach = reach_mm * along / float(np.hypot(*along))
+    return Core(
+        np.array([middle - reach, middle + reach]), 0.5 * max(across_mm, half_mm), half_mm
+    )
 
 
 def _reduced(hull: Array, corners: int) -> Array:
@@ -212,9 +221,13 @@ def _reduced(hull: Array, corners: int) -> Array:
 
 
 def _within(polygon: Array, half_mm: float) -> Array:
-    """A polygon about (0, 0) drawn in by half a width, as far as its middle allows."""
-    away = np.hypot(*polygon.T)[:, None]
-    return np.asarray(polygon * np.maximum(1 - half_mm / away, 0.2))
+    """A convex polygon (n, 2) with its sides half a width further in."""
+    polygon = polygon if area_mm2(polygon) > 0 else polygon[::-1]
+    ahead = np.roll(polygon, -1, axis=0) - polygon
+    inward = np.column_stack([-ahead[:, 1], ahead[:, 0]]) / np.hypot(*ahead.T)[:, None]
+    before = np.roll(inward, 1, axis=0)
+    spread = np.maximum(1 + np.sum(inward * before, axis=1), SHARPEST)
+    return np.asarray(polygon + half_mm * (inward + before) / spread[:, None])
 
 
 @njit(cache=True)

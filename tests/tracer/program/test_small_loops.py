@@ -63,6 +63,8 @@ def off_mm(line: Line, drawn: Points) -> float:
         (box(1.5, 1.2, 20), 0.5),
         (box(3.0, 1.2, 0), 1.0),
         (box(2.2, 0.8, 60), 0.5),
+        (slot(9.0, 0.9), 0.5),
+        (box(8.0, 0.8, 0), 0.5),
     ],
 )
 def test_a_small_hole_in_a_plate_is_cut_true_and_once(drawn: Points, width_mm: float) -> None:

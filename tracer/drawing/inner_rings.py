@@ -1,4 +1,4 @@
-"""Holes: closed lines that are too short to be lines by themselves, but lie inside one.
+"""Inner rings: closed lines that are too short to be lines by themselves, but lie inside one.
 
     ┌──────────┐      a circle of 1 mm is as long as a letter is; inside the outline of a part, and not in a
     │  ∘    ∘  │      row of letters, it is a hole
@@ -24,7 +24,7 @@ LEAST_WIDTHS = 2.0  # across, the ink with it: paper is seen within
 LEAST_PX = 4.0  # of paper within: less is a speck in the ink
 
 
-def holes(sheet: Sheet, lines: NDArray[np.bool_]) -> NDArray[np.int64]:
+def inner_rings(sheet: Sheet, lines: NDArray[np.bool_]) -> NDArray[np.int64]:
     """The patches that go round one area of paper, and lie inside a patch that is one of the lines."""
     none = np.empty(0, np.int64)
     if sheet.bare_rings or sheet.drawing.edges_mm or not lines.any():
