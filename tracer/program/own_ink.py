@@ -114,10 +114,10 @@ def _judged(
     drawing: Drawing, ways: Ways
 ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
     """The stations of closed lines, tile by tile: line, number of the place, and what is over."""
-    tile = np.floor(ways.places_px / TILE_PX).astype(int)
+    tile = np.maximum(ways.places_px / TILE_PX, 0).astype(int)
     across = 1 + int(tile[:, 0].max())
     is_station = ways.closed[ways.line] & (np.arange(len(tile)) % _every(ways) == 0)
-    for number in np.unique(tile[is_station] @ (1, across)).tolist():
+    for number in sorted(set((tile[is_station] @ (1, across)).tolist())):
         row, column = divmod(number, across)
         near = np.flatnonzero(np.abs(tile - (column, row)).max(axis=1) <= 1)
         stations = near[is_station[near] & (tile[near] == (column, row)).all(axis=1)]
