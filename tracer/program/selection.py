@@ -9,9 +9,9 @@ with its number (mm on the sheet).
 
 Source: patent ES 361967 has one contour to a tape; several are our own. Questions: what is a line and what a
 speck, a letter or a burr? A patch of ink shorter than 4 mm, or than six of its widths, is no line unless it
-reaches over 12 mm, or is a ring in a line (see `drawing.inner_rings`): the hole of 2 mm that is drawn with 0.8
-mm has 6.3 mm and eight widths, and a long line that runs into a blot has a large mean width. A larger letter is
-a line, and is left out by asking for the others by number.
+reaches over 12 mm, or is a ring in a line (see `drawing.inner_rings`): the hole of 2 mm that is drawn with
+0.8 mm has 6.3 mm and eight widths, and a long line that runs into a blot has a large mean width. A larger
+letter is a line, and is left out by asking for the others by number.
 """
 
 from __future__ import annotations
