@@ -216,7 +216,10 @@ def _of_unexplained(trace: Trace) -> Iterator[str]:
     """Closed lines that may be other lines than those drawn."""
     tips = [place for place in trace.unexplained if place.is_tip]
     beside = [place for place in trace.unexplained if place.is_ink and not place.is_tip]
-    bare = [p for p in trace.unexplained if not p.is_ink and p.wants_dpi is None]
+    off = [place for place in trace.unexplained if place.is_beside]
+    bare = [
+        p for p in trace.unexplained if not p.is_ink and not p.is_beside and p.wants_dpi is None
+    ]
     pale = [p for p in trace.unexplained if p.wants_dpi is not None]
     if tips:
         (x, y), cut_mm = tips[0][:2]
@@ -238,6 +241,14 @@ def _of_unexplained(trace: Trace) -> Iterator[str]:
         yield (
             f"the closed line runs over {long_mm:.1f} mm of bare paper at {x:.1f},{y:.1f} mm, where no ink "
             "leads: look at --picture, and draw the line there"
+        )
+    if off:
+        (x, y), long_mm = off[0][:2]
+        many = "1 place" if len(off) == 1 else f"{len(off)} places"
+        yield (
+            f"the closed line runs beside its ink at {many}, the longest {long_mm:.1f} mm at {x:.1f},{y:.1f} "
+            "mm: look there in --picture; a notch or a tongue that is narrower than two lines is followed if "
+            "it is drawn with a finer pen"
         )
     if pale:
         x, y = pale[0].place_mm

@@ -130,6 +130,8 @@ def _what(place: Unexplained) -> str:
         return "tip cut short"
     if place.is_ink:
         return "ink beside the way"
+    if place.is_beside:
+        return "way beside its ink"
     return "way without ink" if place.wants_dpi is None else "pixels too large to tell"
 
 

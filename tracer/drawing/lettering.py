@@ -3,7 +3,7 @@
 Signals: a Sheet in; out the patches that are likely letters.
 
     ╭╮ ┌╮ ╶┐ ┌╴       as high as one another, close together side by side, three or more,
-    ╰╯ ├┴ ╶┤ └┐       and unlike one another: holes in a row are alike
+    ╰╯ ├┴ ╶┤ └┐       and unlike one another: holes in a row are alike, or all are round
 
     ╭╮ ╶┐             two are letters too where others are as high: the 24 beside R10
     ╶╯ ╶┤
@@ -28,13 +28,16 @@ APART = 1.0  # mean heights from letter to letter, at most
 BESIDE = 0.5  # of the lower letter's height stands beside the other
 FEWEST = 3  # letters in a row
 UNLIKE = 0.15  # the lengths of letters differ by more than this share of their mean
+# as wide as high, but for this share or so many pixels: where all of a row are so, they are holes
+ROUND, ROUND_PX = 0.08, 1.5
 # of two: each is so much narrower than high (a hole is round), and as high, by this share, as a letter
 NARROW, AS_HIGH = 0.85, 0.06
 
 
 def lettering(sheet: Sheet) -> set[int]:
     """The patches that are likely letters."""
-    boxes_mm = np.asarray(sheet.patches.boxes, float) * sheet.drawing.pitch_mm
+    pitch_mm = sheet.drawing.pitch_mm
+    boxes_mm = np.asarray(sheet.patches.boxes, float) * pitch_mm
     heights_mm = boxes_mm[:, 1] - boxes_mm[:, 0]
     wide_mm = boxes_mm[:, 3] - boxes_mm[:, 2]
     sized = (heights_mm >= LEAST_MM) & (heights_mm <= LARGEST_MM) & (wide_mm <= LARGEST_MM)
@@ -46,7 +49,10 @@ def lettering(sheet: Sheet) -> set[int]:
     letters = set[int]()
     for own in rows:
         lengths_mm = sheet.lengths_mm[own]
-        if len(own) >= FEWEST and lengths_mm.std() > UNLIKE * lengths_mm.mean():
+        is_unlike = lengths_mm.std() > UNLIKE * lengths_mm.mean()
+        apart_mm = np.abs(wide_mm[own] - heights_mm[own])
+        are_round = np.all(apart_mm < np.maximum(ROUND * heights_mm[own], ROUND_PX * pitch_mm))
+        if len(own) >= FEWEST and is_unlike and not are_round:
             letters |= set(own.tolist())
     high_mm = heights_mm[sorted(letters)]
     for own in rows:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from morfax.motion import nesting
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
-from morfax.motion.polyline import nearest_mm
+from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
@@ -29,6 +29,7 @@ from morfax.tracer.program.best_run import SHORT
 from morfax.tracer.program.net_outline import outline_of
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.small_loops import SmallLoops
 from morfax.tracer.program.trace import followed, followed_from_an_end
 
 # from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of
@@ -45,6 +46,7 @@ def one_of_each(
     total_mm = sum(contour.stroke.length_mm for contour in asked)
     lines, boxes_mm, come_mm = list[Line](), list[Array](), 0.0
     begins_mm, unclear = list[tuple[float, float]](), list[Contour]()
+    loops = SmallLoops.of(setup.sheet, setup.settings)
     for contour in asked:
         near = [lines[k] for k in _near(contour, boxes_mm)]
         if _is_done(contour, near, begins_mm):
@@ -54,6 +56,7 @@ def one_of_each(
         line = _or_outline(
             setup, contour, _follow_in_window(setup.after(come_mm, total_mm), contour)
         )
+        line = _as_loop(loops, contour) if line is None else loops.mended(line)
         if line is not None:
             lines.append(line)
             boxes_mm.append(np.array(bounds(line.places_mm)))
@@ -145,6 +148,16 @@ def _follow_in_window(setup: Setup, contour: Contour) -> Line | None:
         ).all():
             return line
     return _follow(setup, contour)
+
+
+def _as_loop(loops: SmallLoops, contour: Contour) -> Line | None:
+    """A patch on which the head can nowhere be put down, as the small loop that it may be."""
+    width_mm = contour.stroke.width_mm
+    loop = loops.of_patch(contour.stroke.patch, width_mm)
+    if loop is None:
+        return None
+    long_mm = length_mm(loop.way_mm)
+    return Line(loop.way_mm, "closed", width_mm, long_mm, number=contour.number, led=loop.led)
 
 
 def _or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:

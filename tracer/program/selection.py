@@ -9,9 +9,9 @@ with its number (mm on the sheet).
 
 Source: patent ES 361967 has one contour to a tape; several are our own. Questions: what is a line and what a
 speck, a letter or a burr? A patch of ink shorter than 4 mm, or than six of its widths, is no line unless it
-reaches over 12 mm: the hole of 2 mm that is drawn with 0.8 mm has 6.3 mm and eight widths, and a long line
-that runs into a blot has a large mean width. A larger letter is a line, and is left out by asking for the
-others by number.
+reaches over 12 mm, or is a ring in a line (see `drawing.inner_rings`): the hole of 2 mm that is drawn with
+0.8 mm has 6.3 mm and eight widths, and a long line that runs into a blot has a large mean width. A larger
+letter is a line, and is left out by asking for the others by number.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
 from morfax.motion.nesting import lies_inside, size_mm
 from morfax.motion.polyline import nearest_mm
+from morfax.tracer.drawing.inner_rings import inner_rings
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.line import Line
 from morfax.tracer.marks.reference import LARGEST_MM
@@ -120,9 +121,9 @@ NO_OTHERS = Others()
 def lines_of(sheet: Sheet) -> NDArray[np.int64]:
     """The patches that are lines, the longest first; every patch along the edge of a filled shape is one."""
     shortest_mm = 0.0 if sheet.drawing.edges_mm else least_mm(sheet.widths_mm)
-    long_enough = sheet.lengths_mm >= shortest_mm
-    patches = np.flatnonzero(long_enough | (_reach_mm(sheet) >= LETTER_MM))
-    return np.asarray(sheet.longest_first(patches), np.int64)
+    are_lines = (sheet.lengths_mm >= shortest_mm) | (_reach_mm(sheet) >= LETTER_MM)
+    are_lines[inner_rings(sheet, are_lines)] = True
+    return np.asarray(sheet.longest_first(np.flatnonzero(are_lines)), np.int64)
 
 
 def others_than(sheet: Sheet, line: Line) -> Others:

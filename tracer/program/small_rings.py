@@ -49,7 +49,8 @@ def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
     small[[*lines, *lettering(sheet)]] = False
     chosen = np.flatnonzero(small)
     chosen = chosen[np.argsort(-across_mm[chosen], kind="stable")][:MOST_RINGS]
-    return tuple(SmallPatch.of(sheet, p) for p in chosen.tolist() if _is_ring(sheet, p))
+    rings = [p for p in chosen.tolist() if paper_within_px(sheet, p) >= LEAST_HOLE_PX]
+    return tuple(SmallPatch.of(sheet, patch) for patch in rings)
 
 
 def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPatch, ...]:
@@ -58,10 +59,10 @@ def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPat
     return tuple(sorted(patches, key=lambda patch: -patch.across_mm))
 
 
-def _is_ring(sheet: Sheet, patch: int) -> bool:
-    """Whether a patch of ink has paper within."""
+def paper_within_px(sheet: Sheet, patch: int) -> int:
+    """The largest area of paper that a patch of ink goes round, pixels."""
     top, bottom, left, right = sheet.patches.boxes[patch].tolist()
     own: NDArray[np.bool_] = np.zeros(sheet.patches.count, bool)
     own[patch] = True
     ink = sheet.patches.painted(own, top, bottom, left, right)
-    return any(hole.paper_px >= LEAST_HOLE_PX for hole in holes(ink))
+    return max((hole.paper_px for hole in holes(ink)), default=0)

@@ -1,4 +1,4 @@
-"""Stubs: places where a way goes out along a short stroke and comes back beside itself, to go straight on.
+"""Stubs: places where a way goes out along a short stroke and comes back beside itself, to go on as before.
 
     ────╮╭────      a tick, a burr or a drop of ink that is shorter than a line is wide reads like a spike of
         ││          the line itself: ink does not tell the two apart
@@ -7,7 +7,7 @@
 Signals: a line as it was followed in; where it turns back, and how far it goes out, mm, out.
 
 Source: our own; the operator of patent ES 361967 knows a tick by sight. Questions: a tip where two sides meet
-does not go straight on; a spike that is drawn so, and whose sides are no line apart, does.
+goes on the way that it came; a spike that is drawn so, and whose sides are no line apart, does not.
 """
 
 from __future__ import annotations
@@ -28,7 +28,9 @@ CLOSE = 0.75  # out and back are no further apart
 LEAST_OUT = 0.8  # a way that goes out less is a bump
 MOST_OUT = 4.0  # one that goes out further is a line
 APPROACH = 1.5  # before and after it show whether the line goes straight on, ...
-STRAIGHT_ON = math.radians(50)  # ... within this
+STRAIGHT_ON = math.radians(50)  # ... within this, ...
+CORNER = math.radians(125)  # ... or turns a corner that is no tip
+IN_TRACK = 0.3  # out and back: the sides of a tip of 20 degrees are further apart
 
 
 class Stub(NamedTuple):
@@ -61,12 +63,13 @@ def _found(way: Array, width_mm: float) -> Iterator[Stub]:
         before = _headings(way[first] - way[first - near])
         after = _headings(way[first + 2 * out + near] - way[first + 2 * out])
         turned = np.abs(np.angle(np.exp(1j * (after - before))))
-        # 2. out and back beside itself
-        for foot in first[turned < STRAIGHT_ON].tolist():
+        # 2. out and back beside itself; at a corner of the line in its own track
+        close = np.select([turned < STRAIGHT_ON, turned < CORNER], [CLOSE, IN_TRACK], 0.0)
+        for foot, most in zip(first[close > 0].tolist(), close[close > 0], strict=True):
             stroke = way[foot : foot + 2 * out + 1]
             apart_mm = np.hypot(*(stroke - stroke[::-1]).T)
             away_mm = np.hypot(*(stroke - 0.5 * (stroke[0] + stroke[-1])).T)
-            if apart_mm.max() < CLOSE * width_mm and away_mm.max() > LEAST_OUT * width_mm:
+            if apart_mm.max() < most * width_mm and away_mm.max() > LEAST_OUT * width_mm:
                 x, y = stroke[np.argmax(away_mm)].tolist()
                 yield Stub((x, y), float(away_mm.max()))
 

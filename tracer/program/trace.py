@@ -30,6 +30,7 @@ from morfax.tracer.program.net_outline import OfNet, of_net, round_ring
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import NO_OTHERS, others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
+from morfax.tracer.program.small_loops import SmallLoops
 from morfax.tracer.program.unexplained import unexplained
 
 
@@ -51,6 +52,7 @@ def trace(
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     found = OfNet(setup) if start_mm is not None else of_net(setup)
     line = _along_net(found) or followed(found.setup, start_mm)
+    line = SmallLoops.of(found.setup.sheet, setup.settings).mended(line)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
     beside = unexplained(setup, lines)

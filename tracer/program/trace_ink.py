@@ -15,6 +15,7 @@ import numpy as np
 
 from morfax.motion.faults import LineFault
 from morfax.motion.long_array import filed
+from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.shapes_among_lines import has_lines
 from morfax.tracer.drawing.strokes import Sheet
@@ -29,6 +30,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import stroke_order
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress
+from morfax.tracer.program.small_loops import SmallLoops
 from morfax.tracer.program.trace_solids import of_silhouettes, with_outlines
 
 NEWEST_BYTES = 8_000_000  # of the newest strokes are kept in memory, 0.8 m at 10 mm/s; chosen
@@ -66,7 +68,9 @@ def _of_strokes(
         letters = sheet.patches.painted(left.lettering, 0, rows, 0, columns)
     felt = FeltSheet.of(left.drawing, settings, left.ink, letters)
     junctions = solved(felt)
-    strokes = _long_enough(_kept(_strokes(junctions, settings, progress)))
+    loops = SmallLoops.of(sheet, settings)
+    run = (_mended(loops, stroke) for stroke in _strokes(junctions, settings, progress))
+    strokes = _long_enough(_kept(run))
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
@@ -94,6 +98,15 @@ def _strokes(
         before_mm += stroke.length_mm
         told(0.0)
         yield stroke
+
+
+def _mended(loops: SmallLoops, stroke: InkStroke) -> InkStroke:
+    """A stroke as it is; a small loop that fails its ink as the compass lays it."""
+    loop = loops.of_way(stroke.way_mm, stroke.width_mm) if stroke.closed else None
+    if loop is None:
+        return stroke
+    long_mm = length_mm(loop.way_mm)
+    return stroke._replace(way_mm=loop.way_mm, length_mm=long_mm, led=loop.led)
 
 
 def _kept(strokes: Iterable[InkStroke]) -> list[InkStroke]:

@@ -36,6 +36,7 @@ from morfax.tracer.drawing.sharpening import turned_at
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
+from morfax.tracer.program.own_ink import beside
 from morfax.tracer.program.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.photocell import darkness_along, without_aperture
@@ -48,6 +49,7 @@ PALE = 0.6
 TIP = np.radians(120.0)  # a corner that turns by more is a tip
 CUT_MM = 0.1  # ten times a corner's error
 BESIDE = 2.0  # times as far apart as both are off: it is the same tip
+BESIDE_WIDTHS = 3.0  # of a place: it has been found already
 EVERY_MM = 0.05  # between the places of an edge, as between those of a way
 # darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
 # less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
@@ -59,7 +61,7 @@ class Unexplained(NamedTuple):
 
     Of ink how far it reaches beside the ways, of a way over bare paper its length. Of a way over ink that is
     only pale, on a coarse scan, the resolution that would show what is there. `is_tip`: a tip of a filled
-    shape, off which the way cuts so much.
+    shape, off which the way cuts so much. `is_beside`: the way runs beside its ink for so long.
     """
 
     place_mm: tuple[float, float]
@@ -67,6 +69,7 @@ class Unexplained(NamedTuple):
     is_ink: bool
     wants_dpi: int | None = None
     is_tip: bool = False
+    is_beside: bool = False
 
 
 def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
@@ -84,7 +87,18 @@ def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
     found += _tips_cut(sheet.drawing.edges_mm, closed)
     found += _once(_off_edges(sheet.drawing, closed))
     found = found or list(_astray(sheet, closed))
+    found += _beside_ink(sheet.drawing, lines, found)
     return tuple(sorted(found, key=lambda place: -place.length_mm))
+
+
+def _beside_ink(
+    drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained]
+) -> Iterator[Unexplained]:
+    """Stretches of closed lines beside their ink, but for those about what was found otherwise."""
+    about_mm = BESIDE_WIDTHS * max(line.width_mm for line in lines)
+    for place_mm, long_mm in beside(drawing, lines):
+        if all(math.dist(place_mm, other.place_mm) > about_mm for other in found):
+            yield Unexplained(place_mm, long_mm, False, is_beside=True)
 
 
 def _ink_beside(

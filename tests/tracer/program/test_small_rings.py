@@ -19,18 +19,20 @@ def told(*lines: Points, width_mm: float) -> str:
     return " ".join(of_ink(trace_lines(inked(*lines, width_mm=width_mm, seed=1)), several=True))
 
 
-@pytest.mark.parametrize("diameter_mm", [1.0, 1.2])
-def test_a_hole_shorter_than_a_contour_is_told_with_its_place(diameter_mm: float) -> None:
-    hole = arc((14, 20), diameter_mm / 2)
-    trace = trace_lines(inked(PLATE, hole, width_mm=0.35, seed=1))
+def test_a_ring_outside_the_part_that_is_shorter_than_a_contour_is_told_with_its_place() -> (
+    None
+):
+    """Inside the part it is a hole (see `test_small_loops`)."""
+    lines = PLATE, arc((50, 20), 0.6)
+    trace = trace_lines(inked(*lines, width_mm=0.35, seed=1))
     (ring,) = trace.small_rings
-    assert np.hypot(*(np.array(ring.place_mm) - (14, 20))) < PITCH_MM
-    assert ring.across_mm == pytest.approx(diameter_mm + 0.35, abs=2.5 * PITCH_MM)
+    assert np.hypot(*(np.array(ring.place_mm) - (50, 20))) < PITCH_MM
+    assert ring.across_mm == pytest.approx(1.2 + 0.35, abs=2.5 * PITCH_MM)
     said = " ".join(of_ink(trace, several=True))
-    assert "1 small closed line is left out" in said and "14.0,20.0 mm" in said
+    assert "1 small closed line is left out" in said and "50.0,20.0 mm" in said
     # the advice works
     assert "--lines all" in said
-    all_ink = trace_ink(inked(PLATE, hole, width_mm=0.35, seed=1))
+    all_ink = trace_ink(inked(*lines, width_mm=0.35, seed=1))
     assert [line.ending for line in all_ink.lines] == ["closed", "closed"]
 
 
@@ -39,8 +41,8 @@ def test_dots_and_larger_holes_are_no_small_rings() -> None:
     assert "small closed" not in told(PLATE, dot, arc((30, 20), 1.5), width_mm=0.5)
 
 
-def test_a_slot_too_narrow_to_be_followed_is_told() -> None:
-    """The paper within a slot of 4.2 by 1.2 mm is a fifth of its line's width."""
-    slot = polyline((12, 20), (15, 20), (15, 21.2), (12, 21.2), (12, 20))
-    said = told(PLATE, slot, width_mm=1.0)
-    assert "the head can nowhere be put down" in said and "13.5,20.6 mm" in said
+def test_a_zigzag_too_narrow_to_be_followed_is_told() -> None:
+    """Its strokes lie nearer than the line is wide, and leave no paper within."""
+    zigzag = polyline(*((12 + 0.7 * k, 20 + 1.2 * (k % 2)) for k in range(7)))
+    said = told(PLATE, zigzag, width_mm=1.0)
+    assert "the head can nowhere be put down" in said

@@ -39,6 +39,27 @@ def test_a_way_out_and_back_is_told_with_its_place_and_how_far_out_it_goes() -> 
     assert found.out_mm == pytest.approx(0.9, abs=0.06)
 
 
+@pytest.mark.parametrize("turns_deg", [60.0, 90.0, 110.0])
+def test_a_way_out_and_back_at_a_corner_is_told(turns_deg: float) -> None:
+    """A tick in line with one leg of a corner, run out and back in its own track."""
+    on = math.radians(turns_deg)
+    leg = 20 + 10 * math.cos(on), 10 * math.sin(on)
+    (found,) = stubs(line((0.0, 0.0), (20.0, 0.0), (20.9, 0.0), (20.0, 0.05), leg, (0.0, 10.0)))
+    assert found.place_mm == pytest.approx((20.9, 0.0), abs=0.06)
+
+
+@pytest.mark.parametrize("tip_deg", [4.0, 10.0, 20.0, 40.0, 58.0])
+def test_a_tip_where_two_sides_meet_is_none(tip_deg: float) -> None:
+    back = math.radians(180 - tip_deg)
+    leg = 20 + 15 * math.cos(back), 15 * math.sin(back)
+    assert stubs(line((0.0, 0.0), (20.0, 0.0), leg, (0.0, 10.0))) == []
+
+
+def test_a_finger_at_a_corner_whose_sides_are_half_a_line_apart_is_none() -> None:
+    finger = (20.9, 0.0), (20.9, 0.25), (20.0, 0.25)
+    assert stubs(line((0.0, 0.0), (20.0, 0.0), *finger, (20.0, 10.0), (0.0, 10.0))) == []
+
+
 def test_one_on_the_seam_of_a_closed_line_is_told_too() -> None:
     stub = (0.0, 5.0), (-0.9, 5.0), (0.0, 5.0)
     begun_on_it = (

@@ -113,7 +113,8 @@ def test_a_small_bay_that_is_cut_off_on_a_coarse_scan_is_told_with_a_resolution(
     places_mm = np.array([place.place_mm for place in told])
     assert np.hypot(*(places_mm - (23.5, 25.5)).T).max() < 1.5  # of a bay of 2 by 1 mm
     assert unexplained(Setup(drawing.sheet), [coarse(BAY)]) == ()
-    assert unexplained(Setup(replace(drawing, finer=1).sheet), [coarse(ACROSS)]) == ()
+    fine = unexplained(Setup(replace(drawing, finer=1).sheet), [coarse(ACROSS)])
+    assert [place.wants_dpi for place in fine] == [None]
 
 
 def test_a_coarse_line_counts_a_pixel_less_wide_than_it_looks() -> None:

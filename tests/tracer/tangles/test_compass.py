@@ -1,0 +1,120 @@
+"""The compass lays small loops where their ink is: circles, slots and polygons of known size."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import length_mm, nearest_mm, with_places
+from morfax.tracer.tangles import compass, pen
+from morfax.tracer.tangles.compass import Core, RingInk, explained
+from tests.tracer.inked import arc
+
+PITCH_MM, SOFTNESS_MM, HALF_MM = 0.1, 0.06, 0.25
+UM = 1e-3
+
+CIRCLE = arc((3.0, 3.1), 0.6)
+SLOT = np.vstack([arc((2.4, 3.0), 0.5, 90, 270), arc((3.6, 3.0), 0.5, -90, 90)])
+TRIANGLE = np.array([(2.0, 2.2), (4.0, 2.4), (2.7, 4.0)])
+OBLONG = np.array([(2.1, 2.3), (3.3, 2.0), (3.9, 3.8), (2.7, 4.1)])
+
+
+def closed(way: Array) -> Array:
+    """A way with its first place at its end."""
+    return np.vstack([way, way[:1]])
+
+
+def ink_of(way: Array, noise: float = 0.0, half_mm: float = HALF_MM) -> RingInk:
+    """The ink that a pen leaves along a closed way, on pixels with noise."""
+    rows, columns = np.indices((60, 60)).reshape(2, -1)
+    places = PITCH_MM * np.column_stack([columns + 0.5, rows + 0.5])
+    away = np.full(len(places), 1e3)
+    pieces = np.ascontiguousarray(np.hstack([closed(way)[:-1], closed(way)[1:]]).T)
+    pen.away(places, pieces, len(way), away)
+    dark = np.empty(len(places))
+    pen.ink(away, half_mm, SOFTNESS_MM, dark)
+    dark += np.random.default_rng(1).normal(0.0, noise, len(dark))
+    near = away < half_mm + 5 * SOFTNESS_MM
+    count = int(near.sum())
+    return RingInk(
+        places[near], dark[near], HALF_MM, SOFTNESS_MM, PITCH_MM**2, count * noise**2
+    )
+
+
+def off_mm(core: Core, way: Array) -> float:
+    """How far the core's way is from a closed way, and that from it, at most."""
+    laid, true = (
+        with_places(some, 2 * UM) for some in (np.vstack(core.stretches()), closed(way))
+    )
+    return float(max(nearest_mm(laid, true).max(), nearest_mm(true, laid).max()))
+
+
+@pytest.mark.parametrize(
+    ("way", "points"), [(CIRCLE, 1), (SLOT, 2), (TRIANGLE, 3), (OBLONG, 4)]
+)
+def test_a_loop_of_a_known_shape_is_laid_true_with_the_fewest_points(
+    way: Array, points: int
+) -> None:
+    core = explained(ink_of(way))
+    assert core is not None and len(core.points_mm) == points
+    # the places are compared 2 um apart, and a fit ends where a step gains nothing
+    assert off_mm(core, way) < 5 * UM
+    assert core.half_mm == pytest.approx(HALF_MM, abs=2 * UM)
+
+
+@pytest.mark.parametrize("way", [CIRCLE, SLOT, TRIANGLE, OBLONG])
+def test_noise_of_a_scan_moves_a_loop_by_a_tenth_of_a_pixel_at_most(way: Array) -> None:
+    core = explained(ink_of(way, noise=0.04))
+    assert core is not None and off_mm(core, way) < 0.2 * PITCH_MM
+
+
+def test_the_pen_may_be_broader_than_was_felt() -> None:
+    core = explained(ink_of(CIRCLE, half_mm=1.15 * HALF_MM))
+    assert core is not None
+    assert core.half_mm == pytest.approx(1.15 * HALF_MM, abs=2 * UM)
+    assert off_mm(core, CIRCLE) < 5 * UM
+
+
+def test_a_way_that_cuts_a_loop_short_leaves_ink_unexplained() -> None:
+    """A chord cuts off a segment as high as half the line is wide."""
+    ink = ink_of(CIRCLE)
+    at = np.linspace(0, math.tau, len(CIRCLE))
+    radius = np.minimum(0.6, (0.6 - HALF_MM) / np.maximum(np.cos(at), 1e-3))
+    short = np.column_stack([3.0 + radius * np.cos(at), 3.1 + radius * np.sin(at)])
+    assert ink.misfit_along(closed(CIRCLE)) < 1e-3
+    assert ink.misfit_along(closed(short)) > 0.3
+
+
+@pytest.mark.parametrize(
+    ("core", "long_mm"),
+    [
+        (Core(np.array([(1.0, 1.0)]), 0.5, HALF_MM), math.pi),
+        (Core(np.array([(1.0, 1.0), (2.0, 1.0)]), 0.5, HALF_MM), math.pi + 2),
+        (Core(OBLONG, 0.0, HALF_MM), length_mm(closed(OBLONG))),
+        (Core(OBLONG[::-1], 0.3, HALF_MM), length_mm(closed(OBLONG)) + 0.3 * math.tau),
+    ],
+)
+def test_the_way_of_a_core_is_closed_and_as_long_as_its_sides_and_arcs(
+    core: Core, long_mm: float
+) -> None:
+    stretches = core.stretches()
+    way = np.vstack(stretches)
+    assert np.allclose(way[0], way[-1])
+    # chords of two degrees are shorter than their arcs by 5e-5
+    assert length_mm(way) == pytest.approx(long_mm, rel=1e-4)
+    assert core.length_mm == pytest.approx(long_mm)
+    assert len(stretches) == (1 if core.radius_mm else len(core.points_mm) + 1)
+
+
+def test_the_distance_from_a_polygon_is_negative_within() -> None:
+    from_core = compass._from_core.py_func
+    square: NDArray[np.float64] = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)])
+    assert from_core(1.0, 0.5, square) == pytest.approx(-0.5)
+    assert from_core(1.0, -0.5, square) == pytest.approx(0.5)
+    assert from_core(3.0, 3.0, square) == pytest.approx(math.sqrt(2))
+    assert from_core(1.0, 0.5, square[:1]) == pytest.approx(math.hypot(1.0, 0.5))
+    assert from_core(1.0, 0.5, square[:2]) == pytest.approx(0.5)

@@ -1,0 +1,180 @@
+"""Small loops: a closed line of few widths is held against its ink, and laid by the compass where it fails.
+
+Between the bends of a small hole or slot the head finds no clean line that is as long as its legs. Its way
+may cut such a loop short, or the head can nowhere be put down. The pen's ink along the way tells; the loop is
+then the way that explains the ink (see `tangles.compass`), and the head runs along that from memory.
+
+Signals: the sheet and a small closed way in; the way as the head ran along it, and who led, out.
+
+Source: our own. Questions: only a loop that is all of its patch of ink is looked at; one that other lines
+join is a tangle.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.long_array import one_in
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.polyline import length_mm
+from morfax.tracer.drawing.lettering import lettering
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.followed import THINNED
+from morfax.tracer.following.line import Line
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.leaders import REDRAWN, Led
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.stance import Stance
+from morfax.tracer.program.small_rings import LEAST_HOLE_PX, paper_within_px
+from morfax.tracer.tangles.compass import Core, RingInk, explained
+
+SMALL_WIDTHS = 16.0  # a longer loop has sides as long as a leg, ...
+# ... but one whose sides are no further apart than this, in the mean, has ends too narrow for the head; that
+# is looked for on loops up to this long; chosen
+NARROW_WIDTHS, LONG_WIDTHS = 3.0, 60.0
+ONCE = 1.5  # of the length of its ink: a way that is longer goes round twice
+# for each width of the loop's length: what the compass leaves of lines that it explains, at most. Scans leave
+# 0.013 of a circle of 0.5 mm at 150 dpi, and 0.027 of a slot of 0.35 mm at 200
+LIKE = 0.035
+# the same: the compass lays a loop if it leaves so much less than the head's own way. Noise of a scan is a
+# fifth of that; a corner that is cut short by 40 um leaves as much
+GAIN = 0.001
+ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
+MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
+TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
+DARKEST = 1.05  # times the line's darkness
+
+
+class Loop(NamedTuple):
+    """A loop as the head ran along it: its way (n, 2) mm at the motion rate, and who led."""
+
+    way_mm: Array
+    led: Led
+
+
+@dataclass(frozen=True, slots=True)
+class SmallLoops:
+    """The small loops of a sheet, and the head that runs along them; patches `passed_by` are none."""
+
+    sheet: Sheet
+    settings: Settings
+    passed_by: frozenset[int] = frozenset()
+
+    @classmethod
+    def of(cls, sheet: Sheet, settings: Settings) -> SmallLoops:
+        """Those of a sheet; on a page of text letters are none."""
+        letters = lettering(sheet)
+        passed_by = frozenset(letters) if len(letters) > TEXT else frozenset[int]()
+        return cls(sheet, settings, passed_by)
+
+    def mended(self, line: Line) -> Line:
+        """A line as it is; a small one that should close and fails its own ink as the compass lays it."""
+        is_marked = line.is_lead or line.reference_mm is not None or line.marks
+        if is_marked or line.is_dot or line.on_edge:
+            return line
+        patch = self.sheet.patch_at(line.xy_mm[0])
+        goes_once = line.length_mm < ONCE * float(self.sheet.lengths_mm[patch])
+        if line.ending == "closed" and goes_once:
+            loop = self.of_way(line.xy_mm, line.width_mm)
+        else:
+            loop = self.of_patch(patch, line.width_mm)
+        if loop is None:
+            return line
+        return replace(
+            line,
+            xy_mm=loop.way_mm,
+            ending="closed",
+            length_mm=length_mm(loop.way_mm),
+            fault=None,
+            loop_from=None,
+            junctions_mm=(),
+            breaks=(),
+            led=loop.led,
+            roughness_mm=None,
+        )
+
+    def of_way(self, way: Array, width_mm: float) -> Loop | None:
+        """The loop whose way (n, 2) mm fails its own ink, as the compass lays it; None if it does not fail,
+        or no core explains its ink.
+        """
+        patch = self.sheet.patch_at(way[0])
+        if not self._may_be(patch, width_mm):
+            return None
+        ink = self._ink(patch, width_mm)
+        return self._laid(ink, ink.misfit_along(one_in(way, THINNED)))
+
+    def of_patch(self, patch: int, width_mm: float) -> Loop | None:
+        """The loop that a patch of ink is, along which the head has found no closed way."""
+        if not self._may_be(patch, width_mm):
+            return None
+        return self._laid(self._ink(patch, width_mm), math.inf)
+
+    def _may_be(self, patch: int, width_mm: float) -> bool:
+        """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""
+        long_mm, pitch_mm = float(self.sheet.lengths_mm[patch]), self.sheet.drawing.pitch_mm
+        if long_mm > LONG_WIDTHS * width_mm or patch in self.passed_by:
+            return False
+        within_px = paper_within_px(self.sheet, patch)
+        within_mm2 = within_px * pitch_mm**2 + 0.5 * long_mm * width_mm
+        is_narrow = 2 * within_mm2 < NARROW_WIDTHS * width_mm * long_mm
+        is_small = long_mm < SMALL_WIDTHS * width_mm or is_narrow
+        return (
+            is_small and within_px >= LEAST_HOLE_PX and self.sheet.drawing.noise.softness_px > 0
+        )
+
+    def _ink(self, patch: int, width_mm: float) -> RingInk:
+        """The ink of a patch, and the paper about it and within, as far as that is no other patch's."""
+        drawing, patches, noise = (
+            self.sheet.drawing,
+            self.sheet.patches,
+            self.sheet.drawing.noise,
+        )
+        rows, columns = drawing.darkness.shape
+        about = 2 + math.ceil(ABOUT_SOFT * noise.softness_px)
+        top, bottom, left, right = patches.boxes[patch].tolist()
+        top, bottom = max(top - about, 0), min(bottom + about, rows)
+        left, right = max(left - about, 0), min(right + about, columns)
+        # 1. what is nearer to this ink than so far, and to no other
+        is_own: NDArray[np.bool_] = np.arange(patches.count) == patch
+        reach = np.ones((2 * about + 1,) * 2, np.uint8)
+        own, others = (
+            cv2.dilate(patches.painted(chosen, top, bottom, left, right), reach)
+            for chosen in (is_own, ~is_own)
+        )
+        i, j = np.nonzero((own > 0) & (others == 0))
+        every = slice(None, None, 1 + len(i) // MOST_PLACES)
+        i, j = i[every], j[every]
+        # 2. how dark it is
+        darkness = np.asarray(drawing.darkness[top:bottom, left:right], float)[i, j]
+        places = np.column_stack([j + left + 0.5, rows - i - top - 0.5]) * drawing.pitch_mm
+        area_mm2 = every.step * drawing.pitch_mm**2
+        left_by_noise = len(i) * noise.paper**2
+        dark = np.minimum(darkness, DARKEST)
+        return RingInk(places, dark, 0.5 * width_mm, noise.softness_mm, area_mm2, left_by_noise)
+
+    def _laid(self, ink: RingInk, own: float) -> Loop | None:
+        """The loop that explains some ink, if it leaves less unexplained than the head's own way."""
+        core = explained(ink) if len(ink.places_mm) else None
+        if core is None:
+            return None
+        widths = core.length_mm / ink.width_mm
+        is_better = core.misfit < own - GAIN * widths
+        return self._run(core) if is_better and core.misfit < LIKE * widths else None
+
+    def _run(self, core: Core) -> Loop:
+        """The head's run along a core's way from memory."""
+        stretches = core.stretches()
+        heading = math.atan2(*(stretches[0][1] - stretches[0][0])[::-1])
+        view = view_of(self.sheet, self.settings.aperture_mm, 2 * core.half_mm)
+        stance = Stance(stretches[0][0], heading, view)
+        carriage = Carriage(stance, self.settings, MOTION_RATE_HZ)
+        carriage.run(stretches, leader=REDRAWN)
+        return Loop(carriage.positions_mm, carriage.led)

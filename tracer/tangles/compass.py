@@ -1,0 +1,253 @@
+"""The compass: a small closed line as the way that keeps one distance from a core of a few points.
+
+     · one point: a circle        ·───· two: a slot        ·   · more: a polygon, its corners rounded by
+                                                           ·   · the distance, or sharp where that is 0
+
+A closed line of a few widths leaves the head no clean leg to feel between two bends. So the pen's ink along
+such a way (see `pen`) is held against the ink that is there, and core, distance and the pen's width are moved
+until the two differ least. Of all cores that one is taken which explains the ink with the fewest figures.
+
+Signals: the ink about a closed line in; its way (n, 2) mm out, and how much ink it leaves unexplained.
+
+    misfit = (sum((drawn - seen)²) - what the paper's noise leaves) · area of a pixel / width²
+
+Source: our own; a draughtsman draws a hole by a compass, not by hand. Questions: a ring of another shape,
+such as a letter, is explained by none of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
+from morfax.motion.polyline import area_mm2
+from morfax.tracer.tangles import pen
+
+SHARP = (3, 4, 5, 6)  # corners of the polygons that are tried
+ROUNDED = (1, 2, 3, 4)  # points of the cores that are tried
+PRICE = 0.01  # of a figure more, as misfit: noise alone pays less than a third of that
+CORE, ROUNDING = 0.6, 0.4  # of half a shape, as a rounded polygon begins
+OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is tried with these
+FAR_MM = 1e3  # from all that is drawn
+# for each width of the way's length: what a core leaves to begin with, at most; of 58 that settled on the ink
+# of a loop the worst left 0.21
+BEGIN = 0.3
+SURE = 0.003  # the same: a core that leaves less is taken at once
+MOST_SETTLED = 3  # of the cores, those that explain most to begin with
+STEPS = 40  # times that the ink is drawn for each figure of a core, at the most
+SHARPEST = (
+    0.3  # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
+)
+ARC_RAD = math.radians(2.0)  # between the places of an arc: they lie within 1 um of one of 6 mm
+
+
+class RingInk(NamedTuple):
+    """The ink about a closed line: places (n, 2) mm and their darkness (n,), 1 on the line; half the pen's
+    width and its softness, mm; the area of a pixel, mm2; and what noise of the paper leaves in all squares.
+    """
+
+    places_mm: Array
+    darkness: Array
+    half_mm: float
+    softness_mm: float
+    area_mm2: float
+    noise: float
+
+    @property
+    def width_mm(self) -> float:
+        """The pen's width."""
+        return 2 * self.half_mm
+
+    def misfit(self, drawn: Array) -> float:
+        """How much darkness (n,) that is drawn leaves unexplained, in squares of the line's width."""
+        left = float(np.sum((drawn - self.darkness) ** 2)) - self.noise
+        return left * self.area_mm2 / self.width_mm**2
+
+    def misfit_along(self, way: Array) -> float:
+        """How much a pen along a way (n, 2) mm leaves unexplained, of the width that explains most."""
+        away_mm = np.full(len(self.places_mm), FAR_MM)
+        lines = np.ascontiguousarray(np.hstack([way[:-1], way[1:]]).T)
+        pen.away(self.places_mm, lines, len(way) - 1, away_mm)
+        drawn, misfits = np.empty(len(away_mm)), list[float]()
+        for share in OF_WIDTH:
+            pen.ink(away_mm, share * self.half_mm, self.softness_mm, drawn)
+            misfits.append(self.misfit(drawn))
+        return min(misfits)
+
+
+class Core(NamedTuple):
+    """The points (m, 2) of a core, the distance that the way keeps from it, half the pen's width; mm."""
+
+    points_mm: Array
+    radius_mm: float
+    half_mm: float
+    misfit: float = math.inf
+
+    @property
+    def cost(self) -> float:
+        """The misfit, and the price of the figures that it takes."""
+        return self.misfit + PRICE * self.figures
+
+    @property
+    def figures(self) -> int:
+        """How many figures it takes."""
+        return self.points_mm.size + (self.radius_mm > 0)
+
+    @property
+    def length_mm(self) -> float:
+        """The length of the way."""
+        round_mm = math.tau * self.radius_mm
+        if len(self.points_mm) == 1:
+            return round_mm
+        steps = self.points_mm - np.roll(self.points_mm, 1, axis=0)
+        return round_mm + float(np.hypot(*steps.T).sum())
+
+    def stretches(self) -> list[Array]:
+        """The way, counter-clockwise from the middle of a side: stretches (n, 2) mm between sharp corners."""
+        points = self.points_mm
+        points = points if len(points) < 3 or area_mm2(points) > 0 else points[::-1]
+        way = np.vstack(list(self._arcs(points))) if self.radius_mm > 0 else points
+        if len(points) > 1:
+            middle = 0.5 * (way[:1] + way[-1:])
+            way = np.vstack([middle, way, middle])
+        return [way] if self.radius_mm > 0 else [way[k : k + 2] for k in range(len(way) - 1)]
+
+    def _arcs(self, points: Array) -> Iterator[Array]:
+        """The arc (n, 2) mm about each point of the core, counter-clockwise."""
+        # 1. the heading of the side to each point, and how far the way turns there
+        steps = points - np.roll(points, 1, axis=0)
+        headings = np.arctan2(steps[:, 1], steps[:, 0])
+        turns = (np.roll(headings, -1) - headings) % math.tau if len(points) > 1 else [math.tau]
+        # 2. places on the arcs
+        for point, heading, turned in zip(points, headings, turns, strict=True):
+            share = np.linspace(0.0, 1.0, 2 + math.ceil(turned / ARC_RAD))
+            normal = heading - 0.5 * math.pi + share * turned
+            yield point + self.radius_mm * np.column_stack([np.cos(normal), np.sin(normal)])
+
+
+def explained(ink: RingInk) -> Core | None:
+    """The core that explains a ring's ink best with few figures; None for ink of which none can be begun."""
+    starts = [_drawn(ink, start) for start in _starts(ink)]
+    near = [start for start in starts if start.misfit < BEGIN * start.length_mm / ink.width_mm]
+    likely = sorted(near, key=lambda core: core.cost)[:MOST_SETTLED]
+    best: Core | None = None
+    for start in sorted(likely, key=lambda core: core.figures):
+        core = _settled(ink, start)
+        if core is not None and (best is None or core.cost < best.cost):
+            best = core
+        if best is not None and best.misfit < SURE * best.length_mm / ink.width_mm:
+            break
+    return best
+
+
+def _drawn(ink: RingInk, core: Core) -> Core:
+    """A core with its misfit."""
+    drawn = np.empty(len(ink.places_mm))
+    _ink(ink.places_mm, core.points_mm, core.radius_mm, core.half_mm, ink.softness_mm, drawn)
+    return core._replace(misfit=ink.misfit(drawn))
+
+
+def _settled(ink: RingInk, start: Core) -> Core | None:
+    """A core moved to where the pen leaves the ink that is there; None if the pen becomes another."""
+    from scipy.optimize import least_squares
+
+    count, is_sharp = len(start.points_mm), start.radius_mm == 0
+    drawn = np.empty(len(ink.places_mm))
+
+    def core_of(figures: Array) -> Core:
+        radius_mm = 0.0 if is_sharp else abs(float(figures[2 * count]))
+        return Core(figures[: 2 * count].reshape(-1, 2), radius_mm, float(figures[-1]))
+
+    def wrong(figures: Array) -> Array:
+        points, radius_mm, half_mm, _ = core_of(figures)
+        _ink(ink.places_mm, points, radius_mm, half_mm, ink.softness_mm, drawn)
+        return drawn - ink.darkness
+
+    figures = np.r_[start.points_mm.ravel(), [] if is_sharp else start.radius_mm, start.half_mm]
+    fit = least_squares(
+        wrong, figures, method="lm", diff_step=1e-4, max_nfev=STEPS * len(figures)
+    )
+    core = core_of(fit.x)
+    is_pen = 0.5 * ink.half_mm < core.half_mm < 2 * ink.half_mm
+    return _drawn(ink, core) if is_pen else None
+
+
+def _starts(ink: RingInk) -> Iterator[Core]:
+    """Cores to begin with, by the outline of the ink."""
+    dark = ink.places_mm[ink.darkness > 0.5]
+    if len(dark) < max(SHARP):
+        return
+    middle = dark.mean(axis=0)
+    hull = cv2.convexHull((dark - middle).astype(np.float32))[:, 0].astype(float)
+    for points in ROUNDED[:2]:
+        core = _slot(hull, points, ink.half_mm)
+        yield core._replace(points_mm=core.points_mm + middle)
+    for points in SHARP:
+        polygon = _within(_reduced(hull, points), ink.half_mm)
+        yield Core(middle + polygon, 0.0, ink.half_mm)
+        if points in ROUNDED:
+            radius_mm = ROUNDING * float(np.hypot(*polygon.T).min())
+            yield Core(middle + CORE * polygon, radius_mm, ink.half_mm)
+
+
+def _slot(hull: Array, points: int, half_mm: float) -> Core:
+    """A circle or a slot that is as long and as wide as the ink, whose hull (n, 2) is given."""
+    corners = cv2.boxPoints(cv2.minAreaRect(hull.astype(np.float32))).astype(float)
+    middle, sides = corners.mean(axis=0), np.diff(corners[:3], axis=0)
+    across_mm, along_mm = np.sort(np.hypot(*sides.T)) - 2 * half_mm
+    if points == 1:
+        return Core(middle[None], 0.25 * (along_mm + across_mm), half_mm)
+    along = sides[int(np.argmax(np.hypot(*sides.T)))]
+    reach_mm = max(0.5 * (along_mm - across_mm), 0.1 * half_mm)
+    reach = reach_mm * along / float(np.hypot(*along))
+    return Core(
+        np.array([middle - reach, middle + reach]), 0.5 * max(across_mm, half_mm), half_mm
+    )
+
+
+def _reduced(hull: Array, corners: int) -> Array:
+    """A convex polygon with so many corners: of those of a hull the one is left out that matters least."""
+    while len(hull) > corners:
+        before, after = np.roll(hull, 1, axis=0) - hull, np.roll(hull, -1, axis=0) - hull
+        matters = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+        hull = np.delete(hull, int(np.argmin(matters)), axis=0)
+    return hull
+
+
+def _within(polygon: Array, half_mm: float) -> Array:
+    """A convex polygon (n, 2) with its sides half a width further in."""
+    polygon = polygon if area_mm2(polygon) > 0 else polygon[::-1]
+    ahead = np.roll(polygon, -1, axis=0) - polygon
+    inward = np.column_stack([-ahead[:, 1], ahead[:, 0]]) / np.hypot(*ahead.T)[:, None]
+    before = np.roll(inward, 1, axis=0)
+    spread = np.maximum(1 + np.sum(inward * before, axis=1), SHARPEST)
+    return np.asarray(polygon + half_mm * (inward + before) / spread[:, None])
+
+
+@njit(cache=True)
+def _ink(places, points, radius_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
+    """Darkness (n,) that a pen leaves at places (n, 2) along the way at a radius from points (m, 2)."""
+    for k in range(len(places)):
+        away_mm = abs(_from_core(places[k, 0], places[k, 1], points) - radius_mm)
+        out[k] = pen.ink_at(away_mm, half_mm, softness_mm)
+
+
+@njit(cache=True)
+def _from_core(x, y, points):  # type: ignore[no-untyped-def]
+    """Distance of a place from a point, a stretch or a polygon (m, 2); within a polygon it is negative."""
+    count, inside, best = len(points), False, math.inf
+    for i in range(count):
+        j = (i + 1) % count
+        vx, vy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+        wx, wy = x - points[i, 0], y - points[i, 1]
+        t = min(max((wx * vx + wy * vy) / (vx * vx + vy * vy + 1e-18), 0.0), 1.0)
+        best = min(best, math.hypot(wx - t * vx, wy - t * vy))
+        if (points[i, 1] > y) != (points[j, 1] > y) and x < points[i, 0] + wy * vx / vy:
+            inside = not inside
+    return -best if inside else best
