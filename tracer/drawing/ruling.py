@@ -100,9 +100,9 @@ def families(darkness: Kept, pitch_mm: float) -> list[Family]:
             return []
         size = darkness.shape[1] // by, darkness.shape[0] // by
         small = np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32)
-    if not _is_all_over(small):
-        return []
     ways = [is_upright for is_upright in (True, False) if _may_reach_edges(small, is_upright)]
+    if not ways or not _is_all_over(small):
+        return []
     found = [_family(small, pitch_mm * by, is_upright) for is_upright in ways]
     return [one.enlarged(by) for one in found if one is not None]
 
