@@ -224,7 +224,7 @@ def released(rows: Array) -> None:
     mapped = _map_of(rows)
     if mapped is None or not hasattr(mapped, "madvise"):
         return
-    begin = np.frombuffer(mapped, np.uint8).ctypes.data
+    begin, _ = np.frombuffer(mapped, np.uint8).__array_interface__["data"]
     low, high = np.lib.array_utils.byte_bounds(rows)
     page = mmap.PAGESIZE
     first = (low - begin) // page * page
