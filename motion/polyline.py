@@ -64,7 +64,17 @@ def lengths_by_blocks(line_mm: Array) -> Iterator[tuple[int, Array, Array]]:
 
 def length_mm(line_mm: Array) -> float:
     """Length of a polyline, mm."""
-    return float(steps_mm(line_mm).sum())
+    return float(_length(np.ascontiguousarray(line_mm, float)))
+
+
+@njit(cache=True, _nrt=False)
+def _length(line_mm):  # type: ignore[no-untyped-def]
+    """The same for the compiler: a sum of plain roots, in a quarter of the time of an array of hypot."""
+    length_mm = 0.0
+    for k in range(1, len(line_mm)):
+        dx, dy = line_mm[k, 0] - line_mm[k - 1, 0], line_mm[k, 1] - line_mm[k - 1, 1]
+        length_mm += math.sqrt(dx * dx + dy * dy)
+    return length_mm
 
 
 def area_mm2(line_mm: Array) -> float:

@@ -204,7 +204,8 @@ class _Piece:
     def _nodes(self, first: int, end: int) -> tuple[Array, Array]:
         """The numbers of some nodes among the positions, and their places, (n, 2) mm."""
         low = math.floor(self.ends[0])
-        numbers = np.clip(np.arange(low + first, low + end, dtype=float), *self.ends)
+        numbers = np.arange(low + first, low + end, dtype=float)
+        numbers[[0, -1]] = np.clip(numbers[[0, -1]], *self.ends)
         low = math.floor(numbers[0])
         near = self.xy_mm[low : math.ceil(numbers[-1]) + 1]
         at = numbers - low
