@@ -42,6 +42,8 @@ CHUNK = 6000  # samples that the kernel follows before it reports: a second at t
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 HEARD = 0.1  # of what the sweep was set off; grain takes away less than the rest
 _STANDS = "x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "heading_rad"
+_NO_INK = dict.fromkeys(("trusted_mm", "guard_left", "guard_right"), 0.0)
+_ON_CLEAN_LINE = _NO_INK | dict.fromkeys(("guard_ahead", "ink", "swept_ink"), 1.0)
 SPARE = 1000  # samples beside those that a course takes at the slowest
 
 
@@ -268,26 +270,14 @@ class Carriage:
         self._log.add(self.count, self._leads)
         self._cell_from_mm = self.travel_mm + self.tuning.lead_mm - self.tuning.point_mm
         felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < self.tuning.lead_mm, :2]
-        point_x_mm, point_y_mm = leg.at(self.tuning.point_mm)
-        speed_mm_s, bend_per_mm = field_of(self.state, "speed_mm_s"), float(leg.bend_per_mm)
-        set_fields(
-            self.state,
-            heading_rad=leg.heading_rad,
-            bend_per_mm=bend_per_mm,
-            turn_rad_s=speed_mm_s * bend_per_mm,
-            lead_mm=self.tuning.lead_mm,
-            middle_mm=mount.middle_on(leg, felt, self.tuning.lead_mm),
-            point_x_mm=point_x_mm,
-            point_y_mm=point_y_mm,
-            trusted_mm=0.0,
-            guard_left=0.0,
-            guard_ahead=1.0,
-            guard_right=0.0,
-            ink=1.0,
-            swept_ink=1.0,
-        )
-        mount.begin_sweep(self.state)
-        put_on_drum(self.state, felt)
+        state, lead_mm, bend_per_mm = self.state, self.tuning.lead_mm, float(leg.bend_per_mm)
+        turn_rad_s = field_of(state, "speed_mm_s") * bend_per_mm
+        set_fields(state, heading_rad=leg.heading_rad, turn_rad_s=turn_rad_s)
+        set_fields(state, lead_mm=lead_mm, middle_mm=mount.middle_on(leg, felt, lead_mm))
+        x, y = leg.at(self.tuning.point_mm)
+        set_fields(state, point_x_mm=x, point_y_mm=y, bend_per_mm=bend_per_mm, **_ON_CLEAN_LINE)
+        mount.begin_sweep(state)
+        put_on_drum(state, felt)
 
     def retune(self, view: View) -> None:
         """Tune the moving head to the line as it is seen now."""
