@@ -70,7 +70,7 @@ def _walked(block, step_mm, number, at):  # type: ignore[no-untyped-def]
     for k in range(len(block) - 1):
         x, y = block[k, 0], block[k, 1]
         dx, dy = block[k + 1, 0] - x, block[k + 1, 1] - y
-        next_mm = come_mm + math.sqrt(dx * dx + dy * dy)
+        next_mm = come_mm + math.hypot(dx, dy)
         if next_mm == come_mm:
             continue
         long_mm = next_mm - come_mm
