@@ -92,6 +92,4 @@ def standing(
 
 def at_height(xy_mm: Array, z_mm: float | Array) -> Array:
     """X and Y move while Z stands, or moves with them, (n, 3) mm."""
-    positions_mm = np.empty((len(xy_mm), 3))
-    positions_mm[:, :2], positions_mm[:, 2] = xy_mm, z_mm
-    return positions_mm
+    return np.column_stack([xy_mm, np.broadcast_to(z_mm, len(xy_mm))])
