@@ -41,15 +41,18 @@ class WhoLed:
     @classmethod
     def along(cls, trace: Trace) -> WhoLed | None:
         """Who led along the lines that the head followed; None if it went nowhere."""
+        from morfax.tracer.head.leaders import share_of_cell
+
         lines = [line for line in trace.lines if len(line.xy_mm) > 1 and line.led.firsts]
         if not lines:
             return None
-        lengths_mm = np.sum([line.led.lengths_mm(line.xy_mm) for line in lines], axis=0)
+        each_mm = [line.led.lengths_mm(line.xy_mm) for line in lines]
+        lengths_mm = np.sum(each_mm, axis=0)
         if not lengths_mm.sum() > 0:
             return None
         runs = [run for line in lines for run in _runs(line)]
         of_lines = {
-            line.number: share for line in lines if (share := line.cell_share) is not None
+            line.number: share_of_cell(mm) for line, mm in zip(lines, each_mm, strict=True)
         }
         return cls(tuple(lengths_mm.tolist()), tuple(runs), of_lines)
 

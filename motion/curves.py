@@ -10,6 +10,7 @@ Source: the cubic between two places and slopes is Hermite's; our own use.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -32,6 +33,39 @@ def hermite(start: Array, heading: float, end: Array, end_heading: float) -> Arr
     out = np.empty((max(2, math.ceil(chord / SPACING_MM) + 1), 2))
     _cubic(ends, (*leaving, *arriving), out)
     return out
+
+
+def through(nodes: Sequence[tuple[Array, float]]) -> Array:
+    """The cubics from each of some places and headings to the next, (n, 2) mm."""
+    poses = np.array([(place[0], place[1], heading) for place, heading in nodes], float)
+    out = np.empty((_places_through(poses), 2))
+    _cubics(poses, out)
+    return out
+
+
+@njit(cache=True, _nrt=False)
+def _places_through(poses):  # type: ignore[no-untyped-def]
+    """How many places the cubics through some poses (n, 3) have."""
+    count = 0
+    for k in range(len(poses) - 1):
+        chord = math.hypot(poses[k + 1, 0] - poses[k, 0], poses[k + 1, 1] - poses[k, 1])
+        count += max(2, math.ceil(chord / SPACING_MM) + 1)
+    return count
+
+
+@njit(cache=True, _nrt=False)
+def _cubics(poses, out):  # type: ignore[no-untyped-def]
+    """Fill `out` with the cubics through some poses, each as `hermite` has it."""
+    begin = 0
+    for k in range(len(poses) - 1):
+        x, y, heading = poses[k, 0], poses[k, 1], poses[k, 2]
+        end_x, end_y, end_heading = poses[k + 1, 0], poses[k + 1, 1], poses[k + 1, 2]
+        chord = math.hypot(end_x - x, end_y - y)
+        end = begin + max(2, math.ceil(chord / SPACING_MM) + 1)
+        leaving = chord * math.cos(heading), chord * math.sin(heading)
+        arriving = chord * math.cos(end_heading), chord * math.sin(end_heading)
+        _cubic((x, y, end_x, end_y), (*leaving, *arriving), out[begin:end])
+        begin = end
 
 
 @njit(cache=True, _nrt=False)

@@ -226,8 +226,12 @@ def released(rows: Array) -> None:
     mapped = _map_of(rows)
     if mapped is None or not hasattr(mapped, "madvise"):
         return
-    begin = np.frombuffer(mapped, np.uint8).ctypes.data
-    low, high = np.lib.array_utils.byte_bounds(rows)
+    begin, _ = np.frombuffer(mapped, np.uint8).__array_interface__["data"]
+    if rows.flags.c_contiguous:
+        low, _ = rows.__array_interface__["data"]
+        high = low + rows.nbytes
+    else:
+        low, high = np.lib.array_utils.byte_bounds(rows)
     page = mmap.PAGESIZE
     first = (low - begin) // page * page
     mapped.madvise(mmap.MADV_DONTNEED, first, min(high - begin, len(mapped)) - first)

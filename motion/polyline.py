@@ -155,9 +155,32 @@ def begun_at(line_mm: Array, at: float) -> Array:
 
 
 def at_lengths(line_mm: Array, at_mm: Array) -> Array:
-    """Where a polyline is at some lengths from its start, (n, 2) mm."""
-    s = lengths_mm(line_mm)
-    return np.column_stack([np.interp(at_mm, s, column) for column in line_mm.T])
+    """Where a polyline is at some lengths from its start, (n, 2) mm; raises ValueError if it has no place."""
+    if not len(line_mm):
+        raise ValueError("a polyline without places is nowhere; it must have one at least")
+    line_mm, at_mm = np.ascontiguousarray(line_mm, float), np.ascontiguousarray(at_mm, float)
+    places = np.empty((len(at_mm), 2))
+    _at_lengths(line_mm, lengths_mm(line_mm), at_mm, places)
+    return places
+
+
+@njit(cache=True, _nrt=False)
+def _at_lengths(line_mm, lengths, at_mm, places):  # type: ignore[no-untyped-def]
+    """Fill in the places as `np.interp` would, to the last bit, and walk along the line as the lengths do."""
+    last, i = len(lengths) - 1, 0
+    for k in range(len(at_mm)):
+        at = min(max(at_mm[k], lengths[0]), lengths[last])
+        # the last of the places that are no further on: a head that stands has several at one length
+        if at < lengths[i]:
+            i = 0
+        while i < last and lengths[i + 1] <= at:
+            i += 1
+        for column in range(2):
+            places[k, column] = line_mm[i, column]
+            if at > lengths[i]:
+                step = line_mm[i + 1, column] - line_mm[i, column]
+                slope = step / (lengths[i + 1] - lengths[i])
+                places[k, column] += slope * (at - lengths[i])
 
 
 def evenly(line_mm: Array, apart_mm: float) -> Array:

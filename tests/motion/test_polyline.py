@@ -15,6 +15,7 @@ from morfax.motion.polyline import (
     APART_MM,
     WITHIN_MM,
     Nearest,
+    at_lengths,
     crossings,
     lengths_mm,
     nearest_mm,
@@ -167,3 +168,21 @@ def test_a_closed_line_may_begin_at_any_of_its_places(at: float, found: list[flo
     square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
     expected = polyline.at_places(square, np.array(found))
     assert polyline.begun_at(square, at) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_places_at_lengths_are_those_of_interpolation_to_the_last_bit(seed: int) -> None:
+    """Also where the line stands, before its start and beyond its end, and in any order."""
+    rng = np.random.default_rng(seed)
+    line = np.cumsum(rng.normal(0, 0.1, (rng.integers(1, 60), 2)), axis=0)
+    line[3:5] = line[min(3, len(line) - 1)]
+    come = lengths_mm(line)
+    at = np.r_[rng.uniform(-0.2, 1.2 * come[-1] + 0.1, 80), come]
+    for some in (at, np.sort(at)):
+        wanted = np.column_stack([np.interp(some, come, column) for column in line.T])
+        assert np.array_equal(at_lengths(line, some), wanted)
+
+
+def test_a_polyline_without_places_has_none_at_a_length() -> None:
+    with pytest.raises(ValueError, match="one at least"):
+        at_lengths(np.empty((0, 2)), np.zeros(1))

@@ -60,6 +60,26 @@ def longest_mm(drawing: Drawing, width_mm: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
+class _Doubtful:
+    """A run with the turns that it took, and its doubts that have not been looked into."""
+
+    run: Followed
+    turns: tuple[int, ...]
+    left: list[tuple[int, int]]
+
+    @classmethod
+    def of(cls, run: Followed, turns: tuple[int, ...] = ()) -> _Doubtful:
+        """A run with all its doubts at junctions that are not among its turns; none if it did not close."""
+        doubts = run.doubts if run.ending == "closed" else ()
+        return cls(run, turns, [doubt for doubt in doubts if doubt[0] not in turns])
+
+    def next_turns(self) -> tuple[int, ...]:
+        """The turns of a run that takes another way at the next doubt, which is looked into now."""
+        number, rank = self.left.pop(0)
+        return (*self.turns, *(number,) * rank)
+
+
+@dataclass(frozen=True, slots=True)
 class Attempts:
     """How a line of a drawing may be followed: the head's settings, the operator's turns, the longest run."""
 
@@ -196,20 +216,19 @@ class Attempts:
     def _with_doubts(self, stance: Stance, run: Followed) -> Followed:
         """A closed run with the ink that it left out where another way would have fitted as well: the longest
         of at most `DOUBTS` more runs. It is not looked for beyond one that leaves no such ink out.
+
+        Each leaves the longest run so far: a junction's doubts are settled before those further on.
         """
-        best, tried = run, 0
-        open_runs: list[tuple[Followed, tuple[int, ...]]] = [(run, ())]
-        while open_runs and best.doubts:
-            longest = int(np.argmax([some.travel_mm for some, _ in open_runs]))
-            run, turns = open_runs.pop(longest)
-            for number, rank in run.doubts if run.ending == "closed" else ():
-                if number in turns or tried == DOUBTS or not best.doubts:
-                    continue
-                more = (*turns, *(number,) * rank)
-                other, tried = self.run(stance, more), tried + 1
-                open_runs.append((other, more))
-                if other.ending == "closed" and other.travel_mm > best.travel_mm:
-                    best = other
+        best, runs = run, [_Doubtful.of(run)]
+        for _ in range(DOUBTS):
+            in_doubt = [some for some in runs if some.left]
+            if not in_doubt or not best.doubts:
+                break
+            turns = max(in_doubt, key=lambda some: some.run.travel_mm).next_turns()
+            other = self.run(stance, turns)
+            runs.append(_Doubtful.of(other, turns))
+            if other.ending == "closed" and other.travel_mm > best.travel_mm:
+                best = other
         return best
 
     def _with_other_turns(self, stance: Stance, run: Followed) -> Followed:

@@ -32,9 +32,8 @@ def hides_corner(view: View, felt: FeltCorner) -> bool:
     """Whether a line that was felt as a round turns more sharply than that."""
     if view.on_edge or rough_mm(felt.seen) > ROUGH_PX * view.parted * view.pitch_mm:
         return False
-    from morfax.tracer.tangles.likeness import (
-        Patch,
-    )  # most lines have nothing to be held against the ink
+    # most lines have nothing to be held against the ink
+    from morfax.tracer.tangles.likeness import Patch, Pen
 
     incoming, outgoing = felt.legs(view)
     # 1. what a pen along the felt line leaves unexplained at the corner, and beside it
@@ -42,9 +41,8 @@ def hides_corner(view: View, felt: FeltCorner) -> bool:
     along = np.linspace(0.0, 3 * reach_mm, ALONG)
     places = np.vstack([incoming.at(-along[::-1]), felt.rounded, outgoing.at(along)])
     around = felt.place_mm, incoming.at(-reach_mm), outgoing.at(reach_mm)
-    near, *usual = (
-        Patch.about(view, place, reach_mm, incoming).misfit(places) for place in around
-    )
+    pen = Pen.of(view, incoming)
+    near, *usual = (Patch.about(view, at, reach_mm, pen).misfit(places) for at in around)
     # 2. less will do where the legs meet at a clear angle
     corner = Corner.of(incoming, outgoing)
     if corner is None or corner.nearest_mm <= view.step_mm or corner.deflection_rad <= SLIGHT:

@@ -25,7 +25,7 @@ from morfax.tracer.corrections.on_sheet import StopAt
 from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.following.roughness import roughness_mm
 from morfax.tracer.following.told_stops import with_told
-from morfax.tracer.head.leaders import CELL, Led
+from morfax.tracer.head.leaders import Led, share_of_cell
 from morfax.tracer.junctions.gaps import Break, breaks
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark, marks_along
@@ -131,8 +131,7 @@ class Line:
         """The share of its way that the swinging cell led the head; None if nothing says who led."""
         if not self.led.firsts:
             return None
-        lengths_mm = self.led.lengths_mm(self.xy_mm)
-        return float(lengths_mm[CELL] / max(lengths_mm.sum(), 1e-9))
+        return share_of_cell(self.led.lengths_mm(self.xy_mm))
 
     @property
     def start_mm(self) -> tuple[float, float]:

@@ -26,7 +26,15 @@ from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tune, tuned_along
 from morfax.tracer.head.slow_cell import Stretch
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import Home, Mark, at_rest, put_on_drum, two_of
+from morfax.tracer.head.state import (
+    Home,
+    Mark,
+    at_rest,
+    field_of,
+    put_on_drum,
+    set_fields,
+    two_of,
+)
 from morfax.tracer.head.trail import Marks, Trail
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
@@ -34,6 +42,9 @@ from morfax.tracer.sensing.view import View
 CHUNK = 6000  # samples that the kernel follows before it reports: a second at the motion rate
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 HEARD = 0.1  # of what the sweep was set off; grain takes away less than the rest
+_STANDS = "x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "heading_rad"
+_NO_INK = dict.fromkeys(("trusted_mm", "guard_left", "guard_right"), 0.0)
+_ON_CLEAN_LINE = _NO_INK | dict.fromkeys(("guard_ahead", "ink", "swept_ink"), 1.0)
 SPARE = 1000  # samples beside those that a course takes at the slowest
 
 
@@ -64,12 +75,12 @@ class Carriage:
     @property
     def travel_mm(self) -> float:
         """How far the head has come, mm."""
-        return float(self.state.travel_mm)
+        return field_of(self.state, "travel_mm")
 
     @property
     def heading_rad(self) -> float:
         """The head's heading, rad."""
-        return float(self.state.heading_rad)
+        return field_of(self.state, "heading_rad")
 
     @property
     def ink_beside(self) -> bool:
@@ -140,9 +151,9 @@ class Carriage:
 
     def stands(self) -> tuple[Array, float]:
         """Where the drives' demand stands, and the heading."""
-        owed, s = screws.owed_s(self.tuning.drive_gain, self.tuning.period_s), self.state
-        place = np.array([s.x_mm + owed * s.vx_mm_s, s.y_mm + owed * s.vy_mm_s])
-        return place, self.heading_rad
+        owed = screws.owed_s(self.tuning.drive_gain, self.tuning.period_s)
+        x, y, vx, vy, heading_rad = (field_of(self.state, name) for name in _STANDS)
+        return np.array([x + owed * vx, y + owed * vy]), heading_rad
 
     def ahead(self, place: Array) -> float:
         """How far ahead of the axis a place is, mm along the heading."""
@@ -260,17 +271,14 @@ class Carriage:
         self._log.add(self.count, self._leads)
         self._cell_from_mm = self.travel_mm + self.tuning.lead_mm - self.tuning.point_mm
         felt = leg.seen[np.hypot(*(leg.seen[:, :2] - leg.end_mm).T) < self.tuning.lead_mm, :2]
-        s = self.state
-        s.heading_rad, s.bend_per_mm = leg.heading_rad, leg.bend_per_mm
-        s.turn_rad_s = s.speed_mm_s * leg.bend_per_mm
-        s.lead_mm = self.tuning.lead_mm
-        s.middle_mm = mount.middle_on(leg, felt, s.lead_mm)
-        s.point_x_mm, s.point_y_mm = leg.at(self.tuning.point_mm)
-        s.trusted_mm = 0.0
-        s.guard_left = s.guard_right = 0.0
-        s.guard_ahead = s.ink = s.swept_ink = 1.0
-        mount.begin_sweep(s)
-        put_on_drum(s, felt)
+        state, lead_mm, bend_per_mm = self.state, self.tuning.lead_mm, float(leg.bend_per_mm)
+        turn_rad_s = field_of(state, "speed_mm_s") * bend_per_mm
+        set_fields(state, heading_rad=leg.heading_rad, turn_rad_s=turn_rad_s)
+        set_fields(state, lead_mm=lead_mm, middle_mm=mount.middle_on(leg, felt, lead_mm))
+        x, y = leg.at(self.tuning.point_mm)
+        set_fields(state, point_x_mm=x, point_y_mm=y, bend_per_mm=bend_per_mm, **_ON_CLEAN_LINE)
+        mount.begin_sweep(state)
+        put_on_drum(state, felt)
 
     def retune(self, view: View) -> None:
         """Tune the moving head to the line as it is seen now."""

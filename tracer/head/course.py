@@ -17,10 +17,10 @@ Source: our own, from first principles (the patent's head swivels on its axis; h
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
+from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.curves import SPACING_MM, hermite
 from morfax.tracer.sensing.leg import Leg, centre_at
@@ -80,7 +80,7 @@ def nodes_along(
 
 def through_nodes(nodes: list[tuple[Array, float]]) -> Array:
     """Cubics through places and headings, (n, 2) mm."""
-    return np.vstack([hermite(*a, *b) for a, b in pairwise(nodes)])
+    return curves.through(nodes)
 
 
 def to_end(stands: tuple[Array, float], leg: Leg, end_mm: float) -> Array:

@@ -72,13 +72,18 @@ class Led:
                 yield leader, positions[max(0, first - 1) : end]
 
 
+def share_of_cell(lengths_mm: Array) -> float:
+    """The share that the swinging cell led, of how far each of the `LEADERS` did."""
+    return float(lengths_mm[CELL] / max(lengths_mm.sum(), 1e-9))
+
+
 @njit(cache=True, _nrt=False)
 def _add_lengths(positions, leaders, led_mm):  # type: ignore[no-untyped-def]
     """Add to what each leader led, mm: the steps between positions (n, 2) mm to the leaders at their ends."""
     for k in range(len(leaders)):
         dx = positions[k + 1, 0] - positions[k, 0]
         dy = positions[k + 1, 1] - positions[k, 1]
-        led_mm[leaders[k]] += math.hypot(dx, dy)
+        led_mm[leaders[k]] += math.sqrt(dx * dx + dy * dy)
 
 
 @dataclass(slots=True)

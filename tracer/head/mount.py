@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.head.state import set_fields
 from morfax.tracer.sensing.leg import Leg
 
 # of the lead: what was felt of a leg this far ahead tells where the cell will see it
@@ -25,8 +26,7 @@ FELT_ENOUGH = 0.5
 
 def begin_sweep(state: Any) -> None:
     """Begin a sweep anew: the detector is empty."""
-    state.sweep_periods = 0
-    state.first_sum = state.mean_sum = 0.0
+    set_fields(state, sweep_periods=0, first_sum=0.0, mean_sum=0.0)
 
 
 def set_to(state: Any, lead_mm: float) -> None:

@@ -29,12 +29,13 @@ def owed_s(gain, period_s):  # type: ignore[no-untyped-def]
 @njit(cache=True, inline="always")
 def move(state, t, demand_x_mm_s, demand_y_mm_s):  # type: ignore[no-untyped-def]
     """One period of the two drives: their screws turn, and the head moves with them."""
-    x, y = state.x_mm, state.y_mm
     state.vx_mm_s = drive_step(state.vx_mm_s, demand_x_mm_s, t.drive_gain, t.drive_change_mm_s)
     state.vy_mm_s = drive_step(state.vy_mm_s, demand_y_mm_s, t.drive_gain, t.drive_change_mm_s)
-    state.x_mm += state.vx_mm_s * t.period_s
-    state.y_mm += state.vy_mm_s * t.period_s
-    state.travel_mm += math.hypot(state.x_mm - x, state.y_mm - y)
+    dx, dy = state.vx_mm_s * t.period_s, state.vy_mm_s * t.period_s
+    state.x_mm += dx
+    state.y_mm += dy
+    # hypot, with its care for the largest and the smallest numbers, takes as long as a look of a cell
+    state.travel_mm += math.sqrt(dx * dx + dy * dy)
 
 
 @njit(cache=True, _nrt=False)

@@ -169,7 +169,7 @@ def _through(
     cells: Cells, begun: Any, course: list[Piece], home: Home, longest_mm: float = math.inf
 ) -> Tried:
     """Follow through the pieces of a way one after the other, for so many mm at the most."""
-    state, why, parts, end_mm = begun, MORE, [np.empty((0, 2))], 0.0
+    state, why, parts, end_mm = begun, MORE, list[Array](), 0.0
     for long_mm, t in course:
         end_mm = min(end_mm + long_mm, longest_mm)
         left_mm = end_mm - (state.travel_mm - begun.travel_mm)
@@ -180,7 +180,12 @@ def _through(
         tried = _for(cells, state, t, home, left_mm)
         state, why = tried.state, tried.why
         parts.append(tried.positions)
-    return Tried(np.vstack(parts), state, why)
+    return Tried(_joined(parts), state, why)
+
+
+def _joined(parts: list[Array]) -> Array:
+    """Positions (n, 2) one after the other; one part as it is."""
+    return parts[0] if len(parts) == 1 else np.vstack([np.empty((0, 2)), *parts])
 
 
 def _drawn_in(state: Any, t: Tuning, _: Array | None = None) -> Any:
@@ -208,13 +213,13 @@ def _for(cells: Cells, begun: Any, t: Tuning, home: Home, length_mm: float) -> T
     """Follow for a length, mm, past what the guard cells say."""
     state = begun.copy()
     end_mm = state.trusted_mm = state.travel_mm + length_mm
-    parts, why = [np.empty((0, 2))], MORE
+    parts, why = list[Array](), MORE
     while why == MORE and state.travel_mm < end_mm:
         left_s = (end_mm - state.travel_mm) / max(state.speed_mm_s, t.speed_mm_s)
         out = np.empty((max(1, math.ceil(left_s / t.period_s)), 2))
         n, why = kernel.follow(cells, state, t, home, out)
         parts.append(out[:n])
-    return Tried(np.vstack(parts), state, int(why))
+    return Tried(_joined(parts), state, int(why))
 
 
 def heads_along(tried: Tried, way: Array) -> bool:

@@ -124,6 +124,20 @@ def at_rest(place_mm: Array, lead_mm: float) -> Any:
     return state
 
 
+def field_of(state: Any, name: str) -> float:
+    """A field of the state, as it is read thousands of times: a record asks its attributes first."""
+    return float(_item(state, name))
+
+
+def set_fields(state: Any, **values: float) -> None:
+    """Set some fields of the state."""
+    for name, value in values.items():
+        _set_item(state, name, value)
+
+
+_item, _set_item = np.void.__getitem__, np.void.__setitem__
+
+
 def put_on_drum(state: Any, places_mm: Array) -> None:
     """Fill the drum with places of the line (n, 2) mm, in their order; with the last of them, if it remembers
     fewer.

@@ -154,7 +154,8 @@ def mark_along(marks, positions):  # type: ignore[no-untyped-def]
     x, y = places[count - 1, 0], places[count - 1, 1]
     come_mm = steps = 0.0
     for k in range(len(positions)):
-        come_mm += math.hypot(positions[k, 0] - x, positions[k, 1] - y)
+        dx, dy = positions[k, 0] - x, positions[k, 1] - y
+        come_mm += math.sqrt(dx * dx + dy * dy)
         x, y = positions[k, 0], positions[k, 1]
         now = math.floor(come_mm / marks.step_mm)
         if now > steps:

@@ -251,12 +251,12 @@ class InkHead:
     def _station(self, run: Run, at: int) -> int:
         """The station of a run, from one on, at which the head stands."""
         place, _ = self.carriage.stands()
-        away = np.hypot(*(run.places_mm[at:] - place).T)
         # the nearest of those to which it can have come: a small loop ends where it begins
-        come_mm = max(self.carriage.travel_mm - self.from_mm, ROUND * away[0]) + SLACK_MM
+        away_mm = float(np.hypot(*(run.places_mm[at] - place)))
+        come_mm = max(self.carriage.travel_mm - self.from_mm, ROUND * away_mm) + SLACK_MM
         self.from_mm = self.carriage.travel_mm
-        near = int(np.argmin(away[: 1 + round(come_mm / run.view.step_mm)]))
-        return at + near
+        near = run.places_mm[at : at + 1 + round(come_mm / run.view.step_mm)]
+        return at + int(np.argmin(np.hypot(*(near - place).T)))
 
 
 def _stands_at(run: Run, at: int) -> tuple[Array, float]:

@@ -38,6 +38,9 @@ from morfax.tracer.sensing.view import View
 # Chosen by trial on the test drawings.
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 FAINTER = 0.5  # of the level: a line may become lighter at once by half
+# widths: no look straight ahead through larger cells reaches further. They see an edge within 3 widths to
+# either side, so a line at most 6 wide, and its legs and edges within 8 of its own widths
+LARGER_REACH = 50.0
 ACROSS = np.linspace(-0.5, 0.5, 7)  # of the width: where a faint line's ink is looked for
 SPECK_PX = 4.5  # between stations of a line that is clean but for a speck
 FAR_WIDTHS = 4.0  # ink beside the line for longer may be the line's own way back
@@ -119,7 +122,8 @@ class Planner:
         if outgoing is None and not others:
             outgoing = straight_on(view.at_level(FAINTER * view.level), incoming, gap_mm)
         if outgoing is None and not others:
-            larger = view.through_larger(incoming.seen, incoming.heading_rad)
+            reach_mm = 2 * gap_mm + LARGER_REACH * view.width_mm + view.leg_mm
+            larger = view.through_larger(incoming.seen, incoming.heading_rad, reach_mm)
             outgoing = straight_on(larger, incoming, gap_mm)
             if outgoing is not None and self._blank_mm(incoming, outgoing) > gap_mm:
                 return None

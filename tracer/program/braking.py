@@ -130,6 +130,58 @@ def _placed(uniform, clock, places, speeds, out):  # type: ignore[no-untyped-def
         out[k, 0], out[k, 1] = places[i, 0] + way * dx, places[i, 1] + way * dy
 
 
+@njit(cache=True, _nrt=False)
+def _longest_mm2(places):  # type: ignore[no-untyped-def]
+    """The square of the longest step between places (n, 2) mm."""
+    longest_mm2 = 0.0
+    for k in range(1, len(places)):
+        dx, dy = places[k, 0] - places[k - 1, 0], places[k, 1] - places[k - 1, 1]
+        longest_mm2 = max(longest_mm2, dx * dx + dy * dy)
+    return longest_mm2
+
+
+@njit(cache=True, _nrt=False)
+def _paced(nodes, rates, begun, arrives, out):  # type: ignore[no-untyped-def]
+    """Fill in the speeds at nodes, mm/s, the time of the step to each, and when each is passed, s; give the
+    square of the speed that is reached from rest at the last, mm2/s2.
+
+    `nodes`: their numbers among the positions, and their places (n, 2) mm, with one node before them if there
+    is one, and one after. `begun`: whether there is one before; the same square and the time at the first.
+    `arrives`: squares of speeds from which the axis comes to rest.
+    """
+    (numbers, places), (gain_mm_s2, rate_hz), (speeds, took_s, times) = nodes, rates, out
+    first, reached, time_s = begun
+    last_mm_s = last_mm = 0.0
+    for k in range(len(speeds)):
+        # 1. the former speed at the node: the mean of those of the steps to it and from it
+        node, was, to_mm_s, to_mm = first + k, 0.0, last_mm_s, last_mm
+        if k == 0 and first > 0:
+            to_mm_s, _ = _step(numbers, places, node - 1, rate_hz)
+        if node + 1 < len(numbers):
+            last_mm_s, last_mm = _step(numbers, places, node, rate_hz)
+            was = 0.5 * (last_mm_s + to_mm_s) if node > 0 else last_mm_s
+        # 2. no faster than the axis has come from rest, or can come to rest
+        took_s[k] = 0.0
+        if k > 0:
+            reached += gain_mm_s2 * to_mm
+        speeds[k] = min(was, math.sqrt(min(reached, arrives[k])))
+        # 3. the time of the step to it
+        if k > 0:
+            mean_mm_s = max(0.5 * (speeds[k] + speeds[k - 1]), SLOWEST_MM_S)
+            took_s[k] = max((numbers[node] - numbers[node - 1]) / rate_hz, to_mm / mean_mm_s)
+            time_s += took_s[k]
+        times[k] = time_s
+    return reached
+
+
+@njit(cache=True, _nrt=False)
+def _step(numbers, places, k, rate_hz):  # type: ignore[no-untyped-def]
+    """The former speed on the step from a node to the next, mm/s, and its length, mm."""
+    dx, dy = places[k + 1, 0] - places[k, 0], places[k + 1, 1] - places[k, 1]
+    way_mm = math.hypot(dx, dy)
+    return way_mm / max((numbers[k + 1] - numbers[k]) / rate_hz, _NOTHING_S), way_mm
+
+
 @dataclass(frozen=True, slots=True)
 class _Piece:
     """A way (n, 2) mm from one of its positions to another (fractions included), whether the axis is at rest
@@ -152,7 +204,8 @@ class _Piece:
     def _nodes(self, first: int, end: int) -> tuple[Array, Array]:
         """The numbers of some nodes among the positions, and their places, (n, 2) mm."""
         low = math.floor(self.ends[0])
-        numbers = np.clip(np.arange(low + first, low + end, dtype=float), *self.ends)
+        numbers = np.arange(low + first, low + end, dtype=float)
+        numbers[[0, -1]] = np.clip(numbers[[0, -1]], *self.ends)
         low = math.floor(numbers[0])
         near = self.xy_mm[low : math.ceil(numbers[-1]) + 1]
         at = numbers - low
@@ -170,65 +223,36 @@ class _Piece:
 
     def timed(self) -> Array:
         """The way at a uniform rate, slower where the axis brakes: its ends exactly."""
-        out, bounds, start_s, leaves = LongArray(), self._bounds(), 0.0, self._leaves()
+        out, bounds, start_s = LongArray(), self._bounds(), 0.0
         out.add(self._nodes(0, 1)[1])
         if self.ends[0] == self.ends[1]:
             return out.whole()
-        arrives = self._arrives()
+        reached, arrives = 0.0 if self.rests[0] else math.inf, self._arrives()
         for first, last in bounds:
-            numbers, places, way_mm, was = self._was(first, last)
-            steps_s = np.diff(numbers) / self.rate_hz
             # 1. the speeds, and the time of each step, longer where the axis brakes
-            bound = np.minimum(leaves(way_mm), arrives(first, last))
-            speeds = np.minimum(was, np.sqrt(bound))
-            mean = np.maximum(0.5 * (speeds[1:] + speeds[:-1]), SLOWEST_MM_S)
-            took_s = np.maximum(steps_s, way_mm / mean)
-            times = np.cumsum(np.r_[start_s, took_s])
+            before, after = int(first > 0), int(last < self._count - 1)
+            numbers, places = self._nodes(first - before, last + 1 + after)
+            squares = arrives(first, last)
+            speeds, took_s, times = (np.empty(last + 1 - first) for _ in range(3))
+            rates, begun = (self.gain_mm_s2, self.rate_hz), (before, reached, start_s)
+            reached = _paced((numbers, places), rates, begun, squares, (speeds, took_s, times))
             # 2. the positions up to the last node; the next block has that one
             until = times[-1] * self.rate_hz
             uniform = np.arange(len(out), int(np.ceil(until - ROUNDED))) / self.rate_hz
             if last < self._count - 1:
                 uniform = uniform[uniform < times[-1]]
-            out.add(_at_times(uniform, times, places, took_s, speeds))
+            own = places[before : before + len(speeds)]
+            out.add(_at_times(uniform, times, own, took_s[1:], speeds))
             start_s = float(times[-1])
         if start_s > 0:
             out.add(self._nodes(self._count - 1, self._count)[1])
         return out.whole()
 
-    def _was(self, first: int, last: int) -> tuple[Array, Array, Array, Array]:
-        """Numbers and places of the nodes from one to another, the steps between them (mm), and the former
-        speeds there (mm/s).
-        """
-        before, after = int(first > 0), int(last < self._count - 1)
-        numbers, places = self._nodes(first - before, last + 1 + after)
-        steps_s = np.maximum(np.diff(numbers) / self.rate_hz, _NOTHING_S)
-        way_mm = steps_mm(places)
-        was = np.append(way_mm / steps_s, 0.0)
-        was[1:-1] = 0.5 * (was[1:-1] + was[:-2])
-        own = slice(before, len(was) - after)
-        between = slice(before, len(way_mm) - after)
-        return numbers[own], places[own], way_mm[between], was[own]
-
     def _fastest_mm2_s2(self) -> float:
         """No less than the square of the highest of the former speeds."""
-        fastest_mm2 = 0.0
-        for block in blocks(
-            self.xy_mm[math.floor(self.ends[0]) : math.ceil(self.ends[1]) + 1], 1
-        ):
-            x_mm, y_mm = np.diff(block, axis=0).T
-            fastest_mm2 = max(fastest_mm2, float((x_mm * x_mm + y_mm * y_mm).max(initial=0.0)))
-        return fastest_mm2 * self.rate_hz**2 * (1 + ROUNDED)
-
-    def _leaves(self) -> Callable[[Array], Array]:
-        """What gives the squares of speeds reached from rest, mm2/s2, for the steps of block after block."""
-        reached = np.array([0.0 if self.rests[0] else np.inf])
-
-        def along(way_mm: Array) -> Array:
-            nonlocal reached
-            reached = np.cumsum(np.r_[reached[-1], self.gain_mm_s2 * way_mm])
-            return reached
-
-        return along
+        own = self.xy_mm[math.floor(self.ends[0]) : math.ceil(self.ends[1]) + 1]
+        longest_mm2 = max(_longest_mm2(block) for block in blocks(own, 1))
+        return longest_mm2 * self.rate_hz**2 * (1 + ROUNDED)
 
     def _arrives(self) -> Callable[[int, int], Array]:
         """What gives the squares of speeds from which the axis comes to rest, mm2/s2, at a block's nodes."""

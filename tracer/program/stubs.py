@@ -60,6 +60,8 @@ def _found(way: Array, width_mm: float) -> Iterator[Stub]:
         back = np.hypot(*(way[2 * out :] - way[:feet]).T) < CLOSE * width_mm
         back[:near] = back[feet - near :] = False
         first = np.flatnonzero(back)
+        if not len(first):
+            continue
         before = _headings(way[first] - way[first - near])
         after = _headings(way[first + 2 * out + near] - way[first + 2 * out])
         turned = np.abs(np.angle(np.exp(1j * (after - before))))

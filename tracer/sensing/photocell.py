@@ -26,6 +26,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.compiled import keeps_kinds, njit
 from morfax.tracer.drawing.blocks import BLOCK_PX
 from morfax.tracer.drawing.contrast import FAINT
@@ -73,12 +74,19 @@ class Cells(_Seen):
             return aperture.window(self.tiles, top, bottom, left, right)
         return self.darkness[top:bottom, left:right]
 
-    def wider(self, spread_px: float) -> Cells:
-        """The same behind a further spot of a standard deviation."""
+    def wider(self, spread_px: float, place_mm: Array, reach_mm: float) -> Cells:
+        """The same behind a further spot of a standard deviation; paper beyond a reach from a place."""
         if self.tiles.rows:
             return self._replace(darkness=_nothing(), tiles=self.tiles.wider(spread_px))
-        soft = cv2.GaussianBlur(self.darkness, (0, 0), spread_px)
-        return self._replace(darkness=np.asarray(soft, np.float32))
+        reach_px, (x, y) = math.ceil(reach_mm / self.pitch_mm), place_mm / self.pitch_mm
+        row, column = len(self.darkness) - int(y), int(x)
+        window = (
+            max(0, row - reach_px),
+            max(0, column - reach_px),
+            row + reach_px,
+            column + reach_px,
+        )
+        return self._replace(darkness=_blurred(self.darkness, spread_px, window))
 
 
 def behind_aperture(

@@ -163,13 +163,15 @@ class View:
         cells = self.cells._replace(level=level)
         return replace(self, cells=cells, width_mm=width, usual_mm=usual)
 
-    def through_larger(self, stations: Array, heading: float) -> View:
+    def through_larger(self, stations: Array, heading: float, reach_mm: float) -> View:
         """The line through cells as large as it is wide, which average its grain.
 
-        Its width and its darkness are those that these cells see at some stations (n, 3) of it.
+        Its width and its darkness are those that these cells see at some stations (n, 3) of it. They see
+        paper beyond a reach from the last of them.
         """
         sigma_px = GRAIN * self.width_mm / self.pitch_mm
-        larger = replace(self, cells=self.cells.wider(sigma_px))
+        cells = self.cells.wider(sigma_px, stations[-1, :2], reach_mm)
+        larger = replace(self, cells=cells)
         places = stations[-GRAIN_STATIONS:, :2]
         darkness = median([larger.darkness_at(place) for place in places])
         larger = larger.at_level(GRAIN_LEVEL * darkness)

@@ -8,6 +8,7 @@ Source: our own (see `pen`).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,18 @@ from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.sketch import NOWHERE_MM, softness_of
 from morfax.tracer.tangles.tangle import DARKEST
+
+
+class Pen(NamedTuple):
+    """Half the width of a pen's line, and its softness, mm."""
+
+    half_mm: float
+    softness_mm: float
+
+    @classmethod
+    def of(cls, view: View, leg: Leg) -> Pen:
+        """The pen that drew a leg."""
+        return cls(0.5 * leg.width_mm, softness_of(view, leg))
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +42,8 @@ class Patch:
     softness_mm: float
 
     @classmethod
-    def about(cls, view: View, place_mm: Array, reach_mm: float, leg: Leg) -> Patch:
-        """The patch within reach of a place, mm, and the pen that drew a leg."""
+    def about(cls, view: View, place_mm: Array, reach_mm: float, pen_mm: Pen) -> Patch:
+        """The patch within reach of a place, mm, and the pen that is to explain it."""
         pitch, rows = view.pitch_mm, view.cells.shape[0]
         left, right = (int((place_mm[0] + side * reach_mm) / pitch) for side in (-1, 1))
         top, bottom = (int(rows - (place_mm[1] + side * reach_mm) / pitch) for side in (1, -1))
@@ -40,7 +53,7 @@ class Patch:
         places = np.column_stack([j + left + 0.5, rows - i - top - 0.5]) * pitch
         within = np.hypot(*(places - place_mm).T) < reach_mm
         darkness = np.minimum(seen[i, j][within] / (2 * view.level), DARKEST).astype(float)
-        return cls(places[within], darkness, 0.5 * leg.width_mm, softness_of(view, leg))
+        return cls(places[within], darkness, *pen_mm)
 
     def misfit(self, way: Array) -> float:
         """Mean square of what a pen on a way (n, 2) mm draws too dark or too light, 1 for ink or none."""

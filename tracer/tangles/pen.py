@@ -206,3 +206,16 @@ def ink(distance_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
     """Darkness that a pen of half a width leaves at distances from its way."""
     for k in range(len(distance_mm)):
         out[k] = ink_at(distance_mm[k], half_mm, softness_mm)
+
+
+@njit(cache=True, _nrt=False)
+def misfits(across, half_mm, softnesses_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` with how far the ink of a pen of half a width is from what is seen across its line, a sum of
+    squares, for some softnesses; `across`: distances from the line, mm, and darkness there.
+    """
+    away_mm, seen = across
+    for n in range(len(softnesses_mm)):
+        out[n] = 0.0
+        for k in range(len(seen)):
+            wrong = ink_at(away_mm[k], half_mm, softnesses_mm[n]) - seen[k]
+            out[n] += wrong * wrong

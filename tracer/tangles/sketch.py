@@ -238,9 +238,6 @@ def softness_of(view: View, leg: Leg) -> float:
     across = darkness_along(view.cells, places.reshape(-1, 2)).reshape(len(left), len(u))
     seen = medians(across.T) / (2 * view.level)
     # 2. the pen that is most like it
-    drawn, misfits = np.empty(len(u)), []
-    softnesses_mm = SOFTNESSES_PX * view.pitch_mm
-    for softness in softnesses_mm:
-        pen.ink(np.abs(u), 0.5 * leg.width_mm, softness, drawn)
-        misfits.append(float(np.sum((drawn - seen) ** 2)))
+    misfits, softnesses_mm = np.empty(len(SOFTNESSES_PX)), SOFTNESSES_PX * view.pitch_mm
+    pen.misfits((np.abs(u), seen), 0.5 * leg.width_mm, softnesses_mm, misfits)
     return float(softnesses_mm[int(np.argmin(misfits))])

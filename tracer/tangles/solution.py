@@ -25,7 +25,7 @@ from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import Leg, goes_straight, turn
-from morfax.tracer.tangles.likeness import Patch
+from morfax.tracer.tangles.likeness import Patch, Pen
 from morfax.tracer.tangles.redrawing import NONE, VERTEX, Redrawing
 from morfax.tracer.tangles.sketch import Sketch, redrawings
 from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretches_over
@@ -205,7 +205,8 @@ def _grain(sketch: Sketch) -> float:
     for k, leg in enumerate(sketch.tangle.legs):
         along = width_mm * (LEG_WIDTHS if k else -LEG_WIDTHS)
         middle = leg.at(float(along[len(along) // 2]))
-        grain.append(Patch.about(sketch.view, middle, width_mm, leg).misfit(leg.at(along)))
+        pen = Pen.of(sketch.view, leg)
+        grain.append(Patch.about(sketch.view, middle, width_mm, pen).misfit(leg.at(along)))
     return min(grain) * sketch.tangle.area_mm2 / width_mm**2
 
 

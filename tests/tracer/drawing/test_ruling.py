@@ -123,3 +123,24 @@ def test_a_line_on_plain_paper_is_not_reduced(monkeypatch: pytest.MonkeyPatch) -
     cv2.circle(darkness, (1200, 1200), 400, 1.0, 12)
     monkeypatch.setattr(ruling.cv2, "resize", None)  # whoever reduced it would fail
     assert ruling.families(darkness, 0.04) == []
+
+
+@pytest.mark.parametrize("bare_mm", [0.0, 1.0, 4.0])
+@pytest.mark.parametrize("is_upright", [True, False])
+def test_lines_that_do_not_come_to_both_ends_of_the_sheet_are_not_looked_for(
+    monkeypatch: pytest.MonkeyPatch, bare_mm: float, is_upright: bool
+) -> None:
+    """Six lines of 0.25 mm, as few as there may be, 10 mm apart on 62 mm of paper; its ends are 3 % of 62 mm.
+
+    With paper of 1 mm at one end there is still ink for more than half of these lines there.
+    """
+    asked = list[bool]()
+    monkeypatch.setattr(ruling, "_is_all_over", lambda _: True)
+    monkeypatch.setattr(ruling, "_family", lambda _, __, way: asked.append(way))
+    to_px = DPI / MM_PER_INCH
+    paper = np.zeros((round(62 * to_px),) * 2, np.float32)
+    for k in range(6):
+        middle = round((6 + 10 * k) * to_px)
+        paper[round(bare_mm * to_px) :, middle : middle + 3] = 1.0
+    families(paper if is_upright else np.ascontiguousarray(paper.T), 1 / to_px)
+    assert (is_upright in asked) is (bare_mm < 2.0)

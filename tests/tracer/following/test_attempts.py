@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from morfax.tracer.following.attempts import Attempts
+from morfax.tracer.following.attempts import DOUBTS, Attempts
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head.leaders import CELL, STATIONS
@@ -145,3 +145,37 @@ def test_a_head_that_cannot_set_out_from_one_end_of_a_line_does_from_the_other(
 
     monkeypatch.setattr(Attempts, "run", known)
     assert Attempts(DRAWING, Settings(), 100.0).all_of_it(STANCE) is from_other
+
+
+def test_doubts_are_settled_one_after_the_other_each_from_the_longest_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A coast of 2.2 m was run ten times: after another turn its junctions have other numbers."""
+    lengths = {(): 200, (3,): 200, (3, 3): 208, (3, 3, 9): 207, (3, 3, 9, 9): 220}
+    doubts = {(): ((3, 1), (3, 2), (5, 1), (5, 2)), (3, 3): ((9, 1), (9, 2))}
+    tried = list[tuple[int, ...]]()
+
+    def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
+        tried.append(turns)
+        return replace(run("closed", lengths[turns]), doubts=doubts.get(turns, ()))
+
+    monkeypatch.setattr(Attempts, "run", known)
+    stance = replace(STANCE, at_end=True)
+    assert Attempts(DRAWING, Settings(), 100.0).all_of_it(stance).travel_mm == 220
+    assert tried == list(lengths)
+
+
+@pytest.mark.parametrize(("ending", "more"), [("closed", DOUBTS), ("ended", 0)])
+def test_no_more_doubts_are_looked_into_than_is_allowed(
+    monkeypatch: pytest.MonkeyPatch, ending: str, more: int
+) -> None:
+    """Each other turn is longer, and has a doubt of its own; those of an open run do not count."""
+    tried = list[tuple[int, ...]]()
+
+    def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
+        tried.append(turns)
+        return replace(run(ending, 100 + len(turns)), doubts=((len(turns), 1),))
+
+    monkeypatch.setattr(Attempts, "run", known)
+    Attempts(DRAWING, Settings(), 100.0).all_of_it(replace(STANCE, at_end=True))
+    assert len(tried) == 1 + more

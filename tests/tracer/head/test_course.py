@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
+from morfax.tracer.head.course import through_nodes
 from morfax.tracer.junctions.corner import SHARP, Corner, missing_ink_mm, through_corner
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg
@@ -138,3 +140,10 @@ def test_a_sharp_corner_misses_no_ink() -> None:
     for deflection_deg in (60.0, 90.0, 120.0):
         eyes, corner = at_corner(deflection_deg, 0.0)
         assert missing_ink_mm(eyes, corner) < SHARP * WIDTH_MM
+
+
+def test_a_way_through_nodes_is_its_cubics_one_after_the_other() -> None:
+    rng = np.random.default_rng(1)
+    nodes = [(rng.uniform(-1, 1, 2), float(rng.uniform(-7, 7))) for _ in range(5)]
+    parts = [curves.hermite(*a, *b) for a, b in pairwise(nodes)]
+    assert np.array_equal(through_nodes(nodes), np.vstack(parts))
