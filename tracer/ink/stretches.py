@@ -25,7 +25,7 @@ from morfax.motion.median import median
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import ONE_PEN
+from morfax.tracer.drawing.strokes import ONE_PEN, Window
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS, SHARED, Doubled
@@ -131,11 +131,16 @@ class FeltSheet:
 
     @classmethod
     def of(
-        cls, drawing: Drawing, settings: Settings, ink: Mask, letters: Mask | None = None
+        cls,
+        drawing: Drawing,
+        settings: Settings,
+        ink: Mask,
+        letters: Mask | None = None,
+        window: Window | None = None,
     ) -> FeltSheet:
-        """Find and feel the stretches of some ink of a drawing, of which some is letters."""
-        graph = Graph.of(ink)
-        felt = _felt(graph, drawing, settings)
+        """Find and feel the stretches of some ink, of which some is letters; all of it well in a `window`."""
+        graph = Graph.of(ink, window)
+        felt = _felt(graph, drawing, settings, window)
         measured, at = [Measured.of(run) for run in felt], graph.at_nodes()
         straight = StraightOn(graph, felt, at)
         widths = _line_widths(straight, measured, settings)
@@ -167,10 +172,10 @@ def _is_end(node: int, at: dict[int, list[int]]) -> bool:
 class _Seen:
     """The sheet through its cells, made once for each aperture of some."""
 
-    def __init__(self, drawing: Drawing, apertures_mm: Array) -> None:
+    def __init__(self, drawing: Drawing, apertures_mm: Array, window: Window | None) -> None:
         self._parted, self._grainy = drawing.finer, drawing.grainy
         self._cells = {
-            mm: photocell.behind_aperture(drawing, mm)
+            mm: photocell.behind_aperture(drawing, mm, window=window)
             for mm in np.unique(apertures_mm).tolist()
         }
 
@@ -187,7 +192,9 @@ class _Seen:
         return view.at_level(LEVEL * max(dark, FAINTEST))
 
 
-def _felt(graph: Graph, drawing: Drawing, settings: Settings) -> list[Run]:
+def _felt(
+    graph: Graph, drawing: Drawing, settings: Settings, window: Window | None
+) -> list[Run]:
     """What the cells feel along every stretch."""
     places, pitch_mm = graph.places_mm(drawing), drawing.pitch_mm
     halves_px = [
@@ -196,7 +203,7 @@ def _felt(graph: Graph, drawing: Drawing, settings: Settings) -> list[Run]:
     widths_mm = [2 * half_px * pitch_mm for half_px in halves_px]
     own_mm = np.array([settings.aperture_mm or aperture_for(drawing, mm) for mm in widths_mm])
     apertures_mm = _few(own_mm, [len(stretch.pixels) for stretch in graph.stretches])
-    seen, felt = _Seen(drawing, apertures_mm), list[Run]()
+    seen, felt = _Seen(drawing, apertures_mm, window), list[Run]()
     for n, stretch in enumerate(graph.stretches):
         guide = _softened(places[stretch.pixels], round(2 * halves_px[n]))
         felt.append(feel_along(seen.view(guide, widths_mm[n], float(apertures_mm[n])), guide))

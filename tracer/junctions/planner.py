@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -29,7 +30,12 @@ from morfax.tracer.junctions.corner import (
     through_corner,
 )
 from morfax.tracer.junctions.edge_following import EdgeRun, follow_edge, to_vertex
-from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, caught_again, straight_on
+from morfax.tracer.junctions.line_ahead import (
+    FARTHEST_WIDTHS,
+    caught_again,
+    looks_mm,
+    straight_on,
+)
 from morfax.tracer.junctions.width_change import Onward, another_pen
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.photocell import STEP_PX
@@ -119,7 +125,8 @@ class Planner:
         if outgoing is None and not others:
             outgoing = straight_on(view.at_level(FAINTER * view.level), incoming, gap_mm)
         if outgoing is None and not others:
-            larger = view.through_larger(incoming.seen, incoming.heading_rad)
+            seen, heading_rad = incoming.seen, incoming.heading_rad
+            larger = view.through_larger(seen, heading_rad, partial(looks_mm, gap_mm=gap_mm))
             outgoing = straight_on(larger, incoming, gap_mm)
             if outgoing is not None and self._blank_mm(incoming, outgoing) > gap_mm:
                 return None

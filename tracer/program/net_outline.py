@@ -39,6 +39,7 @@ from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.photocell import ABOUT_MM
 
 if TYPE_CHECKING:
     from morfax.tracer.ink.chains import Junctions
@@ -55,6 +56,8 @@ CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round
 ODD = 1 / 3
 WORKS_MM = 10.0  # a head whose cell is out of order is lost before it has run so far
 ENDS = 1 / 6  # of a line that only touches itself, for each of its junctions; by trial
+# from a patch to the edge of what is looked at for its junctions: as far as cells look, and as much again
+ABOUT_WIDTHS = 20.0
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
 
 
@@ -140,8 +143,10 @@ def _closed(
     from morfax.tracer.ink.outlines import one_stroke, outlines
     from morfax.tracer.ink.stretches import FeltSheet
 
-    sheet = setup.sheet
-    felt = FeltSheet.of(sheet.drawing, setup.settings, _ink_of(sheet, patch))
+    sheet, settings = setup.sheet, setup.settings
+    about_mm = ABOUT_MM + settings.gap_mm + ABOUT_WIDTHS * float(sheet.widths_mm[patch])
+    window = replace(sheet, window=None).about(patch, about_mm).window
+    felt = FeltSheet.of(sheet.drawing, settings, _ink_of(sheet, patch), window=window)
     junctions = solved(felt)
     found = outlines(junctions)[:1]
     stroke = one_stroke(junctions) if or_stroke else None

@@ -26,6 +26,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.compiled import keeps_kinds, njit
 from morfax.tracer.drawing.blocks import BLOCK_PX
 from morfax.tracer.drawing.contrast import FAINT
@@ -73,12 +74,19 @@ class Cells(_Seen):
             return aperture.window(self.tiles, top, bottom, left, right)
         return self.darkness[top:bottom, left:right]
 
-    def wider(self, spread_px: float) -> Cells:
-        """The same behind a further spot of a standard deviation."""
+    def wider(self, spread_px: float, places: Array, beyond_mm: float) -> Cells:
+        """The same behind a further spot of a standard deviation, about some places (n, 2) sheet mm; a small
+        sheet is paper further from them.
+        """
         if self.tiles.rows:
             return self._replace(darkness=_nothing(), tiles=self.tiles.wider(spread_px))
-        soft = cv2.GaussianBlur(self.darkness, (0, 0), spread_px)
-        return self._replace(darkness=np.asarray(soft, np.float32))
+        rows, columns = self.darkness.shape
+        (left, low), (right, high) = np.stack(bounds(places)) / self.pitch_mm
+        beyond = beyond_mm / self.pitch_mm + 1.0
+        top, bottom = max(0, math.floor(rows - high - beyond)), math.ceil(rows - low + beyond)
+        first, last = max(0, math.floor(left - beyond)), math.ceil(right + beyond)
+        window = top, first, min(rows, bottom), min(columns, last)
+        return self._replace(darkness=_blurred(self.darkness, spread_px, window))
 
 
 def behind_aperture(

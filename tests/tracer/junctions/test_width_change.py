@@ -118,4 +118,4 @@ def test_a_larger_cell_that_sees_no_edges_changes_nothing() -> None:
     solid = inked(polyline((4, 10), (30, 10)), width_mm=8.0)
     view = View(Cells(solid.darkness, solid.pitch_mm, 0.5), 0.5)
     stations = np.column_stack([np.linspace(10, 12, 30), np.full(30, 10.0), np.full(30, 0.5)])
-    assert view.through_larger(stations, 0.0) is view
+    assert view.through_larger(stations, 0.0, lambda seen: 5.0) is view
