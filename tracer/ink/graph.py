@@ -25,7 +25,6 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import Window
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 
 # beyond the disc that fills the ink at a fork, in depths of the ink there, and pixels: a stretch that ends no
@@ -54,12 +53,10 @@ class Graph:
     stretches: list[Stretch]
 
     @classmethod
-    def of(cls, ink: Mask, window: Window | None = None) -> Graph:
-        """The graph of some ink, all of which lies in a window, with paper about it."""
-        top, left, bottom, right = window or (0, 0, *ink.shape)
-        part = np.ascontiguousarray(ink[top:bottom, left:right])
-        rows, columns = thinned(part)
-        depth = cv2.distanceTransform(part, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    def of(cls, ink: Mask, top: int = 0, left: int = 0) -> Graph:
+        """The graph of some ink on a sheet; the mask begins at that row and column of it."""
+        rows, columns = thinned(ink)
+        depth = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
         depths_px = np.asarray(depth[rows, columns], float)
         graph = cls(rows + top, columns + left, depths_px, [])
         order, begins, ends = _stretches(neighbours(graph.rows, graph.columns))

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import median
+from morfax.motion.median import median, weighted_median
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
@@ -129,6 +129,11 @@ class FeltSheet:
         doubled = self.doubled
         return doubled.is_sure and self.measured[number].width_mm > BROADER * doubled.pen_mm
 
+    def without_cells(self) -> FeltSheet:
+        """The stretches as they were felt, without what the cells saw: that is as large as the sheet."""
+        felt = [replace(run, view=run.view.without_cells()) for run in self.felt]
+        return replace(self, felt=felt, _taken={})
+
     @classmethod
     def of(
         cls,
@@ -138,8 +143,8 @@ class FeltSheet:
         letters: Mask | None = None,
         window: Window | None = None,
     ) -> FeltSheet:
-        """Find and feel the stretches of some ink, of which some is letters; all of it well in a `window`."""
-        graph = Graph.of(ink, window)
+        """Find and feel the stretches of some ink, of which some is letters, in a window of the sheet."""
+        graph = Graph.of(ink, *window[:2]) if window else Graph.of(ink)
         felt = _felt(graph, drawing, settings, window)
         measured, at = [Measured.of(run) for run in felt], graph.at_nodes()
         straight = StraightOn(graph, felt, at)
@@ -269,7 +274,7 @@ def _line_widths(
     def of_some(some: Iterable[int]) -> float | None:
         """The width that most of some stretches have; a hair on which no cell felt two edges tells none."""
         telling = [m for m in some if known[m] > 0]
-        return _weighted_median([own[m] for m in telling], [lengths[m] for m in telling])
+        return weighted_median([own[m] for m in telling], [lengths[m] for m in telling])
 
     found, usual_mm = list[float](), of_some(range(len(own)))
     for n, stretch in enumerate(graph.stretches):
@@ -289,12 +294,3 @@ def _line_widths(
             } - {n} or {n}
         found.append(of_some(further) or usual_mm or own[n])
     return found
-
-
-def _weighted_median(values: list[float], weights: list[float]) -> float | None:
-    """The value below which lies half of the weight; None of none."""
-    if not values:
-        return None
-    order = np.argsort(values)
-    sums = np.cumsum(np.asarray(weights)[order])
-    return float(np.asarray(values)[order][np.searchsorted(sums, 0.5 * sums[-1])])

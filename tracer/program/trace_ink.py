@@ -65,8 +65,8 @@ def _of_strokes(
         rows, columns = left.ink.shape
         letters = sheet.patches.painted(left.lettering, 0, rows, 0, columns)
     felt = FeltSheet.of(left.drawing, settings, left.ink, letters)
-    junctions = solved(felt)
-    strokes = _long_enough(_kept(_strokes(junctions, settings, progress)))
+    strokes = _long_enough(_kept(_strokes(solved(felt), settings, progress)))
+    felt = felt.without_cells()
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"

@@ -84,6 +84,10 @@ class View:
         """The view with another darkness at an edge."""
         return replace(self, cells=self.cells._replace(level=float(level)))
 
+    def without_cells(self) -> View:
+        """The view for those who ask for widths only: its cells see nothing."""
+        return replace(self, cells=Cells(photocell.nothing(), self.pitch_mm, self.level))
+
     def darkness_at(self, place: Array) -> float:
         """Darkness at a place."""
         return float(photocell.darkness_at(self.cells, place[0], place[1]))
