@@ -199,10 +199,10 @@ def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
     If the line from an end goes along less than half of the ink, a line from a plain place goes before it
     where that closes and is longer.
     """
-    is_told = is_letter or is_of_several(setup, contour.stroke)
-    strokes = _strokes(setup, contour) if is_told and _can_stand(setup, contour) else None
-    # ends that face each other may be a gap that the head crosses
-    if strokes is not None and strokes.line is not None and strokes.line.gap_mm is None:
+    are_several = is_of_several(setup, contour.stroke)
+    is_told = (is_letter or are_several) and _can_stand(setup, contour)
+    strokes = _strokes(setup, contour) if is_told else None
+    if strokes is not None and _is_told(strokes, are_several):
         return strokes
     from_end = followed_from_an_end(setup, contour.stroke, contour.number)
     if from_end is not None:
@@ -228,6 +228,16 @@ def _can_stand(setup: Setup, contour: Contour) -> bool:
     view = view_of(setup.sheet, settings.aperture_mm, width_mm)
     stances = (stance_near(view, stroke, start_mm) for start_mm in contour.starts_mm())
     return any(stance is not None for stance in stances)
+
+
+def _is_told(strokes: _Found, are_several: bool) -> bool:
+    """Whether strokes are what was drawn: ends that face each other may be a gap that the head crosses, and
+    of a letter that is no more than a stroke the longest is most of the ink.
+    """
+    line = strokes.line
+    if line is None or line.gap_mm is not None:
+        return False
+    return are_several or line.length_mm > SHORT * line.ink_mm
 
 
 def _strokes(setup: Setup, contour: Contour) -> _Found | None:
