@@ -66,3 +66,12 @@ def medians(values: NDArray[np.floating]) -> NDArray[np.floating]:
     ordered = np.sort(values, axis=-1)
     count = values.shape[-1]
     return 0.5 * (ordered[..., (count - 1) // 2] + ordered[..., count // 2])
+
+
+def weighted_median(values: list[float], weights: list[float]) -> float | None:
+    """The value below which lies half of the weight; None of none."""
+    if not values:
+        return None
+    order = np.argsort(values)
+    sums = np.cumsum(np.asarray(weights)[order])
+    return float(np.asarray(values)[order][np.searchsorted(sums, 0.5 * sums[-1])])

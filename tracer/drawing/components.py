@@ -15,11 +15,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
+
+if TYPE_CHECKING:  # it is made of patches
+    from morfax.tracer.drawing.enclosure import Enclosure
 
 Mask = NDArray[np.uint8]
 Numbers = NDArray[np.int32]
@@ -62,6 +66,13 @@ class Patches:
         """Width or height of each patch, whichever is more; pixels."""
         top, bottom, left, right = self.boxes.T
         return np.maximum(bottom - top, right - left)
+
+    @cached_property
+    def enclosure(self) -> Enclosure:
+        """Which patch goes round which area of paper, found once."""
+        from morfax.tracer.drawing.enclosure import Enclosure
+
+        return Enclosure.of(self, int(self.row[-1]) + 1)
 
     def box(self, chosen: NDArray[np.bool_]) -> tuple[int, int, int, int]:
         """First row, last row + 1, first column, last column + 1 of the chosen patches."""

@@ -53,12 +53,13 @@ class Graph:
     stretches: list[Stretch]
 
     @classmethod
-    def of(cls, ink: Mask) -> Graph:
-        """The graph of some ink."""
+    def of(cls, ink: Mask, top: int = 0, left: int = 0) -> Graph:
+        """The graph of some ink on a sheet; the mask begins at that row and column of it."""
         rows, columns = thinned(ink)
         depth = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        graph = cls(rows, columns, np.asarray(depth[rows, columns], float), [])
-        order, begins, ends = _stretches(neighbours(rows, columns))
+        depths_px = np.asarray(depth[rows, columns], float)
+        graph = cls(rows + top, columns + left, depths_px, [])
+        order, begins, ends = _stretches(neighbours(graph.rows, graph.columns))
         for begin, end in zip(begins, ends, strict=True):
             pixels = order[begin:end]
             is_ring = pixels[0] == pixels[-1] and not graph._is_fork(

@@ -53,19 +53,25 @@ class Area(NamedTuple):
 
 
 class InkLeft(NamedTuple):
-    """The ink of a sheet's lines, the drawing without its solid areas, and what was left out.
+    """The ink of a sheet's lines, the drawing as it was read, and what was left out.
 
     Which patches are lettering, which of them are left out, the pixels of each patch that are solid areas,
     these, and where they are.
     """
 
     ink: Mask
-    drawing: Drawing
+    read: Drawing
     lettering: NDArray[np.bool_]
     letters: NDArray[np.bool_]
     solid_px: NDArray[np.float64]
     areas: tuple[Area, ...]
     solid: Mask
+
+    @property
+    def drawing(self) -> Drawing:
+        """The drawing without its solid areas, made when it is asked for: it is as large as the sheet."""
+        are_solid = any(area.what == "solid area" for area in self.areas)
+        return _without(self.read, self.solid) if are_solid else self.read
 
 
 def ink_left(sheet: Sheet, letters_from_mm: float = 0.0) -> InkLeft:
@@ -83,11 +89,10 @@ def ink_left(sheet: Sheet, letters_from_mm: float = 0.0) -> InkLeft:
         ink &= 1 - patches.painted(gone, 0, rows, 0, columns)
     # 2. solid areas
     solids = Solids.of(ink)
-    solid_px, drawing = np.zeros(patches.count), sheet.drawing
+    solid_px = np.zeros(patches.count)
     if solids.each:
         solid_px = _pixels_of(sheet, solids.mask)
         ink &= 1 - solids.mask
-        drawing = _without(drawing, solids.mask)
     areas = [
         Area(
             "solid area",
@@ -100,7 +105,8 @@ def ink_left(sheet: Sheet, letters_from_mm: float = 0.0) -> InkLeft:
     for patch in np.flatnonzero(letters):
         box_mm = _box_mm(patches.boxes[patch].tolist(), rows, pitch_mm)
         areas.append(Area("letter", float(patches.areas[patch]) * pitch_mm**2, box_mm))
-    return InkLeft(ink, drawing, is_lettering, letters, solid_px, tuple(areas), solids.mask)
+    read = sheet.drawing
+    return InkLeft(ink, read, is_lettering, letters, solid_px, tuple(areas), solids.mask)
 
 
 def _ink(drawing: Drawing) -> Mask:
@@ -144,9 +150,12 @@ def _without(drawing: Drawing, solid: Mask) -> Drawing:
 
 
 def _pixels_of(sheet: Sheet, mask: Mask) -> NDArray[np.float64]:
-    """How many pixels of each patch are in a mask."""
-    runs = sheet.patches
-    sums = np.zeros((mask.shape[0], mask.shape[1] + 1), np.int32)
-    np.cumsum(mask, axis=1, out=sums[:, 1:])
-    within = sums[runs.row, runs.end] - sums[runs.row, runs.begin]
+    """How many pixels of each patch are in a mask, strip by strip."""
+    runs, within = sheet.patches, np.zeros(len(sheet.patches.row), np.int32)
+    for top, bottom, rows in strips(mask.shape, pixels=FEW_PX):
+        own = slice(*np.searchsorted(runs.row, (top, bottom)))
+        sums = np.zeros((bottom - top, mask.shape[1] + 1), np.int32)
+        np.cumsum(mask[rows], axis=1, out=sums[:, 1:])
+        row = runs.row[own] - top
+        within[own] = sums[row, runs.end[own]] - sums[row, runs.begin[own]]
     return np.bincount(runs.patch, within, runs.count).astype(float)

@@ -21,11 +21,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import median
+from morfax.motion.median import median, weighted_median
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import ONE_PEN
+from morfax.tracer.drawing.strokes import ONE_PEN, Window
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS, SHARED, Doubled
@@ -129,13 +129,23 @@ class FeltSheet:
         doubled = self.doubled
         return doubled.is_sure and self.measured[number].width_mm > BROADER * doubled.pen_mm
 
+    def without_cells(self) -> FeltSheet:
+        """The stretches as they were felt, without what the cells saw: that is as large as the sheet."""
+        felt = [replace(run, view=run.view.without_cells()) for run in self.felt]
+        return replace(self, felt=felt, _taken={})
+
     @classmethod
     def of(
-        cls, drawing: Drawing, settings: Settings, ink: Mask, letters: Mask | None = None
+        cls,
+        drawing: Drawing,
+        settings: Settings,
+        ink: Mask,
+        letters: Mask | None = None,
+        window: Window | None = None,
     ) -> FeltSheet:
-        """Find and feel the stretches of some ink of a drawing, of which some is letters."""
-        graph = Graph.of(ink)
-        felt = _felt(graph, drawing, settings)
+        """Find and feel the stretches of some ink, of which some is letters, in a window of the sheet."""
+        graph = Graph.of(ink, *window[:2]) if window else Graph.of(ink)
+        felt = _felt(graph, drawing, settings, window)
         measured, at = [Measured.of(run) for run in felt], graph.at_nodes()
         straight = StraightOn(graph, felt, at)
         widths = _line_widths(straight, measured, settings)
@@ -167,10 +177,10 @@ def _is_end(node: int, at: dict[int, list[int]]) -> bool:
 class _Seen:
     """The sheet through its cells, made once for each aperture of some."""
 
-    def __init__(self, drawing: Drawing, apertures_mm: Array) -> None:
+    def __init__(self, drawing: Drawing, apertures_mm: Array, window: Window | None) -> None:
         self._parted, self._grainy = drawing.finer, drawing.grainy
         self._cells = {
-            mm: photocell.behind_aperture(drawing, mm)
+            mm: photocell.behind_aperture(drawing, mm, window=window)
             for mm in np.unique(apertures_mm).tolist()
         }
 
@@ -187,7 +197,9 @@ class _Seen:
         return view.at_level(LEVEL * max(dark, FAINTEST))
 
 
-def _felt(graph: Graph, drawing: Drawing, settings: Settings) -> list[Run]:
+def _felt(
+    graph: Graph, drawing: Drawing, settings: Settings, window: Window | None
+) -> list[Run]:
     """What the cells feel along every stretch."""
     places, pitch_mm = graph.places_mm(drawing), drawing.pitch_mm
     halves_px = [
@@ -196,7 +208,7 @@ def _felt(graph: Graph, drawing: Drawing, settings: Settings) -> list[Run]:
     widths_mm = [2 * half_px * pitch_mm for half_px in halves_px]
     own_mm = np.array([settings.aperture_mm or aperture_for(drawing, mm) for mm in widths_mm])
     apertures_mm = _few(own_mm, [len(stretch.pixels) for stretch in graph.stretches])
-    seen, felt = _Seen(drawing, apertures_mm), list[Run]()
+    seen, felt = _Seen(drawing, apertures_mm, window), list[Run]()
     for n, stretch in enumerate(graph.stretches):
         guide = _softened(places[stretch.pixels], round(2 * halves_px[n]))
         felt.append(feel_along(seen.view(guide, widths_mm[n], float(apertures_mm[n])), guide))
@@ -262,7 +274,7 @@ def _line_widths(
     def of_some(some: Iterable[int]) -> float | None:
         """The width that most of some stretches have; a hair on which no cell felt two edges tells none."""
         telling = [m for m in some if known[m] > 0]
-        return _weighted_median([own[m] for m in telling], [lengths[m] for m in telling])
+        return weighted_median([own[m] for m in telling], [lengths[m] for m in telling])
 
     found, usual_mm = list[float](), of_some(range(len(own)))
     for n, stretch in enumerate(graph.stretches):
@@ -282,12 +294,3 @@ def _line_widths(
             } - {n} or {n}
         found.append(of_some(further) or usual_mm or own[n])
     return found
-
-
-def _weighted_median(values: list[float], weights: list[float]) -> float | None:
-    """The value below which lies half of the weight; None of none."""
-    if not values:
-        return None
-    order = np.argsort(values)
-    sums = np.cumsum(np.asarray(weights)[order])
-    return float(np.asarray(values)[order][np.searchsorted(sums, 0.5 * sums[-1])])

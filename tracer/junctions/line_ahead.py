@@ -23,6 +23,7 @@ from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.probe import reach_of_ink
+from morfax.tracer.sensing.scout import REACH, REACH_PX
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
@@ -51,6 +52,13 @@ def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
         return found
     round_about = _round_about(view, incoming, gap_mm)
     return None if round_about is None else _met(view, round_about, gap_mm)
+
+
+def looks_mm(view: View, gap_mm: float) -> float:
+    """How far from a leg's end it is looked for the line straight ahead, or felt back, mm."""
+    ahead_mm = FARTHEST_WIDTHS * view.width_mm + gap_mm + view.leg_mm
+    beside_mm = (REACH + BEGIN) * view.width_mm + (REACH_PX + 1) * view.pitch_mm
+    return max(ahead_mm, LOOKS_BACK * gap_mm) + beside_mm
 
 
 def _round_about(view: View, incoming: Leg, gap_mm: float) -> Leg | None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -29,7 +30,12 @@ from morfax.tracer.junctions.corner import (
     through_corner,
 )
 from morfax.tracer.junctions.edge_following import EdgeRun, follow_edge, to_vertex
-from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, caught_again, straight_on
+from morfax.tracer.junctions.line_ahead import (
+    FARTHEST_WIDTHS,
+    caught_again,
+    looks_mm,
+    straight_on,
+)
 from morfax.tracer.junctions.width_change import Onward, another_pen
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.photocell import STEP_PX
@@ -38,9 +44,6 @@ from morfax.tracer.sensing.view import View
 # Chosen by trial on the test drawings.
 LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 FAINTER = 0.5  # of the level: a line may become lighter at once by half
-# widths: no look straight ahead through larger cells reaches further. They see an edge within 3 widths to
-# either side, so a line at most 6 wide, and its legs and edges within 8 of its own widths
-LARGER_REACH = 50.0
 ACROSS = np.linspace(-0.5, 0.5, 7)  # of the width: where a faint line's ink is looked for
 SPECK_PX = 4.5  # between stations of a line that is clean but for a speck
 FAR_WIDTHS = 4.0  # ink beside the line for longer may be the line's own way back
@@ -122,8 +125,8 @@ class Planner:
         if outgoing is None and not others:
             outgoing = straight_on(view.at_level(FAINTER * view.level), incoming, gap_mm)
         if outgoing is None and not others:
-            reach_mm = 2 * gap_mm + LARGER_REACH * view.width_mm + view.leg_mm
-            larger = view.through_larger(incoming.seen, incoming.heading_rad, reach_mm)
+            seen, heading_rad = incoming.seen, incoming.heading_rad
+            larger = view.through_larger(seen, heading_rad, partial(looks_mm, gap_mm=gap_mm))
             outgoing = straight_on(larger, incoming, gap_mm)
             if outgoing is not None and self._blank_mm(incoming, outgoing) > gap_mm:
                 return None

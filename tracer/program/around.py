@@ -24,7 +24,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.enclosure import NONE, Enclosure
+from morfax.tracer.drawing.enclosure import NONE
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.selection import lines_of
@@ -52,7 +52,7 @@ def around(drawing: Drawing, lines: Sequence[Line]) -> list[Around]:
         for number in _in_hull(sheet, lost, closed):
             found.setdefault(number, Around(number, lost.number, True))
     # 2. ink that was not asked for: by the paper that it goes round
-    enclosure = Enclosure.of(sheet.patches, len(drawing.darkness))
+    enclosure = sheet.patches.enclosure
     numbers = {int(patch): number for number, patch in enumerate(lines_of(sheet), 1)}
     followed = {patch for line in lines for patch in _patches(sheet, line)}
     for line in closed:

@@ -45,6 +45,11 @@ def with_arrows(setup: Setup, lines: list[Line]) -> list[Line]:
 
 def turned_round(setup: Setup, line: Line) -> Line:
     """An open line followed from its other end; as it was, if the head goes another way from there."""
+    if line.is_of_net:
+        led = line.led.turned_round(len(line.xy_mm))
+        return replace(
+            line, xy_mm=line.xy_mm[::-1], led=led, junctions_mm=line.junctions_mm[::-1]
+        )
     silent = replace(setup, progress=None)
     try:
         other = followed(silent, line.place(len(line.xy_mm) - 1), line.number)

@@ -63,8 +63,14 @@ class _Found:
         self.in_vain += [run.places_mm for run in runs]
 
 
-def joined_to(line: Line, contour: Contour, setup: Setup) -> tuple[list[Line], float]:
-    """Further lines of a contour's patch, besides the one followed on it, and the length of ink left, mm."""
+def joined_to(
+    line: Line, contour: Contour, setup: Setup, strokes: list[Line] | None = None
+) -> tuple[list[Line], float]:
+    """Further lines of a contour's patch, besides the one followed on it, and the length of ink left, mm;
+    among its other `strokes`, where all are known.
+    """
+    if strokes is not None:
+        return _lines_among(strokes, line, contour)
     stroke, settings = contour.stroke, setup.settings
     if setup.sheet.drawing.edges_mm:  # every edge is a line of its own
         return [], 0.0
@@ -93,6 +99,16 @@ def joined_to(line: Line, contour: Contour, setup: Setup) -> tuple[list[Line], f
             break
     over = _left(stroke, [some.places_mm for some in found.lines], beside)
     return found.lines[1:], over.length_mm
+
+
+def _lines_among(strokes: list[Line], line: Line, contour: Contour) -> tuple[list[Line], float]:
+    """Which further strokes of a contour's patch are lines, and the length of ink left, mm."""
+    lines = [line]
+    for stroke in strokes:
+        if _is_line(stroke, lines):
+            lines.append(stroke)
+    ways = [some.places_mm for some in lines]
+    return lines[1:], _left(contour.stroke, ways, BESIDE_WIDTHS).length_mm
 
 
 def _is_line(line: Line, others: list[Line]) -> bool:

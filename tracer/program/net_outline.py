@@ -30,8 +30,6 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.long_array import one_in
 from morfax.motion.polyline import area_mm2, length_mm
-from morfax.tracer.drawing.components import Mask
-from morfax.tracer.drawing.enclosure import Enclosure
 from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
@@ -39,9 +37,10 @@ from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.photocell import ABOUT_MM
 
 if TYPE_CHECKING:
-    from morfax.tracer.ink.chains import Junctions
+    from morfax.tracer.ink.chains import Chain, Junctions
     from morfax.tracer.ink.outlines import Outline
 
 AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
@@ -55,6 +54,8 @@ CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round
 ODD = 1 / 3
 WORKS_MM = 10.0  # a head whose cell is out of order is lost before it has run so far
 ENDS = 1 / 6  # of a line that only touches itself, for each of its junctions; by trial
+# from a patch to the edge of what is looked at for its junctions: as far as cells look, and as much again
+ABOUT_WIDTHS = 20.0
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
 
 
@@ -72,7 +73,7 @@ class OfNet(NamedTuple):
 def of_net(setup: Setup) -> OfNet:
     """The longest closed outline of the sheet's nets, if no other line is longer."""
     sheet = setup.sheet
-    if _is_program(setup) or sheet.drawing.edges_mm or sheet.patches.count > MOST_PATCHES:
+    if not may_solve(setup):
         return OfNet(setup)
     are_nets = _nets(sheet)
     lengths_mm = sheet.one_pen_mm()
@@ -95,7 +96,9 @@ def of_net(setup: Setup) -> OfNet:
     if longest not in found:
         return OfNet(replace(setup, sheet=counted))
     outline, junctions = found[longest]
-    line = replace(_line(setup, outline, junctions), ink_mm=float(sheet.lengths_mm[longest]))
+    line = replace(
+        line_along(setup, outline.chain, junctions), ink_mm=float(sheet.lengths_mm[longest])
+    )
     is_nearly_all = outline.length_mm > NEARLY_ALL * float(lengths_mm[longest])
     may_be_longer = outline.chain.closed and not is_nearly_all
     return OfNet(setup, line, may_be_longer and _touches_itself(junctions))
@@ -104,50 +107,63 @@ def of_net(setup: Setup) -> OfNet:
 def outline_of(setup: Setup, patch: int) -> Line | None:
     """The longest closed outline of a patch that goes round two areas or more, as the head ran along it."""
     sheet = setup.sheet
-    if _is_program(setup) or sheet.drawing.edges_mm or sheet.patches.count > MOST_PATCHES:
+    if not may_solve(setup):
         return None
     closed = _closed(setup, patch) if _nets(sheet)[patch] else None
     if closed is None:
         return None
-    return replace(_line(setup, *closed), ink_mm=float(sheet.lengths_mm[patch]))
+    outline, junctions = closed
+    line = line_along(setup, outline.chain, junctions)
+    return replace(line, ink_mm=float(sheet.lengths_mm[patch]))
 
 
 def round_ring(setup: Setup, line: Line) -> Line | None:
     """The way round the ink on which a line was lost, if that goes round one area and closes."""
     sheet = setup.sheet
-    if line.reference_mm is not None or _is_program(setup) or sheet.drawing.edges_mm:
+    if line.reference_mm is not None or not may_solve(setup):
         return None
     if line.length_mm < WORKS_MM and line.fault is not None and lost.by_its_cell(line.fault):
         return None
     patch = sheet.patch_at(np.asarray(line.start_mm))
-    if (
-        sheet.patches.count > MOST_PATCHES
-        or sheet.are_solid[patch]
-        or _loops(sheet)[patch] != 1
-    ):
+    if sheet.are_solid[patch] or _loops(sheet)[patch] != 1:
         return None
     closed = _closed(setup, patch)
     if closed is None or closed[0].length_mm < CLOSES * line.length_mm:
         return None
-    return replace(_line(setup, *closed), ink_mm=line.ink_mm)
+    outline, junctions = closed
+    return replace(line_along(setup, outline.chain, junctions), ink_mm=line.ink_mm)
 
 
 def _closed(
     setup: Setup, patch: int, or_stroke: bool = False
 ) -> tuple[Outline, Junctions] | None:
     """The longest closed outline of a patch of ink, or the one stroke that it is; and its junctions."""
-    from morfax.tracer.ink.chains import solved
     from morfax.tracer.ink.outlines import one_stroke, outlines
-    from morfax.tracer.ink.stretches import FeltSheet
 
-    sheet = setup.sheet
-    felt = FeltSheet.of(sheet.drawing, setup.settings, _ink_of(sheet, patch))
-    junctions = solved(felt)
+    junctions = junctions_of(setup, patch)
     found = outlines(junctions)[:1]
     stroke = one_stroke(junctions) if or_stroke else None
     if stroke is not None and all(it.length_mm < MOST_OF_IT * stroke.length_mm for it in found):
         found = [stroke]
     return (found[0], junctions) if found else None
+
+
+def junctions_of(setup: Setup, patch: int) -> Junctions:
+    """The junctions of a patch of ink, each solved once; those of the newest patch are remembered."""
+    from morfax.tracer.ink.chains import solved
+    from morfax.tracer.ink.stretches import FeltSheet
+
+    if patch not in setup.newest:
+        sheet, settings = setup.sheet, setup.settings
+        about_mm = ABOUT_MM + settings.gap_mm + ABOUT_WIDTHS * float(sheet.widths_mm[patch])
+        window = replace(sheet, window=None).about(patch, about_mm).window
+        top, left, bottom, right = window or (0, 0, *sheet.drawing.darkness.shape)
+        is_own = np.arange(sheet.patches.count) == patch
+        ink = sheet.patches.painted(is_own, top, bottom, left, right)
+        felt = FeltSheet.of(sheet.drawing, settings, ink, window=window)
+        setup.newest.clear()
+        setup.newest[patch] = solved(felt)
+    return setup.newest[patch]
 
 
 def _touches_itself(junctions: Junctions) -> bool:
@@ -185,26 +201,36 @@ def _nets(sheet: Sheet) -> NDArray[np.bool_]:
 
 def _loops(sheet: Sheet) -> NDArray[np.int64]:
     """How many areas each patch goes round."""
-    enclosure = Enclosure.of(sheet.patches, len(sheet.drawing.darkness))
     least_px = (AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2
-    return enclosure.loops(least_px)
+    return sheet.patches.enclosure.loops(least_px)
 
 
-def _ink_of(sheet: Sheet, patch: int) -> Mask:
-    """The ink of one patch on the whole sheet."""
-    rows, columns = sheet.drawing.darkness.shape
-    return sheet.patches.painted(np.arange(sheet.patches.count) == patch, 0, rows, 0, columns)
+def goes_round_none(sheet: Sheet, patch: int) -> bool:
+    """Whether a patch goes round no area, and is no filled shape."""
+    return not sheet.are_solid[patch] and _loops(sheet)[patch] == 0
 
 
-def _line(setup: Setup, outline: Outline, junctions: Junctions) -> Line:
-    """The head's run along an outline, the way round that is asked for, or along a stroke."""
+def may_solve(setup: Setup) -> bool:
+    """Whether a patch may be followed by its junctions: nobody says which way the head goes on."""
+    sheet = setup.sheet
+    is_usual = not sheet.drawing.edges_mm and sheet.patches.count <= MOST_PATCHES
+    return is_usual and not _is_program(setup)
+
+
+def chain_mm(chain: Chain, junctions: Junctions) -> float:
+    """The length of a chain by its ink, mm."""
+    return sum(junctions.net.lines[link.line].length_mm for link in chain.links)
+
+
+def line_along(setup: Setup, chain: Chain, junctions: Junctions) -> Line:
+    """The head's run along a chain of lines, of a closed one the way round that is asked for."""
     from morfax.tracer.ink.outlines import junctions_on
     from morfax.tracer.ink.track import stroke_along
 
-    told, closed = setup.told(outline.length_mm), outline.chain.closed
-    stroke = stroke_along(outline.chain, junctions, setup.settings, told)
+    closed, told = chain.closed, setup.told(chain_mm(chain, junctions))
+    stroke = stroke_along(chain, junctions, setup.settings, told)
     way_mm, led = stroke.way_mm, stroke.led
-    places = junctions_on(outline.chain, junctions)
+    places = junctions_on(chain, junctions)
     direction = setup.operator.direction
     if closed and direction is not None and (area_mm2(way_mm) > 0) != (direction == "ccw"):
         way_mm, led, places = way_mm[::-1], led.turned_round(len(way_mm)), places[::-1]
@@ -214,6 +240,7 @@ def _line(setup: Setup, outline: Outline, junctions: Junctions) -> Line:
         stroke.width_mm,
         length_mm(way_mm),
         led=led,
+        is_of_net=True,
         junctions_mm=tuple(_from_start(places, way_mm)),
     )
 

@@ -14,6 +14,7 @@ be put down may be a letter, and is left out; a larger one counts as a lost line
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,11 +23,14 @@ from morfax.motion import nesting
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import length_mm, nearest_mm
+from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.following.line import Line
+from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
 from morfax.tracer.program.best_run import SHORT
-from morfax.tracer.program.net_outline import outline_of
+from morfax.tracer.program.net_outline import may_solve, outline_of
+from morfax.tracer.program.open_ink import is_of_several, is_open, strokes_of
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.small_loops import SmallLoops
@@ -39,25 +43,44 @@ ABOUT_MM, ABOUT_WIDTHS = 40.0, 20.0
 ENDLESS_ABOUT_MM = 1.5 * LARGEST_MM
 
 
-def one_of_each(
-    setup: Setup, asked: list[Contour], which: Which
-) -> tuple[list[Line], list[Contour]]:
-    """One line of each patch that is asked for, and the patches on which the head can nowhere be put down."""
+class OneOfEach(NamedTuple):
+    """One line of each patch; the patches on which the head can nowhere be put down; and of the patches whose
+    junctions showed all their strokes the others of these, by the patch's number.
+    """
+
+    lines: list[Line]
+    unclear: list[Contour]
+    others: dict[int, list[Line]]
+
+
+class _Found(NamedTuple):
+    """A line of a patch, None on a letter; and the other strokes, where the junctions showed them all."""
+
+    line: Line | None
+    others: list[Line] | None = None
+
+
+def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
+    """Follow one line of each patch that is asked for."""
     total_mm = sum(contour.stroke.length_mm for contour in asked)
     lines, boxes_mm, come_mm = list[Line](), list[Array](), 0.0
     begins_mm, unclear = list[tuple[float, float]](), list[Contour]()
     loops = SmallLoops.of(setup.sheet, setup.settings)
+    others = dict[int, list[Line]]()
+    letters = lettering(setup.sheet) if may_solve(setup) else set[int]()
     for contour in asked:
         near = [lines[k] for k in _near(contour, boxes_mm)]
         if _is_done(contour, near, begins_mm):
             continue
         if which == "outer" and _is_inner(contour, lines):
             continue
-        line = _or_outline(
-            setup, contour, _follow_in_window(setup.after(come_mm, total_mm), contour)
-        )
-        line = _as_loop(loops, contour) if line is None else loops.mended(line)
+        is_letter = contour.stroke.patch in letters
+        found = _follow_in_window(setup.after(come_mm, total_mm), contour, is_letter)
+        own = _or_outline(setup, contour, found.line)
+        line = _as_loop(loops, contour) if own is None else loops.mended(own)
         if line is not None:
+            if found.others is not None and line is own:
+                others[contour.number] = found.others
             lines.append(line)
             boxes_mm.append(np.array(bounds(line.places_mm)))
             begins_mm += references_of([line])
@@ -66,7 +89,8 @@ def one_of_each(
             unclear.append(contour)
         else:
             raise _a_letter(contour)
-    return [line for line in lines if not _is_reference(line, begins_mm)], unclear
+    lines = [line for line in lines if not _is_reference(line, begins_mm)]
+    return OneOfEach(lines, unclear, others)
 
 
 def with_least_numbers(lines: list[Line], asked: list[Contour]) -> list[Line]:
@@ -128,9 +152,9 @@ def _is_inner(contour: Contour, lines: list[Line]) -> bool:
     return any(not line.is_open and contour.lies_in(line.loop_mm) for line in lines)
 
 
-def _follow_in_window(setup: Setup, contour: Contour) -> Line | None:
-    """Follow a line of a patch, with cells that see no more of a large sheet than what is about the patch;
-    with all of it unless the line closes on its own patch.
+def _follow_in_window(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
+    """Follow a patch with cells that see no more of a large sheet than what is about it; with all of it
+    if the line leaves its own patch.
     """
     sheet, settings = setup.sheet, setup.settings
     patch, width_mm = contour.stroke.patch, contour.stroke.width_mm
@@ -138,16 +162,24 @@ def _follow_in_window(setup: Setup, contour: Contour) -> Line | None:
     around_mm += settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * width_mm
     near = sheet.about(patch, around_mm)
     if near is sheet:
-        return _follow(setup, contour)
-    line = _follow(replace(setup, sheet=near), contour)
-    if line is not None and line.ending == "closed" and line.reference_mm is None:
-        low_mm, high_mm = bounds(contour.stroke.middles_mm)
-        line_low_mm, line_high_mm = bounds(line.places_mm)
-        if (line_low_mm > low_mm - width_mm).all() and (
-            line_high_mm < high_mm + width_mm
-        ).all():
-            return line
-    return _follow(setup, contour)
+        return _follow(setup, contour, is_letter)
+    found = _follow(replace(setup, sheet=near), contour, is_letter)
+    line = found.line
+    is_found = line is not None and line.ending != "lost" and line.reference_mm is None
+    return (
+        found if is_found and _keeps_to(contour, line) else _follow(setup, contour, is_letter)
+    )
+
+
+def _keeps_to(contour: Contour, line: Line | None) -> bool:
+    """Whether a line runs nowhere beyond its own patch."""
+    if line is None:
+        return False
+    low_mm, high_mm = bounds(contour.stroke.middles_mm)
+    line_low_mm, line_high_mm = bounds(line.places_mm)
+    width_mm = contour.stroke.width_mm
+    is_within = (line_low_mm > low_mm - width_mm) & (line_high_mm < high_mm + width_mm)
+    return bool(is_within.all())
 
 
 def _as_loop(loops: SmallLoops, contour: Contour) -> Line | None:
@@ -172,36 +204,66 @@ def _or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | Non
     return replace(outline, number=contour.number)
 
 
-def _follow(setup: Setup, contour: Contour) -> Line | None:
-    """Follow a line of a patch from an open end, or from the plainest place; None if the patch is a letter.
+def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
+    """Follow a line of a patch from an open end, or from the plainest place; none if the head can nowhere be
+    put down on a small patch. Of what is likely a letter, and where several strokes meet of which none comes
+    round, the strokes (see `open_ink`).
 
     If the line from an end goes along less than half of the ink, a line from a plain place goes before it
     where that closes and is longer.
     """
+    are_several = is_of_several(setup, contour.stroke)
+    is_told = (is_letter or are_several) and _can_stand(setup, contour)
+    strokes = _strokes(setup, contour) if is_told else None
+    if strokes is not None and _is_told(strokes, are_several):
+        return strokes
     from_end = followed_from_an_end(setup, contour.stroke, contour.number)
     if from_end is not None:
         goes_far = from_end.length_mm > SHORT * from_end.ink_mm
         if from_end.ending != "joined" or goes_far:
-            return from_end
+            return _Found(from_end)
     about = _follow_from_plain_places(setup, contour)
-    if isinstance(about, Line):
-        if from_end is None:
+    if isinstance(about, _Found):
+        if from_end is None or about.others is not None or about.line is None:
             return about
-        is_better = about.ending == "closed" and about.length_mm > from_end.length_mm
-        return about if is_better else from_end
-    if from_end is not None:
-        return from_end
-    if contour.reach_mm < selection.LETTER_MM:
-        return None
+        is_better = about.line.ending == "closed" and about.line.length_mm > from_end.length_mm
+        return about if is_better else _Found(from_end)
+    if from_end is not None or contour.reach_mm < selection.LETTER_MM:
+        return _Found(from_end)
     place_mm = np.array(contour.starts_mm()[:1])
-    return Line(place_mm, "lost", contour.stroke.width_mm, 0.0, about, contour.number)
+    return _Found(Line(place_mm, "lost", contour.stroke.width_mm, 0.0, about, contour.number))
 
 
-def _follow_from_plain_places(setup: Setup, contour: Contour) -> Line | LineFault:
+def _can_stand(setup: Setup, contour: Contour) -> bool:
+    """Whether the head can be put down somewhere on a patch."""
+    settings, stroke = setup.settings, contour.stroke
+    width_mm = settings.line_width_mm or stroke.width_mm
+    view = view_of(setup.sheet, settings.aperture_mm, width_mm)
+    stances = (stance_near(view, stroke, start_mm) for start_mm in contour.starts_mm())
+    return any(stance is not None for stance in stances)
+
+
+def _is_told(strokes: _Found, are_several: bool) -> bool:
+    """Whether strokes are what was drawn: ends that face each other may be a gap that the head crosses, and
+    of a letter that is no more than a stroke the longest is most of the ink.
+    """
+    line = strokes.line
+    if line is None or line.gap_mm is not None:
+        return False
+    return are_several or line.length_mm > SHORT * line.ink_mm
+
+
+def _strokes(setup: Setup, contour: Contour) -> _Found | None:
+    """All strokes of a patch, the longest as its line; None if nothing is felt of it."""
+    found = strokes_of(setup, contour.stroke.patch, contour.number)
+    return _Found(found[0], found[1:]) if found else None
+
+
+def _follow_from_plain_places(setup: Setup, contour: Contour) -> _Found | LineFault:
     """Follow a line from the plainest of its places; the fault if the head can be put down at none.
 
     From a place that does not lead round, as on a chord, other turns are tried only after straight on has
-    been tried from the other places.
+    been tried from the other places; on ink of which no line comes round neither is.
     """
     in_vain, passed = list[tuple[float, float]](), list[Array]()
     fault = LineFault("no place to put the head down")
@@ -216,10 +278,14 @@ def _follow_from_plain_places(setup: Setup, contour: Contour) -> Line | LineFaul
             continue
         goes_far = not in_vain or line.length_mm > SHORT * line.ink_mm
         if line.ending != "joined" and goes_far:
-            return line
+            return _Found(line)
+        if not in_vain and _keeps_to(contour, line) and is_open(setup, contour.stroke):
+            strokes = _strokes(setup, contour)
+            if strokes is not None:
+                return strokes
         in_vain.append(start_mm)
         passed.append(line.own_mm)
-    return followed(setup, in_vain[0], contour.number) if in_vain else fault
+    return _Found(followed(setup, in_vain[0], contour.number)) if in_vain else fault
 
 
 def _a_letter(contour: Contour) -> LineFault:

@@ -8,10 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
+
+if TYPE_CHECKING:
+    from morfax.tracer.ink.chains import Junctions
 
 HeadProgress = Callable[[float, float], None]  # how far the head has come, of what length, mm
 
@@ -24,6 +28,8 @@ class Setup:
     settings: Settings = field(default_factory=Settings)
     operator: Operator = field(default_factory=Operator)
     progress: HeadProgress | None = None
+    # the junctions of the patch of ink that was solved last, by its number (see `net_outline`)
+    newest: dict[int, Junctions] = field(default_factory=dict, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if self.operator.marks == "off":

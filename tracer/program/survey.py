@@ -126,7 +126,7 @@ def survey(setup: Setup) -> Survey:
     for patch, line in dots_alone(setup):
         entries[patch] = Entry(line.number, "dot", line.start_mm, 0.0, line.width_mm, patch)
     # 3. what lies inside which, and what stands in rows
-    enclosure = Enclosure.of(sheet.patches, len(sheet.drawing.darkness))
+    enclosure = sheet.patches.enclosure
     loops = enclosure.loops((AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2)
     for patch, entry in entries.items():
         entries[patch] = replace(

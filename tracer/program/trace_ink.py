@@ -67,10 +67,10 @@ def _of_strokes(
         rows, columns = left.ink.shape
         letters = sheet.patches.painted(left.lettering, 0, rows, 0, columns)
     felt = FeltSheet.of(left.drawing, settings, left.ink, letters)
-    junctions = solved(felt)
     loops = SmallLoops.of(sheet, settings)
-    run = (_mended(loops, stroke) for stroke in _strokes(junctions, settings, progress))
+    run = (_mended(loops, stroke) for stroke in _strokes(solved(felt), settings, progress))
     strokes = _long_enough(_kept(run))
+    felt = felt.without_cells()
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"

@@ -155,9 +155,9 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     numbered = tuple(n for n in numbers if n <= patches) if numbers else which
     asked, left_out = selection.plan(setup.sheet, "contours" if beyond else numbered)
     asked, letters_out = _high_enough(setup, asked) if not numbers else (asked, ())
-    lines, unclear = one_of_each(setup, asked, which)
+    lines, unclear, strokes = one_of_each(setup, asked, which)
     # 2. the other lines of those patches
-    joined, left_mm = _joined(setup, asked, lines)
+    joined, left_mm = _joined(setup, asked, lines, strokes)
     patch_of = dict[int, int]()
     if beyond or not numbers:
         further = _numbered_on(joined, patches + len(holes))
@@ -196,17 +196,18 @@ def _dots_asked(setup: Setup, which: Which, are_numbered: bool) -> list[Line]:
 
 
 def _joined(
-    setup: Setup, asked: list[Contour], lines: list[Line]
+    setup: Setup, asked: list[Contour], lines: list[Line], strokes: dict[int, list[Line]]
 ) -> tuple[list[tuple[Line, int]], float]:
-    """Further lines of the patches on which a line was followed, each with its patch's number; and the length
-    of ink left over, mm.
+    """Further lines of the patches on which a line was followed, each with its patch's number: the strokes
+    that are known, or those that the head finds; and the length of ink left over, mm.
     """
     joined, left_mm = list[tuple[Line, int]](), 0.0
     own = {line.number: line for line in lines}
     for contour in asked:
         line = own.get(contour.number)
         if line is not None and len(line.xy_mm) > 1:  # not one that was never begun
-            others, more_mm = joined_to(line, contour, setup)
+            known = strokes.get(contour.number)
+            others, more_mm = joined_to(line, contour, setup, known)
             joined += [(other, contour.number) for other in others]
             left_mm += more_mm
     begins_mm = references_of(lines)

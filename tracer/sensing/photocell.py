@@ -21,12 +21,13 @@ the aperture (standard deviation a quarter of it).
 from __future__ import annotations
 
 import math
+import mmap
 from typing import NamedTuple
 
 import cv2
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.compiled import keeps_kinds, njit
 from morfax.tracer.drawing.blocks import BLOCK_PX
 from morfax.tracer.drawing.contrast import FAINT
@@ -74,18 +75,18 @@ class Cells(_Seen):
             return aperture.window(self.tiles, top, bottom, left, right)
         return self.darkness[top:bottom, left:right]
 
-    def wider(self, spread_px: float, place_mm: Array, reach_mm: float) -> Cells:
-        """The same behind a further spot of a standard deviation; paper beyond a reach from a place."""
+    def wider(self, spread_px: float, places: Array, beyond_mm: float) -> Cells:
+        """The same behind a further spot of a standard deviation, about some places (n, 2) sheet mm; a small
+        sheet is paper further from them.
+        """
         if self.tiles.rows:
-            return self._replace(darkness=_nothing(), tiles=self.tiles.wider(spread_px))
-        reach_px, (x, y) = math.ceil(reach_mm / self.pitch_mm), place_mm / self.pitch_mm
-        row, column = len(self.darkness) - int(y), int(x)
-        window = (
-            max(0, row - reach_px),
-            max(0, column - reach_px),
-            row + reach_px,
-            column + reach_px,
-        )
+            return self._replace(darkness=nothing(), tiles=self.tiles.wider(spread_px))
+        rows, columns = self.darkness.shape
+        (left, low), (right, high) = np.stack(bounds(places)) / self.pitch_mm
+        beyond = beyond_mm / self.pitch_mm + 1.0
+        top, bottom = max(0, math.floor(rows - high - beyond)), math.ceil(rows - low + beyond)
+        first, last = max(0, math.floor(left - beyond)), math.ceil(right + beyond)
+        window = top, first, min(rows, bottom), min(columns, last)
         return self._replace(darkness=_blurred(self.darkness, spread_px, window))
 
 
@@ -97,7 +98,7 @@ def behind_aperture(
     if isinstance(darkness, Tiles):
         spread_px = sigma_px if sigma_px >= LEAST_SPREAD_PX else 0.0
         made = aperture.MadeTiles.of(darkness, spread_px)
-        return Cells(_nothing(), drawing.pitch_mm, level, made)
+        return Cells(nothing(), drawing.pitch_mm, level, made)
     if sigma_px >= LEAST_SPREAD_PX and window is None:
         darkness = _near_ink(drawing, sigma_px)
     elif sigma_px >= LEAST_SPREAD_PX and window is not None:
@@ -110,9 +111,15 @@ def without_aperture(drawing: Drawing, level: float) -> Cells:
     return behind_aperture(drawing, 0.0, level)
 
 
-def _nothing() -> Darkness:
+def nothing() -> Darkness:
     """What stands for the darkness of a large sheet."""
     return np.empty((0, 0), np.float32)
+
+
+def _bare(shape: tuple[int, ...]) -> Darkness:
+    """A sheet of plain paper: it takes memory, and time, only where something is written on it."""
+    room = mmap.mmap(-1, max(4 * math.prod(shape), 1))
+    return np.frombuffer(room, np.float32, math.prod(shape)).reshape(shape)
 
 
 def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
@@ -120,7 +127,7 @@ def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
     darkness = drawing.darkness
     inked = (drawing.darkest > FAINT).view(np.uint8)
     if not inked.any():
-        return np.zeros(darkness.shape, np.float32)
+        return _bare(darkness.shape)
     # 1. the tiles that are near something, in stretches of each row of tiles
     tiles = [-(-side // TILE_BLOCKS) for side in inked.shape]
     padded = np.zeros([side * TILE_BLOCKS for side in tiles], np.uint8)
@@ -132,8 +139,7 @@ def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
     if near.mean() > MOSTLY:
         return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
     # 2. each stretch behind the spot
-    seen = np.zeros(darkness.shape, np.float32)
-    halo = math.ceil(HALO_SPREADS * sigma_px) + 1
+    seen, halo = _bare(darkness.shape), math.ceil(HALO_SPREADS * sigma_px) + 1
     side = TILE_BLOCKS * BLOCK_PX
     edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     row, begin = np.nonzero(edges == 1)
@@ -145,7 +151,7 @@ def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
 
 def _blurred(darkness: Darkness, sigma_px: float, window: Window) -> Darkness:
     """A window of a sheet behind a spot; the rest is zeros, which take neither time nor memory."""
-    seen = np.zeros(darkness.shape, np.float32)
+    seen = _bare(darkness.shape)
     _blur(darkness, sigma_px, window, math.ceil(HALO_SPREADS * sigma_px) + 1, seen)
     return seen
 

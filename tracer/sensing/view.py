@@ -9,6 +9,7 @@ Source: our own (see `rings`).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,6 +36,7 @@ EDGE_STEP_PX = 0.35  # stations along an edge go round corners that are as sharp
 GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages its grain
 GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
 GRAIN_STATIONS = 20
+EDGES_WIDTHS = 3.0  # to either side of such a station its edges are looked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +83,10 @@ class View:
     def at_level(self, level: float) -> View:
         """The view with another darkness at an edge."""
         return replace(self, cells=self.cells._replace(level=float(level)))
+
+    def without_cells(self) -> View:
+        """The view for those who ask for widths only: its cells see nothing."""
+        return replace(self, cells=Cells(photocell.nothing(), self.pitch_mm, self.level))
 
     def darkness_at(self, place: Array) -> float:
         """Darkness at a place."""
@@ -163,18 +169,27 @@ class View:
         cells = self.cells._replace(level=level)
         return replace(self, cells=cells, width_mm=width, usual_mm=usual)
 
-    def through_larger(self, stations: Array, heading: float, reach_mm: float) -> View:
+    def through_larger(
+        self, stations: Array, heading: float, looks_mm: Callable[[View], float]
+    ) -> View:
         """The line through cells as large as it is wide, which average its grain.
 
-        Its width and its darkness are those that these cells see at some stations (n, 3) of it. They see
-        paper beyond a reach from the last of them.
+        Its width and its darkness are those that these cells see at some stations (n, 3) of it. They see as
+        far about the last station as `looks_mm` says of that view, and paper beyond.
         """
-        sigma_px = GRAIN * self.width_mm / self.pitch_mm
-        cells = self.cells.wider(sigma_px, stations[-1, :2], reach_mm)
-        larger = replace(self, cells=cells)
         places = stations[-GRAIN_STATIONS:, :2]
+        larger = self._larger(places, EDGES_WIDTHS * self.width_mm)
         darkness = median([larger.darkness_at(place) for place in places])
         larger = larger.at_level(GRAIN_LEVEL * darkness)
-        found = [larger.edges(place, heading, 3 * self.width_mm) for place in places]
+        found = [larger.edges(place, heading, EDGES_WIDTHS * self.width_mm) for place in places]
         widths = [left - right for right, left in found if math.isfinite(left - right)]
-        return replace(larger, width_mm=median(widths)) if widths else self
+        if not widths:
+            return self
+        larger = replace(larger, width_mm=median(widths))
+        cells = self._larger(places[-1:], looks_mm(larger)).cells
+        return replace(larger, cells=cells._replace(level=larger.level))
+
+    def _larger(self, places: Array, beyond_mm: float) -> View:
+        """The sheet about some places through cells as large as the line is wide."""
+        sigma_px = GRAIN * self.width_mm / self.pitch_mm
+        return replace(self, cells=self.cells.wider(sigma_px, places, beyond_mm))

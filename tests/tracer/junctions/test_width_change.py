@@ -118,19 +118,17 @@ def test_a_larger_cell_that_sees_no_edges_changes_nothing() -> None:
     solid = inked(polyline((4, 10), (30, 10)), width_mm=8.0)
     view = View(Cells(solid.darkness, solid.pitch_mm, 0.5), 0.5)
     stations = np.column_stack([np.linspace(10, 12, 30), np.full(30, 10.0), np.full(30, 0.5)])
-    assert view.through_larger(stations, 0.0, 10.0) is view
+    assert view.through_larger(stations, 0.0, lambda seen: 5.0) is view
 
 
 def test_larger_cells_see_within_their_reach_what_they_see_of_the_whole_sheet() -> None:
     drawing, reach_mm = inked(polyline((4, 10), (40, 10)), seed=1), 5.0
     view = View(Cells(drawing.darkness, drawing.pitch_mm, 0.5), 0.5)
     stations = np.column_stack([np.linspace(10, 12, 30), np.full(30, 10.0), np.full(30, 0.5)])
-    some, all_of_it = (view.through_larger(stations, 0.0, mm) for mm in (reach_mm, 100.0))
+    some = view.through_larger(stations, 0.0, lambda seen: reach_mm)
+    all_of_it = view.through_larger(stations, 0.0, lambda seen: 100.0)
     places = stations[-1, :2] + np.random.default_rng(1).uniform(-0.7, 0.7, (500, 2)) * reach_mm
     assert np.array_equal(some.darkness_along(places), all_of_it.darkness_along(places))
     assert some.width_mm == all_of_it.width_mm
-    assert (
-        some.darkness_at(np.array([30.0, 10.0]))
-        == 0.0
-        != all_of_it.darkness_at(np.array([30.0, 10.0]))
-    )
+    beyond = np.array([30.0, 10.0])
+    assert some.darkness_at(beyond) == 0.0 != all_of_it.darkness_at(beyond)

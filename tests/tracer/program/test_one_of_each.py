@@ -44,7 +44,7 @@ def test_a_line_from_an_end_that_leads_round_little_of_the_ink_gives_way(
     monkeypatch.setattr(one_of_each, "followed_from_an_end", lambda *_: from_end)
     monkeypatch.setattr(one_of_each, "followed", lambda *_, **__: round_about)
     asked, _ = selection.plan(SHEET, (1,))
-    (found,), unclear = one_of_each.one_of_each(Setup(SHEET), asked, (1,))
+    (found,), unclear, _ = one_of_each.one_of_each(Setup(SHEET), asked, (1,))
     assert found is (from_end if taken == "end" else round_about) and not unclear
 
 
