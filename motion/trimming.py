@@ -24,8 +24,9 @@ import numpy as np
 
 from morfax.motion.arm import DEEP_MM
 from morfax.motion.arrays import Array
+from morfax.motion.crossings import crossings_of
 from morfax.motion.plane import cross
-from morfax.motion.polyline import UM, Nearest, at_places, closed_up, crossings_of, length_mm
+from morfax.motion.polyline import UM, Nearest, at_places, closed_up, length_mm
 
 NEARER = 0.2 * UM  # than the radius: a piece that is nearer is taken out, ...
 # ... but for one of this length that is nearer by no more than this: there the line has a kink; by trial

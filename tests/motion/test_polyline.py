@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from morfax.motion import polyline
+from morfax.motion.crossings import crossings
 from morfax.motion.polyline import (
     APART_MM,
     WITHIN_MM,
     Nearest,
     at_lengths,
-    crossings,
     lengths_mm,
     nearest_mm,
     plain,

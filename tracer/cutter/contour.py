@@ -23,13 +23,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from morfax.motion.crossings import crossings
 from morfax.motion.curves import hermite
 from morfax.motion.long_array import LongArray, is_mapped
 from morfax.motion.plane import heading_of, left_of
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
-    crossings,
     evenly,
     length_mm,
     lengths_by_blocks,

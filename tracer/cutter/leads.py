@@ -23,8 +23,9 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.crossings import crossings
 from morfax.motion.offset import DriveCurve
-from morfax.motion.polyline import APART_MM, Nearest, crossings, with_places
+from morfax.motion.polyline import APART_MM, Nearest, with_places
 from morfax.tracer.cutter import sides
 from morfax.tracer.cutter.contouring import Lead
 

@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 
 from morfax.motion import nesting
 from morfax.motion.arrays import Array
+from morfax.motion.crossings import crossings_of
 from morfax.motion.offset import DriveCurve
 from morfax.motion.polyline import (
     Nearest,
     area_mm2,
     closed_up,
-    crossings_of,
     lengths_mm,
     with_places,
 )

@@ -51,11 +51,8 @@ SOFT_PX = 1.5  # beside a printed line: its soft edges
 SPANNED = 0.6  # of a line's length on the sheet is inked
 EDGE = 0.03  # of the sheet's length: printed lines are there at both ends
 EDGE_LOST = 0.25  # of them may leave the sheet at a side, or lie under a shadow
-TILES, INK_OVER, INK_IN = (
-    8,
-    0.9,
-    0.01,
-)  # printed paper has ink in so many of 8 x 8 tiles, 1 % of the pixels
+# printed paper has ink in so many of 8 x 8 tiles, 1 % of the pixels
+TILES, INK_OVER, INK_IN = 8, 0.9, 0.01
 DARKER = 80.0  # percentile of the darkness of printed lines: drawn ink covers the smaller part
 EXCESS = 0.35  # of ink's darkness: noise is no ink on a printed line
 SAMPLES = 50_000  # pixels of ink that tell the tilt

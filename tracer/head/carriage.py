@@ -1,10 +1,9 @@
 """The carriage: the head on its two screws, moved by its kernels, and what it remembers of its way.
 
-Signals: a leg to follow from, or a course to run (sheet mm, mm/s) in; positions of the screws (n, 2) mm at
-the motion rate out.
+Signals: a leg to follow from, or a course (mm, mm/s) in; positions (n, 2) mm at the motion rate out.
 
-The carriage keeps every position that its screws took (`positions_mm`; in a file, beyond some metres of
-line), and the trail of them by which the head knows where it has been.
+The carriage keeps every position of its screws (`positions_mm`; in a file, beyond some metres of line), and
+the trail of them by which the head knows where it has been.
 
 Source: patent ES 361967, figure 1: lead screws 111 with their motors 17 and 12, and the head that they carry.
 """

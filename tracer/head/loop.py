@@ -22,7 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import crossings, lengths_by_blocks
+from morfax.motion.crossings import crossings
+from morfax.motion.polyline import lengths_by_blocks
 
 # Chosen by trial on the test drawings.
 STEP_MM = 0.03  # between the places that are compared
