@@ -34,6 +34,7 @@ COMMANDS = (  # one that most will use first, then others in the order of how ma
     f"lines {RECIPES}/name-tag.png --follow",
     "trace {folder}/coast.png --width 40mm -o {folder}/coast.ngc",
     "trace {folder}/pencil.png --width 60mm -o {folder}/pencil.ngc",
+    "trace {folder}/slots.png --width 40mm --lines contours -o {folder}/slots.ngc",
     "compare samples/bracket.png --systems all -o {folder}/systems.html",
     "age {folder}/run/program.wav -o {folder}/worn.wav --noise 40 --flutter 0.3%",
     "play {folder}/worn.wav -o {folder}/worn.csv",
@@ -67,7 +68,9 @@ def used_s(name: str, folder: str, ahead: str) -> tuple[float, float]:
 
 
 def draw(folder: Path) -> None:
-    """Draw what the samples lack: a coast whose spikes run together, and a faint pencil line with grain."""
+    """Draw what the samples lack: a coast whose spikes run together, a faint pencil line with grain, and a
+    plate with a small hole and a narrow slot.
+    """
     rng = np.random.default_rng(1)
     turns = np.linspace(0, math.tau, 181)
     radius = 180 + rng.uniform(-35, 35, len(turns))  # pixels; 40 mm in all at 300 dpi
@@ -80,6 +83,11 @@ def draw(folder: Path) -> None:
     grain = cv2.GaussianBlur(rng.normal(0, 1, ellipse.shape), (0, 0), 1.2)
     ink = (235 - ellipse.astype(float)) * (1 + 0.4 * grain / grain.std()) / 3
     noisy = 235 - ink + rng.normal(0, 8, ink.shape)
+    plate = np.full((500, 500), 235, np.uint8)
+    cv2.rectangle(plate, (60, 60), (440, 300), 40, 6, cv2.LINE_AA)
+    cv2.circle(plate, (150, 180), 7, 40, 6, cv2.LINE_AA)
+    cv2.rectangle(plate, (250, 170), (310, 181), 40, 6, cv2.LINE_AA)
+    cv2.imwrite(str(folder / "slots.png"), cv2.GaussianBlur(plate, (0, 0), 0.7))
     cv2.imwrite(str(folder / "coast.png"), coast)
     cv2.imwrite(str(folder / "pencil.png"), noisy.clip(0, 255).astype(np.uint8))
 
