@@ -17,6 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.median import median
+from morfax.tracer.drawing.enclosure import NONE, Enclosure
 from morfax.tracer.drawing.holes import holes
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
@@ -24,6 +26,8 @@ from morfax.tracer.program.selection import Contour, lines_of
 
 LEAST_WIDTHS = 2.0  # across: a smaller patch is a dot, whatever light is in it
 LEAST_HOLE_PX = 4  # of paper within: fewer are a speck in the ink
+BROAD = 1.4  # of a line's width: two lines whose ink runs together
+FILLED = 0.65  # of the square about it: a dot fills 0.79
 MOST_RINGS = 500  # patches that are looked at, the largest first: sheets of text have thousands
 
 
@@ -45,12 +49,33 @@ class SmallPatch(NamedTuple):
 def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
     """The closed lines of a sheet that are too short to be contours, and no lettering; the largest first."""
     lines, across_mm = lines_of(sheet), sheet.patches.longer_sides * sheet.drawing.pitch_mm
-    small = across_mm > LEAST_WIDTHS * np.median(sheet.widths_mm[lines])
+    small = across_mm > LEAST_WIDTHS * median(sheet.widths_mm[lines])
     small[[*lines, *lettering(sheet)]] = False
     chosen = np.flatnonzero(small)
     chosen = chosen[np.argsort(-across_mm[chosen], kind="stable")][:MOST_RINGS]
     rings = [p for p in chosen.tolist() if paper_within_px(sheet, p) >= LEAST_HOLE_PX]
     return tuple(SmallPatch.of(sheet, patch) for patch in rings)
+
+
+def filled_up(sheet: Sheet) -> tuple[SmallPatch, ...]:
+    """Ink inside a line that is too short for one, broader than a line and longer than a dot: most likely a
+    slot whose sides run together. The largest first.
+    """
+    numbers, patches = lines_of(sheet), sheet.patches
+    across_px = patches.longer_sides
+    pen_mm = median(sheet.widths_mm[numbers])
+    small = (sheet.widths_mm > BROAD * pen_mm) & (patches.areas < FILLED * across_px**2)
+    small &= (across_px * sheet.drawing.pitch_mm > LEAST_WIDTHS * pen_mm) & ~sheet.are_solid
+    small[[*numbers, *lettering(sheet)]] = False
+    if not small.any():
+        return ()
+    are_lines = np.zeros(patches.count, bool)
+    are_lines[numbers] = True
+    inside = Enclosure.of(patches, len(sheet.drawing.darkness)).inside
+    small &= (inside != NONE) & are_lines[inside]
+    chosen = np.flatnonzero(small)
+    largest_first = chosen[np.argsort(-across_px[chosen], kind="stable")]
+    return tuple(SmallPatch.of(sheet, patch) for patch in largest_first.tolist())
 
 
 def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPatch, ...]:

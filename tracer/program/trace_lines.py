@@ -43,7 +43,12 @@ from morfax.tracer.program.one_of_each import (
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
-from morfax.tracer.program.small_rings import SmallPatch, small_rings, unclear_patches
+from morfax.tracer.program.small_rings import (
+    SmallPatch,
+    filled_up,
+    small_rings,
+    unclear_patches,
+)
 from morfax.tracer.program.trace import followed
 from morfax.tracer.program.unexplained import unexplained
 
@@ -84,6 +89,8 @@ def trace_lines(
     found = found_lines(setup, which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines)
+    sheet = setup.sheet
+    is_searched = _is_searched(setup, which, lines)
     return Trace(
         tuple(_in_order(setup, lines)),
         operator,
@@ -91,18 +98,17 @@ def trace_lines(
         left_out_mm=found.left_out_mm,
         unread=unread,
         unexplained=unexplained(setup, lines) if which == "contours" else (),
-        letters=_letters(setup.sheet, lines) if which == "contours" else (),
+        letters=_letters(sheet, lines) if which == "contours" else (),
         letters_out=found.letters_out,
-        small_rings=_rings_out(setup, which, lines),
-        unclear=found.unclear,
+        small_rings=small_rings(sheet) if is_searched else (),
+        unclear=found.unclear + (filled_up(sheet) if is_searched else ()),
     )
 
 
-def _rings_out(setup: Setup, which: Which, lines: Sequence[Line]) -> tuple[SmallPatch, ...]:
-    """Closed lines that are too short to be contours; of a drawn program none, which has rings as marks."""
-    sheet, is_drawn = setup.sheet, setup.operator.reads_marks(lines)
-    is_whole = isinstance(which, str) and not sheet.drawing.edges_mm
-    return small_rings(sheet) if is_whole and not is_drawn else ()
+def _is_searched(setup: Setup, which: Which, lines: Sequence[Line]) -> bool:
+    """Whether small closed lines are looked for that are no contours; a drawn program has rings as marks."""
+    is_whole = isinstance(which, str) and not setup.sheet.drawing.edges_mm
+    return is_whole and not setup.operator.reads_marks(lines)
 
 
 def _letters(sheet: Sheet, lines: Sequence[Line]) -> tuple[int, ...]:

@@ -46,3 +46,15 @@ def test_a_zigzag_too_narrow_to_be_followed_is_told() -> None:
     zigzag = polyline(*((12 + 0.7 * k, 20 + 1.2 * (k % 2)) for k in range(7)))
     said = told(PLATE, zigzag, width_mm=1.0)
     assert "the head can nowhere be put down" in said
+
+
+def test_a_slot_whose_sides_run_together_is_told_with_its_place() -> None:
+    """Its sides are 1.1 mm apart, and its line is 1 mm wide: no paper is seen within. A dot is none."""
+    slot = polyline((12, 20), (14.4, 20), (14.4, 21.1), (12, 21.1), (12, 20))
+    dot = polyline((30, 20), (30.01, 20))
+    trace = trace_lines(inked(PLATE, slot, dot, width_mm=1.0, dpi=150, seed=1))
+    assert [line.ending for line in trace.lines if not line.is_dot] == ["closed"]
+    (patch,) = trace.unclear
+    assert patch.place_mm == pytest.approx((13.2, 20.55), abs=2 * PITCH_MM)
+    said = " ".join(of_ink(trace, several=True))
+    assert "1 line is left out" in said and "with a finer pen" in said
