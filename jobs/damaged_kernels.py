@@ -27,9 +27,13 @@ CACHING = "numba.core.caching"
 
 
 def compile_damaged_again(note: Callable[[str], None]) -> None:
-    """From now on, compile kernels again that are damaged; `note` is told once."""
+    """From now on, compile kernels again that are damaged; `note` is told once.
+
+    Until numba is loaded the newest `note` counts: a process may run many commands and never need numba.
+    """
     if CACHING not in sys.modules:
-        sys.meta_path.insert(0, _Lookout(note))
+        others = (finder for finder in sys.meta_path if not isinstance(finder, _Lookout))
+        sys.meta_path[:] = [_Lookout(note), *others]
     else:
         forgive(sys.modules[CACHING], note)
 

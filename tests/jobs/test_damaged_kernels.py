@@ -87,3 +87,17 @@ def test_damaged_kernels_are_compiled_again(
     assert done.stderr.count("\n") == 1
     again = run()
     assert (again.stdout, again.stderr) == ("42\n", "")
+
+
+def test_many_commands_of_a_process_leave_one_lookout() -> None:
+    """Each of them asks for it, and numba may be loaded after thousands."""
+    code = (
+        "import sys; from morfax.jobs.damaged_kernels import compile_damaged_again;"
+        " before = len(sys.meta_path);"
+        " [compile_damaged_again(print) for _ in range(2000)];"
+        " print(len(sys.meta_path) - before); import numba"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "1\n"
