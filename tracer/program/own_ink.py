@@ -46,7 +46,9 @@ MOST = 60.0  # percent of the line
 REACH_WIDTHS = 1.25  # from a way: ink further away is another line's
 OF_WIDTH = (0.8, 0.9, 1.0, 1.1, 1.25)  # of the line's: pens that are tried
 STATION_WIDTHS = 0.25  # between the places at which a way is judged
-PLACES_PX = 0.5  # between the places that stand for a way
+PLACES_PX = (
+    1.0  # between the places that stand for a way: near its edge they are 0.04 px off it
+)
 TILE_PX = 256
 DARKEST = 1.05  # times the line's darkness
 
@@ -63,8 +65,8 @@ class Ways(NamedTuple):
     by lines: half the width in pixels, and whether it is closed.
     """
 
-    places_px: Array
-    line: NDArray[np.int64]
+    places_px: NDArray[np.float32]
+    line: NDArray[np.int32]
     half_px: Array
     closed: NDArray[np.bool_]
 
@@ -72,6 +74,30 @@ class Ways(NamedTuple):
     def pen_px(self) -> float:
         """Half the width of most closed lines."""
         return median(self.half_px[self.closed])
+
+
+class _Tiles(NamedTuple):
+    """In which tile each place of the ways is, the places in the order of these, and tiles in a row."""
+
+    of_place: NDArray[np.int32]
+    order: NDArray[np.int64]
+    across: int
+
+    @classmethod
+    def of(cls, ways: Ways) -> _Tiles:
+        """The tiles of some ways; the last of each row is empty."""
+        column, row = np.maximum(ways.places_px.T / TILE_PX, 0).astype(np.int32)
+        across = 2 + int(column.max())
+        of_place = row * across + column
+        return cls(of_place, np.argsort(of_place, kind="stable"), across)
+
+    def about(self, row: int, column: int) -> NDArray[np.int64]:
+        """The numbers of the places in a tile and in the eight about it."""
+        firsts = (np.arange(row - 1, row + 2) * self.across + column - 1).tolist()
+        ends = np.searchsorted(
+            self.of_place, [(first, first + 3) for first in firsts], sorter=self.order
+        )
+        return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
 
 
 def beside(drawing: Drawing, lines: Sequence[Line]) -> Iterator[Beside]:
@@ -101,10 +127,10 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
     """The ways of lines in pixels of the sheet."""
     pitch_mm, rows = drawing.pitch_mm, drawing.darkness.shape[0]
     ways = [evenly(line.places_mm, PLACES_PX * pitch_mm) for line in lines]
-    places = np.vstack(ways) / pitch_mm
+    places = [np.column_stack([way[:, 0], rows * pitch_mm - way[:, 1]]) for way in ways]
     return Ways(
-        np.column_stack([places[:, 0], rows - places[:, 1]]) - 0.5,
-        np.repeat(np.arange(len(ways)), [len(way) for way in ways]),
+        np.vstack([(some / pitch_mm - 0.5).astype(np.float32) for some in places]),
+        np.repeat(np.arange(len(ways), dtype=np.int32), [len(way) for way in ways]),
         np.array([0.5 * line.width_mm / pitch_mm for line in lines]),
         np.array([line.ending == "closed" and not line.on_edge for line in lines]),
     )
@@ -112,15 +138,14 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
 
 def _judged(
     drawing: Drawing, ways: Ways
-) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
+) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
     """The stations of closed lines, tile by tile: line, number of the place, and what is over."""
-    tile = np.maximum(ways.places_px / TILE_PX, 0).astype(int)
-    across = 1 + int(tile[:, 0].max())
-    is_station = ways.closed[ways.line] & (np.arange(len(tile)) % _every(ways) == 0)
-    for number in sorted(set((tile[is_station] @ (1, across)).tolist())):
-        row, column = divmod(number, across)
-        near = np.flatnonzero(np.abs(tile - (column, row)).max(axis=1) <= 1)
-        stations = near[is_station[near] & (tile[near] == (column, row)).all(axis=1)]
+    tiles = _Tiles.of(ways)
+    is_station = ways.closed[ways.line] & (np.arange(len(ways.line)) % _every(ways) == 0)
+    for number in sorted(set(tiles.of_place[is_station].tolist())):
+        row, column = divmod(number, tiles.across)
+        near = tiles.about(row, column)
+        stations = near[is_station[near] & (tiles.of_place[near] == number)]
         margin = math.ceil(2 * (REACH_WIDTHS + 1) * ways.pen_px) + 1
         top, left = max(row * TILE_PX - margin, 0), max(column * TILE_PX - margin, 0)
         seen = drawing.darkness[
@@ -210,7 +235,7 @@ def _stretches(above: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return [(int(first), int(last)) for first, last in edges.reshape(-1, 2)]
 
 
-def _mm(drawing: Drawing, place_px: Array) -> tuple[float, float]:
+def _mm(drawing: Drawing, place_px: NDArray[np.float32]) -> tuple[float, float]:
     """A place in pixels, on the sheet in mm."""
     column, row = place_px.tolist()
     rows = drawing.darkness.shape[0]
