@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from morfax.jobs.remarks_on_lines import of_letters
+from morfax.jobs.remarks_on_unexplained import of_unexplained
 from morfax.motion.by_number import numbered
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def of_ink(trace: Trace, *, several: bool) -> Iterator[str]:
     if alone:
         yield from _of_others(trace)
     if not rest:
-        yield from _of_unexplained(trace)
+        yield from of_unexplained(trace)
 
 
 def _of_all(trace: Trace) -> Iterator[str]:
@@ -210,60 +211,6 @@ def _of_rest(line: Line) -> Iterator[str]:
             "followed: "
             "--lines all also follows the lines that cross or touch it, --start X,Y another one"
         )
-
-
-def _of_unexplained(trace: Trace) -> Iterator[str]:
-    """Closed lines that may be other lines than those drawn."""
-    tips = [place for place in trace.unexplained if place.is_tip]
-    beside = [place for place in trace.unexplained if place.is_ink and not place.is_tip]
-    off = [place for place in trace.unexplained if place.is_beside]
-    bare = [
-        p for p in trace.unexplained if not p.is_ink and not p.is_beside and p.wants_dpi is None
-    ]
-    pale = [p for p in trace.unexplained if p.wants_dpi is not None]
-    if tips:
-        (x, y), cut_mm = tips[0][:2]
-        many = "1 tip" if len(tips) == 1 else f"{len(tips)} tips"
-        yield (
-            f"the path cuts {many} of the shape short, by up to {cut_mm:.2f} mm at {x:.1f},{y:.1f} mm; "
-            "printed twice as large, and with --scale 0.5, by half of that"
-        )
-    if beside:
-        (x, y), long_mm = beside[0][:2]
-        many = "1 piece of ink" if len(beside) == 1 else f"{len(beside)} pieces of ink"
-        yield (
-            f"{many} joined to the {_line_of(trace)} beside its way, up to {long_mm:.1f} mm from it, at "
-            f"{x:.1f},{y:.1f} mm: a tip or a bay that is narrower than two lines, or another line; --picture "
-            "marks it, and --lines all follows other lines too"
-        )
-    if bare:
-        (x, y), long_mm = bare[0][:2]
-        yield (
-            f"the closed line runs over {long_mm:.1f} mm of bare paper at {x:.1f},{y:.1f} mm, where no ink "
-            "leads: look at --picture, and draw the line there"
-        )
-    if off:
-        (x, y), long_mm = off[0][:2]
-        many = "1 place" if len(off) == 1 else f"{len(off)} places"
-        yield (
-            f"the closed line runs beside its ink at {many}, the longest {long_mm:.1f} mm at {x:.1f},{y:.1f} "
-            "mm: look there in --picture; a notch or a tongue that is narrower than two lines is followed if "
-            "it is drawn with a finer pen"
-        )
-    if pale:
-        x, y = pale[0].place_mm
-        dpi = pale[0].wants_dpi
-        places = "1 place" if len(pale) == 1 else f"{len(pale)} places"
-        yield (
-            f"not sure that the closed line is the one drawn: the pixels are too large to tell at {places}, "
-            f"the first at {x:.1f},{y:.1f} mm, where a spike or a bay may be cut off; scan at {dpi} dpi"
-        )
-
-
-def _line_of(trace: Trace) -> str:
-    """What a line that came round is called."""
-    is_closed = any(line.ending == "closed" for line in trace.lines)
-    return "closed line" if is_closed else "line"
 
 
 def _of_others(trace: Trace) -> Iterator[str]:

@@ -12,7 +12,16 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.left_out import Area
     from morfax.tracer.program.program import Trace
     from morfax.tracer.program.small_rings import SmallPatch
-    from morfax.tracer.program.unexplained import Unexplained
+    from morfax.tracer.program.unexplained import Kind
+
+
+UNEXPLAINED: dict[Kind, str] = {
+    "ink": "ink beside the way",
+    "tip": "tip cut short",
+    "bare": "way without ink",
+    "beside": "way beside its ink",
+    "pale": "pixels too large to tell",
+}
 
 
 def lines(
@@ -110,7 +119,7 @@ def unexplained(trace: Trace) -> list[dict[str, Any]]:
         {
             "unexplained_place_mm": place.place_mm,
             "unexplained_mm": place.length_mm,
-            "what": _what(place),
+            "what": UNEXPLAINED[place.kind],
         }
         for place in trace.unexplained
     ]
@@ -122,17 +131,6 @@ def lost_outlines(trace: Trace) -> list[dict[str, Any]]:
         {"lost_outline_place_mm": lost.place_mm, "lost_outline_mm": lost.length_mm}
         for lost in trace.lost_outlines
     ]
-
-
-def _what(place: Unexplained) -> str:
-    """What is at a place that closed lines do not explain."""
-    if place.is_tip:
-        return "tip cut short"
-    if place.is_ink:
-        return "ink beside the way"
-    if place.is_beside:
-        return "way beside its ink"
-    return "way without ink" if place.wants_dpi is None else "pixels too large to tell"
 
 
 def leads(trace: Trace) -> list[dict[str, Any]]:

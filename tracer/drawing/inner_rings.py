@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import median
-from morfax.tracer.drawing.enclosure import NONE, Enclosure
+from morfax.tracer.drawing.enclosure import NONE
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 
-LEAST_WIDTHS = 2.0  # across, the ink with it: paper is seen within
-LEAST_PX = 4.0  # of paper within: less is a speck in the ink
+LEAST_WIDTHS = 2.0  # across, the ink with it: a smaller patch is a dot, whatever light is in it
+LEAST_PX = 4  # of paper within: fewer are a speck in the ink
 
 
 def inner_rings(sheet: Sheet, lines: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -33,8 +33,8 @@ def inner_rings(sheet: Sheet, lines: NDArray[np.bool_]) -> NDArray[np.int64]:
     small = ~lines & (across_mm > LEAST_WIDTHS * median(sheet.widths_mm[lines]))
     if not small.any():
         return none
-    enclosure = Enclosure.of(sheet.patches, len(sheet.drawing.darkness))
-    small &= enclosure.loops(np.full(len(small), LEAST_PX)) == 1
+    enclosure = sheet.patches.enclosure
+    small &= enclosure.loops(np.full(len(small), float(LEAST_PX))) == 1
     small &= (enclosure.inside != NONE) & lines[enclosure.inside]
     small[sorted(lettering(sheet))] = False
     return np.flatnonzero(small)

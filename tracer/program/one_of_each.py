@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from morfax.motion import nesting
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
-from morfax.motion.polyline import length_mm, nearest_mm
+from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
@@ -65,7 +65,7 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
     total_mm = sum(contour.stroke.length_mm for contour in asked)
     lines, boxes_mm, come_mm = list[Line](), list[Array](), 0.0
     begins_mm, unclear = list[tuple[float, float]](), list[Contour]()
-    loops = SmallLoops.of(setup.sheet, setup.settings)
+    loops = SmallLoops(setup.sheet, setup.settings)
     others = dict[int, list[Line]]()
     letters = lettering(setup.sheet) if may_solve(setup) else set[int]()
     for contour in asked:
@@ -188,8 +188,8 @@ def _as_loop(loops: SmallLoops, contour: Contour) -> Line | None:
     loop = loops.of_patch(contour.stroke.patch, width_mm)
     if loop is None:
         return None
-    long_mm = length_mm(loop.way_mm)
-    return Line(loop.way_mm, "closed", width_mm, long_mm, number=contour.number, led=loop.led)
+    number, long_mm = contour.number, loop.length_mm
+    return Line(loop.way_mm, "closed", width_mm, long_mm, number=number, led=loop.led)
 
 
 def _or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:

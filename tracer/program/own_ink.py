@@ -36,6 +36,7 @@ from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.tangle import DARKEST
 
 # Limits chosen by trial on 625 right ways of parts, holes, slots, notches and tongues, none of which comes
 # above them. Of 25 wrong ones 12 do, and of those that are more than 0.4 mm off all but two.
@@ -50,7 +51,6 @@ PLACES_PX = (
     1.0  # between the places that stand for a way: near its edge they are 0.04 px off it
 )
 TILE_PX = 128
-DARKEST = 1.05  # times the line's darkness
 
 
 class Beside(NamedTuple):

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import cv2
@@ -24,6 +25,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import length_mm
+from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.followed import THINNED
@@ -33,8 +35,9 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.program.small_rings import LEAST_HOLE_PX, paper_within_px
+from morfax.tracer.program.small_rings import paper_within_px
 from morfax.tracer.tangles.compass import Core, RingInk, explained
+from morfax.tracer.tangles.tangle import DARKEST
 
 SMALL_WIDTHS = 16.0  # a longer loop has sides as long as a leg, ...
 # ... but one whose sides are no further apart than this, in the mean, has ends too narrow for the head; that
@@ -50,7 +53,6 @@ GAIN = 0.001
 ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
-DARKEST = 1.05  # times the line's darkness
 
 
 class Loop(NamedTuple):
@@ -59,21 +61,24 @@ class Loop(NamedTuple):
     way_mm: Array
     led: Led
 
+    @property
+    def length_mm(self) -> float:
+        """The length of the way."""
+        return length_mm(self.way_mm)
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True)
 class SmallLoops:
-    """The small loops of a sheet, and the head that runs along them; patches `passed_by` are none."""
+    """The small loops of a sheet, and the head that runs along them."""
 
     sheet: Sheet
     settings: Settings
-    passed_by: frozenset[int] = frozenset()
 
-    @classmethod
-    def of(cls, sheet: Sheet, settings: Settings) -> SmallLoops:
-        """Those of a sheet; on a page of text letters are none."""
-        letters = lettering(sheet)
-        passed_by = frozenset(letters) if len(letters) > TEXT else frozenset[int]()
-        return cls(sheet, settings, passed_by)
+    @cached_property
+    def passed_by(self) -> set[int]:
+        """The patches that are no loops: on a page of text the letters."""
+        letters = lettering(self.sheet)
+        return letters if len(letters) > TEXT else set()
 
     def mended(self, line: Line) -> Line:
         """A line as it is; a small one that should close and fails its own ink as the compass lays it."""
@@ -92,7 +97,7 @@ class SmallLoops:
             line,
             xy_mm=loop.way_mm,
             ending="closed",
-            length_mm=length_mm(loop.way_mm),
+            length_mm=loop.length_mm,
             fault=None,
             loop_from=None,
             junctions_mm=(),
@@ -126,17 +131,13 @@ class SmallLoops:
         within_mm2 = within_px * pitch_mm**2 + 0.5 * long_mm * width_mm
         is_narrow = 2 * within_mm2 < NARROW_WIDTHS * width_mm * long_mm
         is_small = long_mm < SMALL_WIDTHS * width_mm or is_narrow
-        return (
-            is_small and within_px >= LEAST_HOLE_PX and self.sheet.drawing.noise.softness_px > 0
-        )
+        is_loop = is_small and within_px >= LEAST_PX
+        return is_loop and self.sheet.drawing.noise.softness_px > 0
 
     def _ink(self, patch: int, width_mm: float) -> RingInk:
         """The ink of a patch, and the paper about it and within, as far as that is no other patch's."""
-        drawing, patches, noise = (
-            self.sheet.drawing,
-            self.sheet.patches,
-            self.sheet.drawing.noise,
-        )
+        drawing, patches = self.sheet.drawing, self.sheet.patches
+        noise = drawing.noise
         rows, columns = drawing.darkness.shape
         about = 2 + math.ceil(ABOUT_SOFT * noise.softness_px)
         top, bottom, left, right = patches.boxes[patch].tolist()

@@ -1,8 +1,8 @@
 """Small rings: closed lines of a sheet that are too short or too narrow to be contours.
 
-A letter o and a small hole look alike: what is shorter than a contour is left out (see `selection`), and so
-is a small patch on which the head can nowhere be put down. But a hole that is left out is missed at the
-machine, so these are told.
+A letter o and a small hole look alike: outside of all lines what is shorter than a contour is left out (see
+`selection`), and so is a small patch on which the head can nowhere be put down, or within which no paper is
+seen. But a hole that is left out is missed at the machine, so these are told.
 
 Signals: a Sheet, and contours on which the head could not be put down, in; places and sizes out, mm.
 
@@ -18,14 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import median
-from morfax.tracer.drawing.enclosure import NONE, Enclosure
+from morfax.tracer.drawing.enclosure import NONE
 from morfax.tracer.drawing.holes import holes
+from morfax.tracer.drawing.inner_rings import LEAST_PX, LEAST_WIDTHS
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.program.selection import Contour, lines_of
 
-LEAST_WIDTHS = 2.0  # across: a smaller patch is a dot, whatever light is in it
-LEAST_HOLE_PX = 4  # of paper within: fewer are a speck in the ink
 BROAD = 1.4  # of a line's width: two lines whose ink runs together
 FILLED = 0.65  # of the square about it: a dot fills 0.79
 MOST_RINGS = 500  # patches that are looked at, the largest first: sheets of text have thousands
@@ -53,7 +52,7 @@ def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
     small[[*lines, *lettering(sheet)]] = False
     chosen = np.flatnonzero(small)
     chosen = chosen[np.argsort(-across_mm[chosen], kind="stable")][:MOST_RINGS]
-    rings = [p for p in chosen.tolist() if paper_within_px(sheet, p) >= LEAST_HOLE_PX]
+    rings = [p for p in chosen.tolist() if paper_within_px(sheet, p) >= LEAST_PX]
     return tuple(SmallPatch.of(sheet, patch) for patch in rings)
 
 
@@ -71,7 +70,7 @@ def filled_up(sheet: Sheet) -> tuple[SmallPatch, ...]:
         return ()
     are_lines = np.zeros(patches.count, bool)
     are_lines[numbers] = True
-    inside = Enclosure.of(patches, len(sheet.drawing.darkness)).inside
+    inside = patches.enclosure.inside
     small &= (inside != NONE) & are_lines[inside]
     chosen = np.flatnonzero(small)
     largest_first = chosen[np.argsort(-across_px[chosen], kind="stable")]

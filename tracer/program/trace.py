@@ -52,7 +52,7 @@ def trace(
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     found = OfNet(setup) if start_mm is not None else of_net(setup)
     line = _along_net(found) or followed(found.setup, start_mm)
-    line = SmallLoops.of(found.setup.sheet, setup.settings).mended(line)
+    line = SmallLoops(found.setup.sheet, setup.settings).mended(line)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
     beside = unexplained(setup, lines)

@@ -15,7 +15,6 @@ import numpy as np
 
 from morfax.motion.faults import LineFault
 from morfax.motion.long_array import filed
-from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.shapes_among_lines import has_lines
 from morfax.tracer.drawing.strokes import Sheet
@@ -67,7 +66,7 @@ def _of_strokes(
         rows, columns = left.ink.shape
         letters = sheet.patches.painted(left.lettering, 0, rows, 0, columns)
     felt = FeltSheet.of(left.drawing, settings, left.ink, letters)
-    loops = SmallLoops.of(sheet, settings)
+    loops = SmallLoops(sheet, settings)
     run = (_mended(loops, stroke) for stroke in _strokes(solved(felt), settings, progress))
     strokes = _long_enough(_kept(run))
     felt = felt.without_cells()
@@ -105,8 +104,7 @@ def _mended(loops: SmallLoops, stroke: InkStroke) -> InkStroke:
     loop = loops.of_way(stroke.way_mm, stroke.width_mm) if stroke.closed else None
     if loop is None:
         return stroke
-    long_mm = length_mm(loop.way_mm)
-    return stroke._replace(way_mm=loop.way_mm, length_mm=long_mm, led=loop.led)
+    return stroke._replace(way_mm=loop.way_mm, length_mm=loop.length_mm, led=loop.led)
 
 
 def _kept(strokes: Iterable[InkStroke]) -> list[InkStroke]:

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,20 +56,24 @@ EVERY_MM = 0.05  # between the places of an edge, as between those of a way
 ASTRAY = 0.2
 
 
-class Unexplained(NamedTuple):
-    """A place that the ways do not explain: where, how much (mm), and whether it is ink.
+Kind = Literal["ink", "tip", "bare", "beside", "pale"]
 
-    Of ink how far it reaches beside the ways, of a way over bare paper its length. Of a way over ink that is
-    only pale, on a coarse scan, the resolution that would show what is there. `is_tip`: a tip of a filled
-    shape, off which the way cuts so much. `is_beside`: the way runs beside its ink for so long.
+
+class Unexplained(NamedTuple):
+    """A place that the ways do not explain: where, how much (mm), and what is there.
+
+    ink       ink beside all ways: how far it reaches
+    tip       a tip of a filled shape, or its edge: how much of it the way cuts off
+    bare      a way over bare paper: for how long
+    beside    a way beside its own pen's ink: for how long
+    pale      on a coarse scan a way over ink that is pale: for how long; and `wants_dpi`, the resolution that
+              would show what is there
     """
 
     place_mm: tuple[float, float]
     length_mm: float
-    is_ink: bool
+    kind: Kind
     wants_dpi: int | None = None
-    is_tip: bool = False
-    is_beside: bool = False
 
 
 def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
@@ -98,7 +102,7 @@ def _beside_ink(
     about_mm = BESIDE_WIDTHS * max(line.width_mm for line in lines)
     for place_mm, long_mm in beside(drawing, lines):
         if all(math.dist(place_mm, other.place_mm) > about_mm for other in found):
-            yield Unexplained(place_mm, long_mm, False, is_beside=True)
+            yield Unexplained(place_mm, long_mm, "beside")
 
 
 def _ink_beside(
@@ -127,7 +131,7 @@ def _ink_beside(
         mine = np.flatnonzero(group == number)
         furthest = np.unravel_index(np.argmax(away_mm[:, mine]), (2, len(mine)))
         x, y = ends[:, mine][furthest]
-        yield Unexplained((float(x), float(y)), float(away_mm[:, mine].max()), True)
+        yield Unexplained((float(x), float(y)), float(away_mm[:, mine].max()), "ink")
 
 
 def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[Unexplained]:
@@ -138,12 +142,12 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
         bare = list(_stretches(dark < BARE, come_mm, gap_mm + BEYOND_WIDTHS * line.width_mm))
         for middle, long_mm in bare:
             x, y = places[middle]
-            yield Unexplained((float(x), float(y)), long_mm, False)
+            yield Unexplained((float(x), float(y)), long_mm, "bare")
         if bare or not _is_coarse(sheet):
             continue
         for middle, long_mm in _stretches(dark < PALE, come_mm, 0.0):
             x, y = places[middle]
-            yield Unexplained((float(x), float(y)), long_mm, False, _wanted_dpi(sheet))
+            yield Unexplained((float(x), float(y)), long_mm, "pale", _wanted_dpi(sheet))
 
 
 def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Unexplained]:
@@ -156,7 +160,7 @@ def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Une
     away_mm = nearest_mm(places, np.vstack([line.places_mm for line in closed]))
     for k in np.flatnonzero((away_mm > CUT_MM) & (away_mm < OFF_MM)):
         x, y = places[k]
-        yield Unexplained((float(x), float(y)), float(away_mm[k]), True, is_tip=True)
+        yield Unexplained((float(x), float(y)), float(away_mm[k]), "tip")
 
 
 def _off_edges(drawing: Drawing, closed: Sequence[Line]) -> Iterator[Unexplained]:
@@ -176,9 +180,7 @@ def _off_edges(drawing: Drawing, closed: Sequence[Line]) -> Iterator[Unexplained
             for begin, end in np.flatnonzero(off).reshape(-1, 2):
                 worst = int(begin + np.argmax(away_mm[begin:end]))
                 x, y = line[worst]
-                yield Unexplained(
-                    (float(x), float(y)), float(away_mm[worst]), True, is_tip=True
-                )
+                yield Unexplained((float(x), float(y)), float(away_mm[worst]), "tip")
 
 
 def _once(places: Iterable[Unexplained]) -> list[Unexplained]:
@@ -208,7 +210,7 @@ def _astray(sheet: Sheet, closed: Sequence[Line]) -> Iterator[Unexplained]:
     for line in closed if is_finest else ():
         most = most_astray(sheet.drawing, line.loop_mm)
         if most.darkness > ASTRAY:
-            yield Unexplained(most.place_mm, _pixel_mm(sheet), False, _wanted_dpi(sheet))
+            yield Unexplained(most.place_mm, _pixel_mm(sheet), "pale", _wanted_dpi(sheet))
 
 
 def _wanted_dpi(sheet: Sheet) -> int:

@@ -34,7 +34,6 @@ ROUNDED = (1, 2, 3, 4)  # points of the cores that are tried
 PRICE = 0.01  # of a figure more, as misfit: noise alone pays less than a third of that
 CORE, ROUNDING = 0.6, 0.4  # of half a shape, as a rounded polygon begins
 OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is tried with these
-FAR_MM = 1e3  # from all that is drawn
 # for each width of the way's length: what a core leaves to begin with, at most; of 58 that settled on the ink
 # of a loop the worst left 0.21
 BEGIN = 0.3
@@ -71,12 +70,10 @@ class RingInk(NamedTuple):
 
     def misfit_along(self, way: Array) -> float:
         """How much a pen along a way (n, 2) mm leaves unexplained, of the width that explains most."""
-        away_mm = np.full(len(self.places_mm), FAR_MM)
-        lines = np.ascontiguousarray(np.hstack([way[:-1], way[1:]]).T)
-        pen.away(self.places_mm, lines, len(way) - 1, away_mm)
-        drawn, misfits = np.empty(len(away_mm)), list[float]()
+        away, misfits = pen.away_from(self.places_mm, way), list[float]()
+        drawn = np.empty(len(away))
         for share in OF_WIDTH:
-            pen.ink(away_mm, share * self.half_mm, self.softness_mm, drawn)
+            pen.ink(away, share * self.half_mm, self.softness_mm, drawn)
             misfits.append(self.misfit(drawn))
         return min(misfits)
 

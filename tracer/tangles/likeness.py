@@ -16,7 +16,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import pen
-from morfax.tracer.tangles.sketch import NOWHERE_MM, softness_of
+from morfax.tracer.tangles.sketch import softness_of
 from morfax.tracer.tangles.tangle import DARKEST
 
 
@@ -57,11 +57,6 @@ class Patch:
 
     def misfit(self, way: Array) -> float:
         """Mean square of what a pen on a way (n, 2) mm draws too dark or too light, 1 for ink or none."""
-        distance, drawn = (
-            np.full(len(self.places_mm), NOWHERE_MM),
-            np.empty(len(self.places_mm)),
-        )
-        lines = np.ascontiguousarray(np.hstack([way[:-1], way[1:]]).T)
-        pen.away(self.places_mm, lines, len(way) - 1, distance)
+        distance, drawn = pen.away_from(self.places_mm, way), np.empty(len(self.places_mm))
         pen.ink(distance, self.half_mm, self.softness_mm, drawn)
         return float(np.mean((drawn - self.darkness) ** 2))

@@ -30,6 +30,7 @@ PIECES = 6  # straight pieces that a bend is drawn with
 STEEPEST = 0.6  # cosine: a bend that leaves further aside of its chord reaches no further ahead
 SPECK_PX = 1.5  # from the middle of a speck to the ink beside it
 NARROW_RAD = math.radians(3)  # a tip as narrow as this is a tick
+NOWHERE_MM = 1e3  # from all that is drawn
 INKED = 3.0  # softnesses from its edge, ink is whole or none: erfc is within 1e-5 of that
 
 
@@ -152,6 +153,14 @@ def away(places, lines, count, out):  # type: ignore[no-untyped-def]
             wx, wy = wx - t * vx[i], wy - t * vy[i]
             best = min(best, wx * wx + wy * wy)
         out[k] = math.sqrt(best)
+
+
+def away_from(places: Array, way: Array) -> Array:
+    """How far places (n, 2) are from a way (m, 2), mm."""
+    distance = np.full(len(places), NOWHERE_MM)
+    lines = np.ascontiguousarray(np.hstack([way[:-1], way[1:]]).T)
+    away(places, lines, len(way) - 1, distance)
+    return distance
 
 
 @njit(cache=True)

@@ -51,7 +51,6 @@ PLAN_EVERY = 4  # of the places of a stretch, 20 um apart
 # rounds in which vertices settle: at last, of a plain redrawing, of a try
 ALL, SOME, FEW = 12, 4, 3
 LEG_MM = np.linspace(0, 1.2, 7)  # of each leg is drawn
-NOWHERE_MM = 1e3  # from all that is drawn
 FARTHEST_MEETING_MM = 5.0  # legs that meet further ahead do not meet within a tangle
 
 SOFTNESSES_PX = np.geomspace(0.2, 4.0, 24)  # that the pen is tried with
@@ -76,7 +75,7 @@ class Sketch:
     def of(cls, view: View, tangle: Tangle) -> Sketch:
         """Set the pen to the width and softness of the legs, and draw these."""
         # 1. the legs, the first of which heads in and the others out
-        known = np.full(len(tangle.darkness), NOWHERE_MM)
+        known = np.full(len(tangle.darkness), pen.NOWHERE_MM)
         poses = []
         for k, leg in enumerate(tangle.legs):
             poses.append((*leg.end_mm, leg.heading_rad + (math.pi if k else 0.0)))

@@ -63,7 +63,7 @@ def test_one_that_the_picture_shows_and_the_path_cuts_is_told_of_with_its_place(
         assert not run.unexplained
         return
     (tip,) = run.unexplained
-    assert tip.is_tip and math.dist(tip.place_mm, TIP) < 0.1
+    assert tip.kind == "tip" and math.dist(tip.place_mm, TIP) < 0.1
     assert tip.length_mm == pytest.approx(short_mm(run), abs=0.1)
     (said,) = [text for text in of_ink(run, several=False) if "short" in text]
     assert "1 tip" in said

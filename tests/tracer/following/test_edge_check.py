@@ -95,15 +95,13 @@ def test_where_pixels_are_large_a_tooth_that_is_passed_by_is_told_and_not_lost(
             assert told == []
         else:
             (place,) = told
-            assert place.is_tip and place.length_mm == pytest.approx(high_mm, abs=0.05)
+            assert place.kind == "tip" and place.length_mm == pytest.approx(high_mm, abs=0.05)
             assert place.place_mm == pytest.approx((20.15, 10 + high_mm), abs=0.2)
 
 
 def test_a_tip_at_which_edge_and_way_are_off_is_told_once() -> None:
     places = [((5.0, 5.0), 0.6), ((0.5, 0.0), 0.9), ((0.0, 0.0), 1.0)]
-    told = _once(
-        [Unexplained(place_mm, off_mm, True, is_tip=True) for place_mm, off_mm in places]
-    )
+    told = _once([Unexplained(place_mm, off_mm, "tip") for place_mm, off_mm in places])
     assert [place.length_mm for place in told] == [1.0, 0.6]
 
 

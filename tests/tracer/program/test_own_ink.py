@@ -90,7 +90,7 @@ def test_open_lines_and_drawn_programs_are_not_judged() -> None:
 def test_what_is_found_is_told_once_with_its_place() -> None:
     drawing, short = inked(notched(DEEP_MM), seed=1), closed(notched(DEEP_MM - 0.7))
     places = unexplained(Setup(drawing.sheet), [short])
-    assert any(place.is_beside for place in places)
+    assert any(place.kind == "beside" for place in places)
     said = " ".join(of_ink(Trace((short,), Operator(), unexplained=places), several=False))
     assert "runs beside its ink at 1 place" in said and "at 24." in said
 

@@ -93,7 +93,7 @@ def test_a_loop_of_another_shape_is_none_of_the_compass() -> None:
     theta = arc((14, 20), 1.0), polyline((12.6, 20), (15.4, 20))
     sheet = inked(PLATE, *theta, width_mm=0.5, seed=1).sheet
     patch = sheet.patch_at(np.array([14.0, 21.0]))
-    assert SmallLoops.of(sheet, Settings()).of_patch(patch, 0.5) is None
+    assert SmallLoops(sheet, Settings()).of_patch(patch, 0.5) is None
 
 
 def test_holes_of_several_sizes_in_a_row_are_no_letters() -> None:

@@ -49,7 +49,7 @@ def test_ink_beside_a_closed_way_is_told_with_its_place_and_how_far_it_reaches(
 ) -> None:
     drawing = inked(with_tip(long_mm), seed=1)
     (left,) = unexplained(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))])
-    assert left.is_ink
+    assert left.kind == "ink"
     assert left.place_mm == pytest.approx((32 + long_mm + WIDTH_MM / 2, 20.05), abs=PIXEL_MM)
     assert left.length_mm == pytest.approx(long_mm + WIDTH_MM / 2, abs=PIXEL_MM)
 
@@ -72,7 +72,9 @@ def test_a_way_over_bare_paper_is_told_unless_it_is_a_gap_that_may_be_crossed() 
     drawing = inked(arc((20, 20), 12, 17.2, 360), seed=1)  # 3.6 mm are missing
     setup = Setup(Sheet.of(drawing))
     (bare,) = unexplained(setup, [closed(arc((20, 20), 12))])
-    assert not bare.is_ink and bare.length_mm == pytest.approx(3.6 - WIDTH_MM, abs=2 * PIXEL_MM)
+    assert bare.kind == "bare" and bare.length_mm == pytest.approx(
+        3.6 - WIDTH_MM, abs=2 * PIXEL_MM
+    )
     assert nearest_mm(np.array([bare.place_mm]), arc((20, 20), 12))[0] < PIXEL_MM
     allowing = replace(setup, settings=replace(setup.settings, gap_mm=4.0))
     assert unexplained(allowing, [closed(arc((20, 20), 12))]) == ()
@@ -109,18 +111,18 @@ def coarse(places_mm: Points) -> Line:
 def test_a_small_bay_that_is_cut_off_on_a_coarse_scan_is_told_with_a_resolution() -> None:
     drawing = scanned(BAY, COARSE_DPI)
     told = unexplained(Setup(drawing.sheet), [coarse(ACROSS)])
-    assert {place.wants_dpi for place in told if not place.is_ink} == {200}
+    assert {place.wants_dpi for place in told if place.kind != "ink"} == {200}
     places_mm = np.array([place.place_mm for place in told])
     assert np.hypot(*(places_mm - (23.5, 25.5)).T).max() < 1.5  # of a bay of 2 by 1 mm
     assert unexplained(Setup(drawing.sheet), [coarse(BAY)]) == ()
     fine = unexplained(Setup(replace(drawing, finer=1).sheet), [coarse(ACROSS)])
-    assert [place.wants_dpi for place in fine] == [None]
+    assert [place.kind for place in fine] == ["beside"]
 
 
 def test_a_coarse_line_counts_a_pixel_less_wide_than_it_looks() -> None:
     drawing, circle = scanned(with_tip(1.4), COARSE_DPI), coarse(arc((20, 20), 12))
     (left,) = unexplained(Setup(drawing.sheet), [circle])
-    assert left.is_ink and left.length_mm == pytest.approx(1.4, abs=0.5)  # a pixel
+    assert left.kind == "ink" and left.length_mm == pytest.approx(1.4, abs=0.5)  # a pixel
     assert unexplained(Setup(replace(drawing, finer=1).sheet), [circle]) == ()
 
 
