@@ -43,6 +43,7 @@ from morfax.tracer.tangles.tangle import DARKEST
 OVER = 0.05
 MOST_SPECKS = 2.2  # the same in pixels: so much is left by specks, which a scan has
 OF_MOST = 6.0  # times what is over on most of the line
+DOUBTFUL = 0.3  # of the limit: a way that comes above it may be wrong
 MOST = 60.0  # percent of the line
 REACH_WIDTHS = 1.25  # from a way: ink further away is another line's
 OF_WIDTH = (0.8, 0.9, 1.0, 1.1, 1.25)  # of the line's: pens that are tried
@@ -54,10 +55,13 @@ TILE_PX = 128
 
 
 class Beside(NamedTuple):
-    """A stretch of a closed way beside its ink: the place furthest beside it, and how long it is, mm."""
+    """A stretch of a closed way beside its ink: the place furthest beside it, how long it is, mm, and whether
+    noise alone never leaves so much.
+    """
 
     place_mm: tuple[float, float]
     length_mm: float
+    is_sure: bool
 
 
 class Ways(NamedTuple):
@@ -115,12 +119,13 @@ def beside(drawing: Drawing, lines: Sequence[Line]) -> Iterator[Beside]:
         least = max(OVER, MOST_SPECKS / (2 * ways.half_px[number]) ** 2)
         if len(order):
             least = max(least, OF_MOST * percentile(over[order], MOST))
-        for first, last in _stretches(over[order] > least):
+        for first, last in _stretches(over[order] > DOUBTFUL * least):
             stretch = order[first:last]
             worst = stretch[int(np.argmax(over[stretch]))]
             places = 1 + station[stretch[-1]] - station[stretch[0]]
             place_mm = _mm(drawing, ways.places_px[station[worst]])
-            yield Beside(place_mm, float(places * PLACES_PX * drawing.pitch_mm))
+            long_mm = float(places * PLACES_PX * drawing.pitch_mm)
+            yield Beside(place_mm, long_mm, bool(over[worst] > least))
 
 
 def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
@@ -185,7 +190,7 @@ def _over(
     noise = 0.5 * drawing.noise.paper**2
     pen.ink(away, half_px, drawing.noise.softness_px, drawn)
     wrong = _in_boxes(seen.shape, (i, j), (drawn - dark) ** 2 - 2 * noise, side)
-    if wrong.max(initial=0.0) < OVER * width2:
+    if wrong.max(initial=0.0) < DOUBTFUL * OVER * width2:
         return np.asarray(cv2.dilate(wrong, about) / width2)
     # 3. the pen of some widths that explains each box best: what it draws on paper, and what ink it leaves
     least = np.full(seen.shape, np.inf)

@@ -36,7 +36,8 @@ from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.program.small_rings import paper_within_px
-from morfax.tracer.tangles.compass import Core, RingInk, explained
+from morfax.tracer.tangles.compass import Core, explained
+from morfax.tracer.tangles.seen_ink import SeenInk
 from morfax.tracer.tangles.tangle import DARKEST
 
 SMALL_WIDTHS = 16.0  # a longer loop has sides as long as a leg, ...
@@ -134,7 +135,7 @@ class SmallLoops:
         is_loop = is_small and within_px >= LEAST_PX
         return is_loop and self.sheet.drawing.noise.softness_px > 0
 
-    def _ink(self, patch: int, width_mm: float) -> RingInk:
+    def _ink(self, patch: int, width_mm: float) -> SeenInk:
         """The ink of a patch, and the paper about it and within, as far as that is no other patch's."""
         drawing, patches = self.sheet.drawing, self.sheet.patches
         noise = drawing.noise
@@ -159,9 +160,11 @@ class SmallLoops:
         area_mm2 = every.step * drawing.pitch_mm**2
         left_by_noise = len(i) * noise.paper**2
         dark = np.minimum(darkness, DARKEST)
-        return RingInk(places, dark, 0.5 * width_mm, noise.softness_mm, area_mm2, left_by_noise)
+        known_mm = np.full(len(places), math.inf)  # nothing else is drawn there
+        half_mm, softness_mm = 0.5 * width_mm, noise.softness_mm
+        return SeenInk(places, dark, known_mm, half_mm, softness_mm, area_mm2, left_by_noise)
 
-    def _laid(self, ink: RingInk, own: float) -> Loop | None:
+    def _laid(self, ink: SeenInk, own: float) -> Loop | None:
         """The loop that explains some ink, if it leaves less unexplained than the head's own way."""
         core = explained(ink) if len(ink.places_mm) else None
         if core is None:

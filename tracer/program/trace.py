@@ -26,12 +26,12 @@ from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.best_run import Target, best_of
 from morfax.tracer.program.marks_read import with_marks_read
+from morfax.tracer.program.narrow_bays import explained
 from morfax.tracer.program.net_outline import OfNet, of_net, round_ring
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import NO_OTHERS, others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.small_loops import SmallLoops
-from morfax.tracer.program.unexplained import unexplained
 
 
 def trace(
@@ -55,8 +55,8 @@ def trace(
     line = SmallLoops(found.setup.sheet, setup.settings).mended(line)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
-    beside = unexplained(setup, lines)
-    return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=beside)
+    lines, left = explained(setup, lines)
+    return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=left)
 
 
 def _along_net(found: OfNet) -> Line | None:

@@ -34,6 +34,7 @@ from morfax.tracer.program import order, selection
 from morfax.tracer.program.arrows import turned_round, with_arrows
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.marks_read import with_marks_read
+from morfax.tracer.program.narrow_bays import explained, with_bars
 from morfax.tracer.program.one_of_each import (
     is_inside,
     one_of_each,
@@ -50,7 +51,6 @@ from morfax.tracer.program.small_rings import (
     unclear_patches,
 )
 from morfax.tracer.program.trace import followed
-from morfax.tracer.program.unexplained import unexplained
 
 SAME = 0.8  # of a line's way along another: they are one line; by trial
 
@@ -89,6 +89,7 @@ def trace_lines(
     found = found_lines(setup, which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines)
+    lines, left = explained(setup, lines)
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
     return Trace(
@@ -97,7 +98,7 @@ def trace_lines(
         left_out=found.left_out,
         left_out_mm=found.left_out_mm,
         unread=unread,
-        unexplained=unexplained(setup, lines) if which == "contours" else (),
+        unexplained=left if which == "contours" else (),
         letters=_letters(sheet, lines) if which == "contours" else (),
         letters_out=found.letters_out,
         small_rings=small_rings(sheet) if is_searched else (),
@@ -144,7 +145,8 @@ def trace_places(
             progress(float(number), float(len(starts_mm)))
     _refuse_none_begun(lines)
     lines, unread = with_marks_read(with_arrows(setup, lines), operator)
-    beside = unexplained(setup, lines) if alone else ()
+    lines, left = explained(setup, lines)
+    beside = left if alone else ()
     return Trace(tuple(_in_order(setup, lines)), operator, unread=unread, unexplained=beside)
 
 
@@ -163,6 +165,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     asked, letters_out = _high_enough(setup, asked) if not numbers else (asked, ())
     lines, unclear, strokes = one_of_each(setup, asked, which)
     # 2. the other lines of those patches
+    lines = with_bars(setup, lines)
     joined, left_mm = _joined(setup, asked, lines, strokes)
     patch_of = dict[int, int]()
     if beyond or not numbers:

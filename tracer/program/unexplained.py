@@ -67,13 +67,14 @@ class Unexplained(NamedTuple):
     bare      a way over bare paper: for how long
     beside    a way beside its own pen's ink: for how long
     pale      on a coarse scan a way over ink that is pale: for how long; and `wants_dpi`, the resolution that
-              would show what is there
+        would show what is there
     """
 
     place_mm: tuple[float, float]
     length_mm: float
     kind: Kind
     wants_dpi: int | None = None
+    is_sure: bool = True
 
 
 def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
@@ -83,11 +84,10 @@ def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
     Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
     """
     closed = [line for line in lines if line.ending == "closed"]
-    come_round = [line for line in lines if line.ending in ("closed", "joined")]
-    if not come_round or setup.operator.reads_marks(lines):
+    if not _come_round(lines) or setup.operator.reads_marks(lines):
         return ()
     sheet, gap_mm = setup.sheet, setup.settings.gap_mm
-    found = [*_ink_beside(sheet, come_round, lines), *_bare_ways(sheet, closed, gap_mm)]
+    found = [*ink_beside(sheet, lines), *_bare_ways(sheet, closed, gap_mm)]
     found += _tips_cut(sheet.drawing.edges_mm, closed)
     found += _once(_off_edges(sheet.drawing, closed))
     found = found or list(_astray(sheet, closed))
@@ -100,16 +100,21 @@ def _beside_ink(
 ) -> Iterator[Unexplained]:
     """Stretches of closed lines beside their ink, but for those about what was found otherwise."""
     about_mm = BESIDE_WIDTHS * max(line.width_mm for line in lines)
-    for place_mm, long_mm in beside(drawing, lines):
+    for place_mm, long_mm, is_sure in beside(drawing, lines):
         if all(math.dist(place_mm, other.place_mm) > about_mm for other in found):
-            yield Unexplained(place_mm, long_mm, "beside")
+            yield Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
 
 
-def _ink_beside(
-    sheet: Sheet, come_round: Sequence[Line], lines: Sequence[Line]
-) -> Iterator[Unexplained]:
-    """Ink of the patches of lines that came round, beside all ways."""
-    patches = sheet.patches
+def _come_round(lines: Sequence[Line]) -> list[Line]:
+    """Those of some lines that came round."""
+    return [line for line in lines if line.ending in ("closed", "joined")]
+
+
+def ink_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Unexplained]:
+    """Ink of the patches of those of some lines that came round, beside all ways."""
+    patches, come_round = sheet.patches, _come_round(lines)
+    if not come_round:
+        return
     # 1. the patches on which they run
     own = np.zeros(patches.count, bool)
     own[[sheet.patch_at(line.loop_mm[0]) for line in come_round]] = True

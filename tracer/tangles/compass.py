@@ -7,9 +7,8 @@ A closed line of a few widths leaves the head no clean leg to feel between two b
 such a way (see `pen`) is held against the ink that is there, and core, distance and the pen's width are moved
 until the two differ least. Of all cores that one is taken which explains the ink with the fewest figures.
 
-Signals: the ink about a closed line in; its way (n, 2) mm out, and how much ink it leaves unexplained.
-
-    misfit = (sum((drawn - seen)²) - what the paper's noise leaves) · area of a pixel / width²
+Signals: the ink about a closed line in; its way (n, 2) mm out, and how much ink it leaves unexplained (see
+`seen_ink`).
 
 Source: our own; a draughtsman draws a hole by a compass, not by hand. Questions: a ring of another shape,
 such as a letter, is explained by none of them.
@@ -28,54 +27,20 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.polyline import area_mm2
 from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk
 
 SHARP = (3, 4, 5, 6)  # corners of the polygons that are tried
 ROUNDED = (1, 2, 3, 4)  # points of the cores that are tried
-PRICE = 0.01  # of a figure more, as misfit: noise alone pays less than a third of that
 CORE, ROUNDING = 0.6, 0.4  # of half a shape, as a rounded polygon begins
-OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is tried with these
 # for each width of the way's length: what a core leaves to begin with, at most; of 58 that settled on the ink
 # of a loop the worst left 0.21
 BEGIN = 0.3
 SURE = 0.003  # the same: a core that leaves less is taken at once
 MOST_SETTLED = 3  # of the cores, those that explain most to begin with
-STEPS = 40  # times that the ink is drawn for each figure of a core, at the most
 SHARPEST = (
     0.3  # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
 )
 ARC_RAD = math.radians(2.0)  # between the places of an arc: they lie within 1 um of one of 6 mm
-
-
-class RingInk(NamedTuple):
-    """The ink about a closed line: places (n, 2) mm and their darkness (n,), 1 on the line; half the pen's
-    width and its softness, mm; the area of a pixel, mm2; and what noise of the paper leaves in all squares.
-    """
-
-    places_mm: Array
-    darkness: Array
-    half_mm: float
-    softness_mm: float
-    area_mm2: float
-    noise: float
-
-    @property
-    def width_mm(self) -> float:
-        """The pen's width."""
-        return 2 * self.half_mm
-
-    def misfit(self, drawn: Array) -> float:
-        """How much darkness (n,) that is drawn leaves unexplained, in squares of the line's width."""
-        left = float(np.sum((drawn - self.darkness) ** 2)) - self.noise
-        return left * self.area_mm2 / self.width_mm**2
-
-    def misfit_along(self, way: Array) -> float:
-        """How much a pen along a way (n, 2) mm leaves unexplained, of the width that explains most."""
-        away, misfits = pen.away_from(self.places_mm, way), list[float]()
-        drawn = np.empty(len(away))
-        for share in OF_WIDTH:
-            pen.ink(away, share * self.half_mm, self.softness_mm, drawn)
-            misfits.append(self.misfit(drawn))
-        return min(misfits)
 
 
 class Core(NamedTuple):
@@ -128,7 +93,7 @@ class Core(NamedTuple):
             yield point + self.radius_mm * np.column_stack([np.cos(normal), np.sin(normal)])
 
 
-def explained(ink: RingInk) -> Core | None:
+def explained(ink: SeenInk) -> Core | None:
     """The core that explains a ring's ink best with few figures; None for ink of which none can be begun."""
     starts = [_drawn(ink, start) for start in _starts(ink)]
     near = [start for start in starts if start.misfit < BEGIN * start.length_mm / ink.width_mm]
@@ -143,14 +108,14 @@ def explained(ink: RingInk) -> Core | None:
     return best
 
 
-def _drawn(ink: RingInk, core: Core) -> Core:
+def _drawn(ink: SeenInk, core: Core) -> Core:
     """A core with its misfit."""
     drawn = np.empty(len(ink.places_mm))
     _ink(ink.places_mm, core.points_mm, core.radius_mm, core.half_mm, ink.softness_mm, drawn)
     return core._replace(misfit=ink.misfit(drawn))
 
 
-def _settled(ink: RingInk, start: Core) -> Core | None:
+def _settled(ink: SeenInk, start: Core) -> Core | None:
     """A core moved to where the pen leaves the ink that is there; None if the pen becomes another."""
     from scipy.optimize import least_squares
 
@@ -175,7 +140,7 @@ def _settled(ink: RingInk, start: Core) -> Core | None:
     return _drawn(ink, core) if is_pen else None
 
 
-def _starts(ink: RingInk) -> Iterator[Core]:
+def _starts(ink: SeenInk) -> Iterator[Core]:
     """Cores to begin with, by the outline of the ink."""
     dark = ink.places_mm[ink.darkness > 0.5]
     if len(dark) < max(SHARP):

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm, nearest_mm, with_places
 from morfax.tracer.tangles import compass, pen
-from morfax.tracer.tangles.compass import Core, RingInk, explained
+from morfax.tracer.tangles.compass import Core, explained
+from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import arc
 
 PITCH_MM, SOFTNESS_MM, HALF_MM = 0.1, 0.06, 0.25
@@ -28,7 +29,7 @@ def closed(way: Array) -> Array:
     return np.vstack([way, way[:1]])
 
 
-def ink_of(way: Array, noise: float = 0.0, half_mm: float = HALF_MM) -> RingInk:
+def ink_of(way: Array, noise: float = 0.0, half_mm: float = HALF_MM) -> SeenInk:
     """The ink that a pen leaves along a closed way, on pixels with noise."""
     rows, columns = np.indices((60, 60)).reshape(2, -1)
     places = PITCH_MM * np.column_stack([columns + 0.5, rows + 0.5])
@@ -40,8 +41,10 @@ def ink_of(way: Array, noise: float = 0.0, half_mm: float = HALF_MM) -> RingInk:
     dark += np.random.default_rng(1).normal(0.0, noise, len(dark))
     near = away < half_mm + 5 * SOFTNESS_MM
     count = int(near.sum())
-    return RingInk(
-        places[near], dark[near], HALF_MM, SOFTNESS_MM, PITCH_MM**2, count * noise**2
+    known = np.full(count, math.inf)
+    left_by_noise = count * noise**2
+    return SeenInk(
+        places[near], dark[near], known, HALF_MM, SOFTNESS_MM, PITCH_MM**2, left_by_noise
     )
 
 

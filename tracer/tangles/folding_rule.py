@@ -1,0 +1,242 @@
+"""The folding rule: a stretch of line as straight pieces between two places on it, sharp or rounded where
+they meet.
+
+    ───╮   ╭───     a notch or a tongue that is hardly wider than two lines: four corners, of which two may be
+       │   │        rounded; one that comes to a point has three
+       ╰───╯
+
+Between the corners of such a bay the head finds no clean line that is as long as its legs. So the rule is
+laid along the head's own way, or round a bar of ink beside the line, and its corners, their rounding and the
+pen's width are moved until the pen's ink along it differs least from the ink that is there. Of all rules that
+one is taken which explains the ink with the fewest figures.
+
+Signals: the ink about a stretch, the places between which it lies, and rules to begin with, in; the best rule
+out, with its way (n, 2) mm and how much ink it leaves unexplained (see `seen_ink`).
+
+Source: our own; a draughtsman draws a notch by straightedge and compass. Questions: a bay with bent sides is
+explained by no rule.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import evenly, length_mm, nearest_mm
+from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk
+
+# which of so many corners are rounded: the patterns that are tried
+ROUNDED = {
+    1: ((False,), (True,)),
+    2: ((False, False), (True, True)),
+    3: ((False, False, False), (False, True, False)),
+    4: ((False, False, False, False), (False, True, True, False)),
+}
+ROUNDING = 0.8  # of half a width, as a rounded rule begins
+LIKE_PEN = 0.7, 1.4  # times as wide as was felt: another pen explains nothing
+MOST_SETTLED = 8  # of the rules, those that explain most to begin with
+SURE = 0.003  # for each width of the way's length: a rule that leaves less is taken at once
+ARC_RAD = math.radians(
+    6.0
+)  # between the places of an arc: they lie within 1 um of one of 0.7 mm
+STRAIGHT = 1e-3  # tangent of half a turn: a smaller one is not rounded
+# of a piece: an arc takes half of it at the most, and all but this of one that ends where it is sharp
+KEPT = 0.02
+BESIDE = 1.2  # half widths from the line: darker ink further away is a bar's
+EVERY = 0.5  # of half a width, between the places of a way that are held against the ink
+FEWEST = 20  # places that a bar of ink has, at the least
+FURTHEST = 4.0  # times as far as a bar is long, from its tip, the line is looked for
+
+
+class Rule(NamedTuple):
+    """A rule between two places (x, y) mm, with its corners (m, 2) mm, which of them (m,) are rounded, by
+    what radius, and half the pen's width, mm.
+    """
+
+    first_mm: Array
+    last_mm: Array
+    corners_mm: Array
+    rounded: NDArray[np.bool_]
+    radius_mm: float
+    half_mm: float
+    misfit: float = math.inf
+
+    @property
+    def figures(self) -> int:
+        """How many figures it takes."""
+        return self.corners_mm.size + bool(self.rounded.any())
+
+    @property
+    def cost(self) -> float:
+        """The misfit, and the price of the figures."""
+        return self.misfit + PRICE * self.figures
+
+    @property
+    def way(self) -> Array:
+        """The way (n, 2) mm."""
+        return np.vstack(self.stretches())
+
+    @property
+    def length_mm(self) -> float:
+        """The length of the way."""
+        return length_mm(self.way)
+
+    def stretches(self) -> list[Array]:
+        """The way as stretches (n, 2) mm between sharp corners."""
+        places = np.vstack([self.first_mm, self.corners_mm, self.last_mm])
+        stretches, stretch = list[Array](), [places[:1]]
+        for k, is_rounded in enumerate(self.rounded.tolist(), 1):
+            arc = self._arc(places, k) if is_rounded else places[k : k + 1]
+            stretch.append(arc)
+            if len(arc) == 1:
+                stretches.append(np.vstack(stretch))
+                stretch = [arc]
+        return [*stretches, np.vstack([*stretch, places[-1:]])]
+
+    def _arc(self, places: Array, k: int) -> Array:
+        """The places (n, 2) mm of the arc at a corner; the corner alone where there is no room for an arc."""
+        before, after = places[k] - places[k - 1], places[k + 1] - places[k]
+        long_mm = np.array([np.hypot(*before), np.hypot(*after)])
+        ahead, on = before / max(long_mm[0], 1e-12), after / max(long_mm[1], 1e-12)
+        turned = math.atan2(ahead[0] * on[1] - ahead[1] * on[0], float(ahead @ on))
+        slope = math.tan(min(0.5 * abs(turned), 1.5))
+        # 1. how far from the corner it begins
+        open_ends = np.array([not self._is_rounded(k - 1), not self._is_rounded(k + 1)])
+        room_mm = float((long_mm * np.where(open_ends, 1 - KEPT, 0.5)).min())
+        reach_mm = min(abs(self.radius_mm) * slope, room_mm)
+        if slope < STRAIGHT or reach_mm < 1e-6:
+            return places[k : k + 1]
+        # 2. about its middle
+        radius_mm = reach_mm / slope
+        inward = math.copysign(1.0, turned) * np.array([-ahead[1], ahead[0]])
+        middle = places[k] - reach_mm * ahead + radius_mm * inward
+        along = np.linspace(0.0, abs(turned), 2 + math.ceil(abs(turned) / ARC_RAD))[:, None]
+        return np.asarray(middle + radius_mm * (np.sin(along) * ahead - np.cos(along) * inward))
+
+    def _is_rounded(self, k: int) -> bool:
+        """Whether a place of first, corners and last is a rounded corner."""
+        return 0 < k <= len(self.rounded) and bool(self.rounded[k - 1])
+
+
+def along(way: Array, half_mm: float) -> Iterator[Rule]:
+    """Rules along a way (n, 2) mm, with the corners of it that matter most."""
+    for count in ROUNDED:
+        if len(way) >= count + 2:
+            kept = _reduced(way, count + 2)
+            yield from _of_corners(kept[0], kept[-1], kept[1:-1], half_mm)
+
+
+def round_bar(ink: SeenInk, legs: Array) -> Iterator[Rule]:
+    """Rules round the bar of ink beside a line, of which the legs (n, 2) mm on either side are known."""
+    half_mm = ink.half_mm
+    away_mm = np.minimum(pen.away_from(ink.places_mm, legs), ink.known_mm)
+    bar = ink.places_mm[(away_mm > BESIDE * half_mm) & (ink.darkness > 0.5)]
+    if len(bar) < FEWEST:
+        return
+    # 1. the bar as a rectangle, and which side of that is its tip
+    middle = bar.mean(axis=0)
+    around = cv2.minAreaRect((bar - middle).astype(np.float32))
+    box = middle + cv2.boxPoints(around).astype(float)
+    beyond_mm = pen.away_from(box, legs)
+    tip = int(np.argmax(beyond_mm + np.roll(beyond_mm, -1)))
+    left, right, foot = box[tip], box[(tip + 1) % 4], box[tip - 1]
+    across, out = right - left, left - foot
+    if min(np.hypot(*across), np.hypot(*out)) < half_mm:
+        return
+    across, out = across / np.hypot(*across), out / np.hypot(*out)
+    # 2. corners half a width within the tip, and where the sides come to the line
+    tips = np.array([left + half_mm * (across - out), right - half_mm * (across + out)])
+    feet = np.array([_foot(place, out, legs, FURTHEST * beyond_mm.max()) for place in tips])
+    if np.hypot(*(feet - legs[0]).T).argmin() == 1:
+        tips, feet = tips[::-1], feet[::-1]
+    point = tips.mean(axis=0) + ROUNDING * half_mm * out
+    for corners in (np.vstack([feet[0], tips, feet[1]]), np.vstack([feet[0], point, feet[1]])):
+        yield from _of_corners(legs[0], legs[-1], corners, half_mm)
+
+
+def explained(ink: SeenInk, rules: Iterable[Rule]) -> Rule | None:
+    """The rule that explains the ink best with few figures, of some to begin with; None if none does."""
+    drawn = [_drawn(ink, rule) for rule in rules]
+    likely = sorted(drawn, key=lambda rule: rule.cost)[:MOST_SETTLED]
+    best: Rule | None = None
+    for start in likely:
+        rule = _settled(ink, start)
+        if rule is not None and (best is None or rule.cost < best.cost):
+            best = rule
+        if best is not None and best.misfit < SURE * best.length_mm / ink.width_mm:
+            break
+    return best
+
+
+def _of_corners(
+    first_mm: Array, last_mm: Array, corners_mm: Array, half_mm: float
+) -> Iterator[Rule]:
+    """Rules with the same corners, sharp and rounded."""
+    for pattern in ROUNDED[len(corners_mm)]:
+        radius_mm = ROUNDING * half_mm if any(pattern) else 0.0
+        yield Rule(first_mm, last_mm, corners_mm, np.array(pattern), radius_mm, half_mm)
+
+
+def _reduced(way: Array, count: int) -> Array:
+    """A way with so many places: of those within it the one is left out that matters least."""
+    while len(way) > count:
+        before, after = way[:-2] - way[1:-1], way[2:] - way[1:-1]
+        matters = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+        way = np.delete(way, 1 + int(np.argmin(matters)), axis=0)
+    return way
+
+
+def _foot(place: Array, out: Array, legs: Array, furthest_mm: float) -> Array:
+    """Where a side that comes from a place against a direction is nearest to the legs."""
+    side = place - np.linspace(0.0, furthest_mm, 200)[:, None] * out
+    return np.asarray(side[int(np.argmin(pen.away_from(side, legs)))])
+
+
+def _drawn(ink: SeenInk, rule: Rule) -> Rule:
+    """A rule with its misfit."""
+    return rule._replace(misfit=ink.misfit(ink.drawn_along(rule.way, rule.half_mm)))
+
+
+def _settled(ink: SeenInk, start: Rule) -> Rule | None:
+    """A rule moved to where the pen leaves the ink that is there; None if the pen becomes another,
+    or comes off the ink.
+    """
+    from scipy.optimize import least_squares
+
+    size, is_rounded = start.corners_mm.size, bool(start.rounded.any())
+
+    def rule_of(figures: Array) -> Rule:
+        radius_mm = float(figures[size]) if is_rounded else 0.0
+        corners_mm, half_mm = figures[:size].reshape(-1, 2), float(figures[-1])
+        return start._replace(corners_mm=corners_mm, radius_mm=radius_mm, half_mm=half_mm)
+
+    def wrong(figures: Array) -> Array:
+        rule = rule_of(figures)
+        return ink.drawn_along(rule.way, rule.half_mm) - ink.darkness
+
+    radius = [start.radius_mm] if is_rounded else []
+    figures = np.r_[start.corners_mm.ravel(), radius, start.half_mm]
+    fit = least_squares(
+        wrong, figures, method="lm", diff_step=1e-4, max_nfev=STEPS * len(figures)
+    )
+    rule = rule_of(fit.x)
+    least, most = LIKE_PEN
+    is_pen = least * ink.half_mm < rule.half_mm < most * ink.half_mm
+    return _drawn(ink, rule) if is_pen and _is_on(ink, rule) else None
+
+
+def _is_on(ink: SeenInk, rule: Rule) -> bool:
+    """Whether a rule stays on ink: what lies beyond the places that are seen costs it nothing."""
+    dark, corners = ink.places_mm[ink.darkness > 0.5], rule.corners_mm
+    low, high = ink.places_mm.min(axis=0), ink.places_mm.max(axis=0)
+    if not len(dark) or np.any(corners < low) or np.any(corners > high):
+        return False
+    way = evenly(rule.way, EVERY * ink.half_mm)
+    return bool(nearest_mm(way, dark).max() < ink.half_mm)

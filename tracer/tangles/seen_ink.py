@@ -1,0 +1,61 @@
+"""The ink that is seen about a way, and how much of it a pen leaves unexplained there.
+
+    misfit = (sum((drawn - seen)²) - what the paper's noise leaves) · area of a pixel / width²
+
+Signals: places about a way and their darkness in; how much ink the pen's leaves unexplained, in squares of
+the line's width, out.
+
+Source: our own; the pen is that of the tangles (see `pen`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.tracer.tangles import pen
+
+OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is tried with these
+
+# Of a way that is fitted to the ink:
+PRICE = 0.01  # of a figure more, as misfit: noise alone pays less than a third of that
+STEPS = 40  # times that the ink is drawn for each figure, at the most
+
+
+class SeenInk(NamedTuple):
+    """Places (n, 2) mm and their darkness (n,), 1 on the line; how far each is from the lines that are drawn
+    there anyway, mm; half the pen's width and its softness, mm; the area that a place stands for, mm2; and
+    what noise of the paper leaves in all squares.
+    """
+
+    places_mm: Array
+    darkness: Array
+    known_mm: Array
+    half_mm: float
+    softness_mm: float
+    area_mm2: float
+    noise: float
+
+    @property
+    def width_mm(self) -> float:
+        """The pen's width."""
+        return 2 * self.half_mm
+
+    def drawn_along(self, way: Array, half_mm: float) -> Array:
+        """Darkness (n,) that a pen of half a width leaves along a way (m, 2) mm and the known lines."""
+        away_mm = np.minimum(pen.away_from(self.places_mm, way), self.known_mm)
+        drawn = np.empty(len(away_mm))
+        pen.ink(away_mm, half_mm, self.softness_mm, drawn)
+        return drawn
+
+    def misfit(self, drawn: Array) -> float:
+        """How much darkness (n,) that is drawn leaves unexplained, in squares of the line's width."""
+        left = float(np.sum((drawn - self.darkness) ** 2)) - self.noise
+        return left * self.area_mm2 / self.width_mm**2
+
+    def misfit_along(self, way: Array) -> float:
+        """How much a pen along a way (m, 2) mm leaves unexplained, of the width that explains most."""
+        halves_mm = (share * self.half_mm for share in OF_WIDTH)
+        return min(self.misfit(self.drawn_along(way, half_mm)) for half_mm in halves_mm)
