@@ -184,12 +184,8 @@ def _keeps_to(contour: Contour, line: Line | None) -> bool:
 
 def _as_loop(loops: SmallLoops, contour: Contour) -> Line | None:
     """A patch on which the head can nowhere be put down, as the small loop that it may be."""
-    width_mm = contour.stroke.width_mm
-    loop = loops.of_patch(contour.stroke.patch, width_mm)
-    if loop is None:
-        return None
-    number, long_mm = contour.number, loop.length_mm
-    return Line(loop.way_mm, "closed", width_mm, long_mm, number=number, led=loop.led)
+    loop = loops.of_patch(contour.stroke.patch, contour.stroke.width_mm)
+    return None if loop is None else loop.line(contour.number)
 
 
 def _or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:

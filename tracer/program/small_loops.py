@@ -35,8 +35,9 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.program.selection import lines_of
 from morfax.tracer.program.small_rings import paper_within_px
-from morfax.tracer.tangles.compass import Core, explained
+from morfax.tracer.tangles.compass import Core, explained, filled_misfit
 from morfax.tracer.tangles.seen_ink import SeenInk
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -51,21 +52,30 @@ LIKE = 0.035
 # the same: the compass lays a loop if it leaves so much less than the head's own way. Noise of a scan is a
 # fifth of that; a corner that is cut short by 40 um leaves as much
 GAIN = 0.001
+# two lines whose ink runs together: times as broad as a line, and how long at the least; so many are tried
+BROAD, SHORT_WIDTHS, MOST_BROAD = (1.15, 2.7), 2.0, 100
+SEAM = 0.002  # for each width of the length: so much more the same shape leaves if it is filled
 ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
 
 
 class Loop(NamedTuple):
-    """A loop as the head ran along it: its way (n, 2) mm at the motion rate, and who led."""
+    """A loop as the head ran along it: its way (n, 2) mm at the motion rate, who led, the pen's width, mm."""
 
     way_mm: Array
     led: Led
+    width_mm: float
 
     @property
     def length_mm(self) -> float:
         """The length of the way."""
         return length_mm(self.way_mm)
+
+    def line(self, number: int) -> Line:
+        """The loop as a line of the drawing with a number."""
+        long_mm = self.length_mm
+        return Line(self.way_mm, "closed", self.width_mm, long_mm, number=number, led=self.led)
 
 
 @dataclass(frozen=True)
@@ -80,6 +90,16 @@ class SmallLoops:
         """The patches that are no loops: on a page of text the letters."""
         letters = lettering(self.sheet)
         return letters if len(letters) > TEXT else set()
+
+    @cached_property
+    def pen_mm(self) -> float:
+        """The width of the lines along half of the sheet's ink."""
+        lines = lines_of(self.sheet)
+        order = np.argsort(self.sheet.widths_mm[lines], kind="stable")
+        come_mm = np.cumsum(self.sheet.lengths_mm[lines][order])
+        return float(
+            self.sheet.widths_mm[lines][order][np.searchsorted(come_mm, 0.5 * come_mm[-1])]
+        )
 
     def mended(self, line: Line) -> Line:
         """A line as it is; a small one that should close and fails its own ink as the compass lays it."""
@@ -98,6 +118,7 @@ class SmallLoops:
             line,
             xy_mm=loop.way_mm,
             ending="closed",
+            width_mm=loop.width_mm,
             length_mm=loop.length_mm,
             fault=None,
             loop_from=None,
@@ -119,9 +140,35 @@ class SmallLoops:
 
     def of_patch(self, patch: int, width_mm: float) -> Loop | None:
         """The loop that a patch of ink is, along which the head has found no closed way."""
-        if not self._may_be(patch, width_mm):
+        if self._may_be(patch, width_mm):
+            return self._laid(self._ink(patch, width_mm), math.inf)
+        return self.filled_up.get(patch)
+
+    @cached_property
+    def filled_up(self) -> dict[int, Loop]:
+        """The loops that patches are whose sides run together, by the patch; the largest are looked at."""
+        largest_first = np.argsort(-self.sheet.patches.areas, kind="stable").tolist()
+        broad = [patch for patch in largest_first if self._is_broad(patch)][:MOST_BROAD]
+        loops = {patch: self._with_seam(patch) for patch in broad}
+        return {patch: loop for patch, loop in loops.items() if loop is not None}
+
+    def _is_broad(self, patch: int) -> bool:
+        """Whether a patch is about as broad as two lines, and no longer than a narrow loop."""
+        least, most = BROAD
+        long_mm, width_mm = self.sheet.lengths_mm[patch], self.sheet.widths_mm[patch]
+        is_broad = least < width_mm / self.pen_mm < most
+        is_between = SHORT_WIDTHS * self.pen_mm < long_mm < LONG_WIDTHS * self.pen_mm
+        return bool(is_broad and is_between) and patch not in self.passed_by
+
+    def _with_seam(self, patch: int) -> Loop | None:
+        """The loop that a broad patch is, if its ink shows the seam between two lines."""
+        ink = self._ink(patch, self.pen_mm)
+        core = explained(ink)
+        if core is None:
             return None
-        return self._laid(self._ink(patch, width_mm), math.inf)
+        widths = core.length_mm / ink.width_mm
+        has_seam = filled_misfit(ink, core) - core.misfit > SEAM * widths
+        return self._run(core) if has_seam and core.misfit < LIKE * widths else None
 
     def _may_be(self, patch: int, width_mm: float) -> bool:
         """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""
@@ -181,4 +228,4 @@ class SmallLoops:
         stance = Stance(stretches[0][0], heading, view)
         carriage = Carriage(stance, self.settings, MOTION_RATE_HZ)
         carriage.run(stretches, leader=REDRAWN)
-        return Loop(carriage.positions_mm, carriage.led)
+        return Loop(carriage.positions_mm, carriage.led, 2 * core.half_mm)

@@ -56,9 +56,9 @@ def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
     return tuple(SmallPatch.of(sheet, patch) for patch in rings)
 
 
-def filled_up(sheet: Sheet) -> tuple[SmallPatch, ...]:
-    """Ink inside a line that is too short for one, broader than a line and longer than a dot: most likely a
-    slot whose sides run together. The largest first.
+def filled_up(sheet: Sheet) -> list[int]:
+    """The patches of ink inside a line that are too short for one, broader than a line and longer than a dot:
+    most likely slots whose sides run together. The largest first.
     """
     numbers, patches = lines_of(sheet), sheet.patches
     across_px = patches.longer_sides
@@ -67,14 +67,14 @@ def filled_up(sheet: Sheet) -> tuple[SmallPatch, ...]:
     small &= (across_px * sheet.drawing.pitch_mm > LEAST_WIDTHS * pen_mm) & ~sheet.are_solid
     small[[*numbers, *lettering(sheet)]] = False
     if not small.any():
-        return ()
+        return []
     are_lines = np.zeros(patches.count, bool)
     are_lines[numbers] = True
     inside = patches.enclosure.inside
     small &= (inside != NONE) & are_lines[inside]
     chosen = np.flatnonzero(small)
     largest_first = chosen[np.argsort(-across_px[chosen], kind="stable")]
-    return tuple(SmallPatch.of(sheet, patch) for patch in largest_first.tolist())
+    return [int(patch) for patch in largest_first]
 
 
 def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPatch, ...]:

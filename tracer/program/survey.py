@@ -38,7 +38,7 @@ from morfax.tracer.program import selection
 from morfax.tracer.program.selection import Contour
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_from_an_end
-from morfax.tracer.program.trace_lines import dots_alone
+from morfax.tracer.program.trace_lines import small_lines
 from morfax.tracer.sensing.view import View
 
 Kind = Literal["closed", "open", "several", "dot", "joined", "lost"]
@@ -122,9 +122,10 @@ def survey(setup: Setup) -> Survey:
         _of_patch(setup, contour, view, drawn) for contour, view in _viewed(setup, contours)
     ]
     entries = {entry.patch: entry for entry in _with_references(seen, contours)}
-    # 2. dots that stand alone
-    for patch, line in dots_alone(setup):
-        entries[patch] = Entry(line.number, "dot", line.start_mm, 0.0, line.width_mm, patch)
+    # 2. dots that stand alone, and slots whose sides run together
+    for patch, line in small_lines(setup):
+        size = line.start_mm, line.length_mm, line.width_mm
+        entries[patch] = Entry(line.number, "dot" if line.is_dot else "closed", *size, patch)
     # 3. what lies inside which, and what stands in rows
     enclosure = sheet.patches.enclosure
     loops = enclosure.loops((AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2)

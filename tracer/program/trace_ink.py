@@ -29,7 +29,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import stroke_order
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress
-from morfax.tracer.program.small_loops import SmallLoops
+from morfax.tracer.program.small_loops import Loop, SmallLoops
 from morfax.tracer.program.trace_solids import of_silhouettes, with_outlines
 
 NEWEST_BYTES = 8_000_000  # of the newest strokes are kept in memory, 0.8 m at 10 mm/s; chosen
@@ -67,8 +67,8 @@ def _of_strokes(
         letters = sheet.patches.painted(left.lettering, 0, rows, 0, columns)
     felt = FeltSheet.of(left.drawing, settings, left.ink, letters)
     loops = SmallLoops(sheet, settings)
-    run = (_mended(loops, stroke) for stroke in _strokes(solved(felt), settings, progress))
-    strokes = _long_enough(_kept(run))
+    run = _strokes(solved(felt), settings, progress)
+    strokes = _long_enough(_kept(_mended(loops, run)))
     felt = felt.without_cells()
     if not strokes:
         raise LineFault(
@@ -99,12 +99,23 @@ def _strokes(
         yield stroke
 
 
-def _mended(loops: SmallLoops, stroke: InkStroke) -> InkStroke:
-    """A stroke as it is; a small loop that fails its ink as the compass lays it."""
-    loop = loops.of_way(stroke.way_mm, stroke.width_mm) if stroke.closed else None
-    if loop is None:
-        return stroke
-    return stroke._replace(way_mm=loop.way_mm, length_mm=loop.length_mm, led=loop.led)
+def _mended(loops: SmallLoops, strokes: Iterator[InkStroke]) -> Iterator[InkStroke]:
+    """Strokes as they are; small loops that fail their ink as the compass lays them, and these in place of
+    all strokes on a patch whose sides run together.
+    """
+    for loop in loops.filled_up.values():
+        yield _of_loop(loop)
+    for stroke in strokes:
+        loop = loops.of_way(stroke.way_mm, stroke.width_mm) if stroke.closed else None
+        if loop is not None:
+            yield _of_loop(loop)
+        elif loops.sheet.patch_at(stroke.way_mm[0]) not in loops.filled_up:
+            yield stroke
+
+
+def _of_loop(loop: Loop) -> InkStroke:
+    """A loop as a stroke."""
+    return InkStroke(loop.way_mm, loop.length_mm, True, loop.width_mm, loop.led)
 
 
 def _kept(strokes: Iterable[InkStroke]) -> list[InkStroke]:

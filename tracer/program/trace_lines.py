@@ -44,6 +44,7 @@ from morfax.tracer.program.one_of_each import (
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
+from morfax.tracer.program.small_loops import SmallLoops
 from morfax.tracer.program.small_rings import (
     SmallPatch,
     filled_up,
@@ -60,7 +61,7 @@ class FoundLines:
     """Lines that were followed, not yet in order; how many patches are no lines, and mm of ink that is joined
     to lines, but none. `patch_of` has the patch's number of each line that is joined to another; in
     `letters_out` are the numbers of lettering that is lower than the operator wants; on the patches `unclear`
-    the head could nowhere be put down.
+    the head could nowhere be put down; the `slots` are patches whose sides run together.
     """
 
     lines: list[Line]
@@ -69,6 +70,7 @@ class FoundLines:
     patch_of: dict[int, int] = field(default_factory=dict)
     letters_out: tuple[int, ...] = ()
     unclear: tuple[SmallPatch, ...] = ()
+    slots: frozenset[int] = frozenset()
 
 
 def trace_lines(
@@ -102,8 +104,13 @@ def trace_lines(
         letters=_letters(sheet, lines) if which == "contours" else (),
         letters_out=found.letters_out,
         small_rings=small_rings(sheet) if is_searched else (),
-        unclear=found.unclear + (filled_up(sheet) if is_searched else ()),
+        unclear=found.unclear + (_filled_up(sheet, found.slots) if is_searched else ()),
     )
+
+
+def _filled_up(sheet: Sheet, slots: frozenset[int]) -> tuple[SmallPatch, ...]:
+    """What is most likely a slot, and is none that was followed."""
+    return tuple(SmallPatch.of(sheet, p) for p in filled_up(sheet) if p not in slots)
 
 
 def _is_searched(setup: Setup, which: Which, lines: Sequence[Line]) -> bool:
@@ -153,11 +160,13 @@ def trace_places(
 def found_lines(setup: Setup, which: Which) -> FoundLines:
     """Follow the lines that are asked for; raises LineFault for a number that no line has.
 
-    Numbers: patches, the longest first; dots that stand alone; lines that are joined to another.
+    Numbers: patches, the longest first; dots that stand alone; slots whose sides run together; lines that are
+    joined to another.
     """
     numbers = () if isinstance(which, str) else which
     last, patches = max(numbers, default=0), len(selection.lines_of(setup.sheet))
-    holes = _dots_asked(setup, which, last > patches)
+    small = _small_asked(setup, which, last > patches)
+    holes = [line for _, line in small]
     beyond = last > patches + len(holes)
     # 1. one line of each patch; only a line joined to another has a number beyond patches and dots
     numbered = tuple(n for n in numbers if n <= patches) if numbers else which
@@ -174,13 +183,14 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
         others = [line for line, _ in further]
         lines += [line for line in others if which != "outer" or not is_inside(line, lines)]
     lines = with_least_numbers(lines, asked)
-    # 3. dots that stand alone
+    # 3. dots that stand alone, and slots whose sides run together
     lines += holes
     if beyond or (holes and numbers):
         lines = _of_numbers(lines, numbers)
     no_lines = left_out + len(unclear) - len(holes)
     too_small = unclear_patches(setup.sheet, unclear)
-    return FoundLines(lines, no_lines, left_mm, patch_of, letters_out, too_small)
+    slots = frozenset(patch for patch, line in small if not line.is_dot)
+    return FoundLines(lines, no_lines, left_mm, patch_of, letters_out, too_small, slots)
 
 
 def _high_enough(setup: Setup, asked: list[Contour]) -> tuple[list[Contour], tuple[int, ...]]:
@@ -197,11 +207,9 @@ def _high_enough(setup: Setup, asked: list[Contour]) -> tuple[list[Contour], tup
     return kept, tuple(sorted({c.number for c in asked} - {c.number for c in kept}))
 
 
-def _dots_asked(setup: Setup, which: Which, are_numbered: bool) -> list[Line]:
-    """The dots that stand alone, where contours are asked for, or a number that one of them may have."""
-    if which == "contours" or are_numbered:
-        return [line for _, line in dots_alone(setup)]
-    return []
+def _small_asked(setup: Setup, which: Which, are_numbered: bool) -> list[tuple[int, Line]]:
+    """The small lines with their patches, where contours are asked for, or a number that one may have."""
+    return small_lines(setup) if which == "contours" or are_numbered else []
 
 
 def _joined(
@@ -238,6 +246,21 @@ def _of_numbers(lines: list[Line], numbers: tuple[int, ...]) -> list[Line]:
         if number not in have:
             raise selection.no_line(int(number), sorted(have))
     return [line for line in lines if line.number in numbers]
+
+
+def small_lines(setup: Setup) -> list[tuple[int, Line]]:
+    """The dots that stand alone on the paper, and slots whose sides run together: patch, and line; numbered
+    on from the patches that are lines.
+    """
+    small, sheet = dots_alone(setup), setup.sheet
+    if sheet.bare_rings or sheet.drawing.edges_mm:
+        return small
+    loops, first = SmallLoops(sheet, setup.settings), len(selection.lines_of(sheet)) + 1
+    for patch in filled_up(sheet):
+        loop = loops.filled_up.get(patch)
+        if loop is not None:
+            small.append((patch, loop.line(first + len(small))))
+    return small
 
 
 def dots_alone(setup: Setup) -> list[tuple[int, Line]]:

@@ -108,10 +108,17 @@ def explained(ink: SeenInk) -> Core | None:
     return best
 
 
+def filled_misfit(ink: SeenInk, core: Core) -> float:
+    """How much the same shape filled with ink leaves unexplained."""
+    drawn = np.empty(len(ink.places_mm))
+    _ink(ink.places_mm, *core[:3], ink.softness_mm, True, drawn)
+    return ink.misfit(drawn)
+
+
 def _drawn(ink: SeenInk, core: Core) -> Core:
     """A core with its misfit."""
     drawn = np.empty(len(ink.places_mm))
-    _ink(ink.places_mm, core.points_mm, core.radius_mm, core.half_mm, ink.softness_mm, drawn)
+    _ink(ink.places_mm, *core[:3], ink.softness_mm, False, drawn)
     return core._replace(misfit=ink.misfit(drawn))
 
 
@@ -127,8 +134,7 @@ def _settled(ink: SeenInk, start: Core) -> Core | None:
         return Core(figures[: 2 * count].reshape(-1, 2), radius_mm, float(figures[-1]))
 
     def wrong(figures: Array) -> Array:
-        points, radius_mm, half_mm, _ = core_of(figures)
-        _ink(ink.places_mm, points, radius_mm, half_mm, ink.softness_mm, drawn)
+        _ink(ink.places_mm, *core_of(figures)[:3], ink.softness_mm, False, drawn)
         return drawn - ink.darkness
 
     figures = np.r_[start.points_mm.ravel(), [] if is_sharp else start.radius_mm, start.half_mm]
@@ -193,10 +199,13 @@ def _within(polygon: Array, half_mm: float) -> Array:
 
 
 @njit(cache=True)
-def _ink(places, points, radius_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
-    """Darkness (n,) that a pen leaves at places (n, 2) along the way at a radius from points (m, 2)."""
+def _ink(places, points, radius_mm, half_mm, softness_mm, is_filled, out):  # type: ignore[no-untyped-def]
+    """Darkness (n,) that a pen leaves at places (n, 2) along the way at a radius from points (m, 2), and
+    within it if it is filled.
+    """
     for k in range(len(places)):
-        away_mm = abs(_from_core(places[k, 0], places[k, 1], points) - radius_mm)
+        away_mm = _from_core(places[k, 0], places[k, 1], points) - radius_mm
+        away_mm = away_mm if is_filled else abs(away_mm)
         out[k] = pen.ink_at(away_mm, half_mm, softness_mm)
 
 
