@@ -15,28 +15,20 @@ Source: our own. Questions: a tick as thick as two lines is taken for a bay; one
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.polyline import evenly, length_mm, lengths_mm, nearest_mm
+from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
-from morfax.tracer.head import screws
-from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.head.leaders import REDRAWN, Led
-from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import set_fields
-from morfax.tracer.program import beside_itself
 from morfax.tracer.program.bars import bar_at
+from morfax.tracer.program.bay_run import Bay, laid
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.unexplained import Unexplained, ink_beside, unexplained
-from morfax.tracer.tangles import folding_rule, pen
+from morfax.tracer.program.unexplained import Unexplained, beside_ink, ink_beside, unexplained
+from morfax.tracer.tangles import beside_itself, folding_rule, pen
 from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import SeenInk
 from morfax.tracer.tangles.tangle import DARKEST
@@ -46,7 +38,9 @@ STEP = 0.1  # between the places of a way
 LEG = 1.5  # of the way before and after a bay show where the line comes from and goes on
 MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
-REACH = 1.5  # of the ink about the way that is looked at
+REACH = 2.2  # of the ink about the way that is looked at
+# at the edge of that, half as much ink as a line has there, so far from all lines, goes on; less is specks
+EDGE, OWN = 0.2, 0.8
 LONGEST = 80.0  # a longer stretch is no bay
 OF_LOOP = 0.8  # nor is one that is so much of its line
 MOST_PLACES = 1500  # of ink: enough to place a corner within 10 um
@@ -54,11 +48,13 @@ MOST_PLACES = 1500  # of ink: enough to place a corner within 10 um
 LIKE = 0.035
 GAIN = 0.001  # and by how much more the head's own way must leave
 FURTHER = (
-    0.005  # the same, of a width by which a way is longer: it runs out and back on the same ink
+    0.01  # the same, of a width by which a way is longer: it runs out and back on one line
 )
-APART = 0.8  # the sides of a bay begin, at the least
 ROUNDS = 3  # a bay may come to light when another is mended
 MOST = 40  # bays of one line that are tried
+
+
+LeftBy = Callable[[Setup, Sequence[Line]], tuple[Unexplained, ...]]
 
 
 class Suspect(NamedTuple):
@@ -72,41 +68,45 @@ class Suspect(NamedTuple):
     is_beside_itself: bool = False
 
 
-class Bay(NamedTuple):
-    """A rule that replaces a stretch of a way, between two places along it, mm; and what it gains."""
-
-    first_mm: float
-    last_mm: float
-    rule: Rule
-    gain: float
-
-    def moved(self, by_mm: float, round_mm: float) -> Bay:
-        """The bay moved along a closed way of a length."""
-        first_mm = (self.first_mm + by_mm) % round_mm
-        return self._replace(first_mm=first_mm, last_mm=first_mm + self.last_mm - self.first_mm)
-
-
 def explained(
     setup: Setup, lines: Sequence[Line]
 ) -> tuple[list[Line], tuple[Unexplained, ...]]:
     """The lines with their narrow bays mended, and what they leave unexplained."""
-    lines, left = list(lines), unexplained(setup, lines)
-    if setup.operator.reads_marks(lines):
-        return lines, left
-    for _ in range(ROUNDS):
-        mended = [_Bays(setup, line, lines, left).mended() for line in lines]
-        if all(new is line for new, line in zip(mended, lines, strict=True)):
-            break
-        lines, left = mended, unexplained(setup, mended)
-    return lines, tuple(place for place in left if place.is_sure)
+    return _mended(setup, lines, unexplained)
+
+
+def beside_mended(
+    setup: Setup, lines: Sequence[Line]
+) -> tuple[list[Line], tuple[Unexplained, ...]]:
+    """The same of lines along all the ink of a sheet, of which none is another's bar."""
+    return _mended(setup, lines, beside_ink)
 
 
 def with_bars(setup: Setup, lines: Sequence[Line]) -> list[Line]:
     """The lines with those narrow bays mended that show as bars of ink beside them."""
+    return _once_mended(setup, lines, tuple(ink_beside(setup.sheet, lines)))
+
+
+def _mended(
+    setup: Setup, lines: Sequence[Line], left_by: LeftBy
+) -> tuple[list[Line], tuple[Unexplained, ...]]:
+    """The lines with their narrow bays mended, until no more is found, and what is left of what was told."""
+    lines, left = list(lines), left_by(setup, lines)
+    for _ in range(ROUNDS):
+        mended = _once_mended(setup, lines, left)
+        if all(new is line for new, line in zip(mended, lines, strict=True)):
+            break
+        lines, left = mended, left_by(setup, mended)
+    return lines, tuple(place for place in left if place.is_sure)
+
+
+def _once_mended(
+    setup: Setup, lines: Sequence[Line], left: Sequence[Unexplained]
+) -> list[Line]:
+    """The lines with their narrow bays mended; those of a drawn program as they are."""
     if setup.operator.reads_marks(lines):
         return list(lines)
-    bars = list(ink_beside(setup.sheet, lines))
-    return [_Bays(setup, line, lines, bars).mended() for line in lines]
+    return [_Bays(setup, line, lines, left).mended() for line in lines]
 
 
 @dataclass(frozen=True)
@@ -133,12 +133,13 @@ class _Bays:
         if line.as_told:  # it begins where it is told to
             bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < line.length_mm]
         bays = _apart(bays, line.length_mm)
-        return _laid(self.setup, line, bays) if bays else line
+        return laid(self.setup, line, bays) if bays else line
 
     def _suspects(self, way: Array, step_mm: float) -> Iterator[Suspect]:
         """Where the way may have passed a bay by or cut it short."""
         width_mm, nothing = self.line.width_mm, np.empty((0, 2))
-        for first, last in beside_itself.stretches(way, step_mm, width_mm):
+        beside = beside_itself.stretches(way, step_mm, width_mm)
+        for first, last in beside:
             yield Suspect(first, last, nothing, True)
         for place in self.left:
             away_mm = np.hypot(*(way - place.place_mm).T)
@@ -147,10 +148,14 @@ class _Bays:
                 half = max(round(0.5 * place.length_mm / step_mm), 1)
                 yield Suspect(at - half, at + half, nothing)
             elif place.kind == "ink" and away_mm[at] < place.length_mm + width_mm:
-                yield from self._round_bar(way, step_mm, place)
+                yield from self._round_bar(way, step_mm, place, beside)
 
-    def _round_bar(self, way: Array, step_mm: float, place: Unexplained) -> Iterator[Suspect]:
-        """The stretch of the way that a bar of ink is joined to, if it is joined to no other."""
+    def _round_bar(
+        self, way: Array, step_mm: float, place: Unexplained, beside: list[tuple[int, int]]
+    ) -> Iterator[Suspect]:
+        """The stretch of the way that a bar of ink is joined to, if it is joined to no other; all of one that
+        comes beside itself.
+        """
         width_mm = self.line.width_mm
         bar = bar_at(self.setup.sheet.drawing, self.lines, place, width_mm)
         mouth = np.flatnonzero(nearest_mm(way, bar) < MOUTH * width_mm)
@@ -158,6 +163,9 @@ class _Bays:
             return
         first, last = beside_itself.shortest(mouth, len(way))
         if last - first < 2 * WIDEST * width_mm / step_mm:
+            for begin, end in beside:
+                if begin <= last and first <= end:
+                    first, last = min(first, begin), max(last, end)
             yield Suspect(first, last, bar)
 
     def _bay(self, way: Array, step_mm: float, suspect: Suspect) -> Bay | None:
@@ -170,9 +178,14 @@ class _Bays:
             return None
         own = way[np.arange(first, last + 1) % len(way)]
         rest = way[np.arange(last, first + len(way) + 1) % len(way)]
-        ink = self._ink(np.vstack([own, suspect.beyond_mm]), rest)
+        about = np.vstack([own, suspect.beyond_mm])
+        ink = self._ink(about, rest)
+        if self._goes_on(ink, about):
+            return None
         # 2. the best rule along the way, or round a bar of ink
-        rules = list(folding_rule.along(own, ink.half_mm))
+        rules = list[Rule]()
+        if not len(suspect.beyond_mm):
+            rules += folding_rule.along(own, ink.half_mm)
         if suspect.is_beside_itself or len(suspect.beyond_mm):
             legs = np.vstack([own[: leg + 1], own[-leg - 1 :]])
             rules += folding_rule.round_bar(ink, legs)
@@ -183,9 +196,16 @@ class _Bays:
         widths = rule.length_mm / width_mm
         gain = ink.misfit_along(own) - rule.misfit + FURTHER * (STEP * long - widths)
         is_like = rule.misfit < LIKE * widths
-        if not is_like or gain < GAIN * widths or not _is_apart(rule, width_mm):
+        if not is_like or gain < GAIN * widths:
             return None
         return Bay(first * step_mm, last * step_mm, rule, gain)
+
+    def _goes_on(self, ink: SeenInk, about: Array) -> bool:
+        """Whether ink beside all lines goes on beyond what is looked at: another line, or a longer bar."""
+        beside = (ink.darkness > 0.5) & (ink.known_mm > OWN * self.line.width_mm)
+        away_mm = pen.away_from(ink.places_mm[beside], about)
+        far = np.count_nonzero(away_mm > (REACH - EDGE) * self.line.width_mm)
+        return bool(far * ink.area_mm2 > 0.5 * EDGE * self.line.width_mm**2)
 
     def _ink(self, about: Array, rest: Array) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
@@ -219,19 +239,6 @@ class _Bays:
         )
 
 
-def _is_apart(rule: Rule, width_mm: float) -> bool:
-    """Whether the sides of a rule stay apart, or begin apart and meet in a point: else it runs out and back
-    along one line.
-    """
-    corners, step_mm = rule.corners_mm, STEP * width_mm
-    if len(corners) > 2:
-        return float(np.hypot(*(corners[-1] - corners[0]))) > APART * width_mm
-    way = evenly(rule.way, step_mm)
-    # as if the way were closed far out
-    beyond = way[-1] + np.arange(1, len(way) + 1)[:, None] * (way[-1] - way[-2])
-    return not beside_itself.stretches(np.vstack([way, beyond]), step_mm, width_mm)
-
-
 def _apart(bays: list[Bay], length_mm: float) -> list[Bay]:
     """Those of some bays that gain most, none of which lies on another; the last along the way first."""
     kept = list[Bay]()
@@ -248,68 +255,3 @@ def _are_apart(bay: Bay, other: Bay, length_mm: float) -> bool:
         bay.last_mm + more < other.first_mm or other.last_mm < bay.first_mm + more
         for more in rounds
     )
-
-
-def _laid(setup: Setup, line: Line, bays: Sequence[Bay]) -> Line:
-    """A line with the head run along the rules of some bays, in the order of its way."""
-    # 1. begun where no bay is
-    round_mm = length_mm(line.xy_mm)
-    begin_mm = next((bay.last_mm for bay in bays if bay.last_mm > round_mm), None)
-    begin_mm = next((bay.last_mm for bay in bays if bay.first_mm < 0), begin_mm)
-    if begin_mm is not None:
-        begin_mm %= round_mm
-        line = _begun_at(line, begin_mm)
-        bays = [bay.moved(-begin_mm, round_mm) for bay in bays]
-    # 2. the way from bay to bay, and the runs along their rules
-    come_mm, at = lengths_mm(line.xy_mm), 0
-    ways, leaders = list[Array](), list[Array]()
-    for bay in sorted(bays, key=lambda bay: bay.first_mm):
-        splice = _run(setup, line.xy_mm, come_mm, bay)
-        ways += [line.xy_mm[at : splice.first + 1], splice.way_mm]
-        leaders.append(line.led.of(splice.first + 1 - at, at))
-        leaders.append(np.full(len(splice.way_mm), REDRAWN, np.int8))
-        at = splice.last
-    xy_mm = np.vstack([*ways, line.xy_mm[at:]])
-    led = Led.along(np.concatenate([*leaders, line.led.of(len(line.xy_mm) - at, at)]))
-    return replace(line, xy_mm=xy_mm, led=led, length_mm=length_mm(xy_mm))
-
-
-def _begun_at(line: Line, begin_mm: float) -> Line:
-    """A closed line begun at a place along it."""
-    count = len(line.xy_mm)
-    at = int(np.searchsorted(lengths_mm(line.xy_mm), begin_mm))
-    led = Led.along(np.roll(line.led.of(count), -at))
-    return replace(line, xy_mm=np.roll(line.xy_mm, -at, axis=0), led=led)
-
-
-class Splice(NamedTuple):
-    """The head's run along a rule, (n, 2) mm at the motion rate, after one of a line's positions and before
-    another.
-    """
-
-    first: int
-    last: int
-    way_mm: Array
-
-
-def _run(setup: Setup, xy_mm: Array, come_mm: Array, bay: Bay) -> Splice:
-    """The head's run along a bay's rule from memory, as fast as it comes and goes on."""
-    first, last = np.searchsorted(come_mm, [bay.first_mm, bay.last_mm]).tolist()
-    view = view_of(setup.sheet, setup.settings.aperture_mm, 2 * bay.rule.half_mm)
-    ahead = bay.rule.corners_mm[0] - bay.rule.first_mm
-    stance = Stance(xy_mm[first], math.atan2(ahead[1], ahead[0]), view)
-    carriage = Carriage(stance, setup.settings, MOTION_RATE_HZ)
-    # 1. the drives lag: the axis is where its demand comes to the bay
-    lag = round(screws.owed_s(carriage.tuning.drive_gain, 1.0))
-    first = max(first - lag, 1)
-    velocity = (xy_mm[first] - xy_mm[first - 1]) * MOTION_RATE_HZ
-    set_fields(carriage.state, x_mm=xy_mm[first, 0], y_mm=xy_mm[first, 1])
-    set_fields(carriage.state, vx_mm_s=velocity[0], vy_mm_s=velocity[1])
-    set_fields(carriage.state, speed_mm_s=float(np.hypot(*velocity)))
-    # 2. along the rule, and on where the way is nearest
-    end_mm_s = float(np.hypot(*(xy_mm[last] - xy_mm[last - 1]))) * MOTION_RATE_HZ
-    carriage.run(bay.rule.stretches(), end_mm_s, REDRAWN)
-    way_mm = carriage.positions_mm[1:]
-    after = max(last - 2 * lag, first + 1)
-    nearest = np.hypot(*(xy_mm[after : last + 1] - way_mm[-1]).T)
-    return Splice(first, after + int(np.argmin(nearest)) + 1, way_mm)

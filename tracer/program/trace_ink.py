@@ -27,8 +27,9 @@ from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import stroke_order
+from morfax.tracer.program.narrow_bays import beside_mended
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.setup import HeadProgress
+from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.small_loops import Loop, SmallLoops
 from morfax.tracer.program.trace_solids import of_silhouettes, with_outlines
 
@@ -77,9 +78,12 @@ def _of_strokes(
         )
     # 2. the longest first, and in an order with short idle ways
     strokes.sort(key=lambda stroke: -stroke.length_mm)
-    lines = _in_order([_line(stroke, k) for k, stroke in enumerate(strokes, 1)])
-    ink = balance(sheet, felt, left, [stroke.way_mm for stroke in strokes])
-    return Trace(tuple(lines), Operator(), left_out_mm=ink.left_mm, ink=ink)
+    setup = Setup(sheet, settings, Operator(marks="off"))
+    lines = [_line(stroke, k) for k, stroke in enumerate(strokes, 1)]
+    lines, beside = beside_mended(setup, lines)
+    ink = balance(sheet, felt, left, [line.xy_mm for line in lines])
+    in_order = tuple(_in_order(lines))
+    return Trace(in_order, Operator(), left_out_mm=ink.left_mm, ink=ink, unexplained=beside)
 
 
 def _strokes(
@@ -100,16 +104,22 @@ def _strokes(
 
 
 def _mended(loops: SmallLoops, strokes: Iterator[InkStroke]) -> Iterator[InkStroke]:
-    """Strokes as they are; small loops that fail their ink as the compass lays them, and these in place of
-    all strokes on a patch whose sides run together.
+    """Strokes as they are; small loops that fail their ink as the compass lays them, also in place of all
+    strokes of a patch along which none closes.
     """
-    for loop in loops.filled_up.values():
-        yield _of_loop(loop)
+    whole = dict[int, Loop | None](loops.filled_up)
+    yield from map(_of_loop, loops.filled_up.values())
     for stroke in strokes:
-        loop = loops.of_way(stroke.way_mm, stroke.width_mm) if stroke.closed else None
-        if loop is not None:
-            yield _of_loop(loop)
-        elif loops.sheet.patch_at(stroke.way_mm[0]) not in loops.filled_up:
+        patch = loops.sheet.patch_at(stroke.way_mm[0])
+        if stroke.closed and patch not in loops.filled_up:
+            own = loops.of_way(stroke.way_mm, stroke.width_mm)
+            yield stroke if own is None else _of_loop(own)
+            continue
+        if patch not in whole:
+            whole[patch] = loops.of_patch(patch, stroke.width_mm)
+            if (loop := whole[patch]) is not None:
+                yield _of_loop(loop)
+        if whole[patch] is None:
             yield stroke
 
 

@@ -95,6 +95,12 @@ def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
+def beside_ink(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
+    """Where closed ones of some lines run beside their ink, the longest first."""
+    found = _beside_ink(setup.sheet.drawing, lines, ()) if lines else ()
+    return tuple(sorted(found, key=lambda place: -place.length_mm))
+
+
 def _beside_ink(
     drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained]
 ) -> Iterator[Unexplained]:

@@ -28,8 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly, length_mm, nearest_mm
-from morfax.tracer.tangles import pen
+from morfax.motion.crossings import crossings_of
+from morfax.motion.polyline import area_mm2, evenly, length_mm, nearest_mm
+from morfax.tracer.tangles import beside_itself, pen
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk
 
 # which of so many corners are rounded: the patterns that are tried
@@ -52,6 +53,13 @@ KEPT = 0.02
 BESIDE = 1.2  # half widths from the line: darker ink further away is a bar's
 EVERY = 0.5  # of half a width, between the places of a way that are held against the ink
 FEWEST = 20  # places that a bar of ink has, at the least
+STEP = 0.1  # widths, between the places of a way that are held against each other
+APART = 0.8  # widths: the sides of a bay begin, at the least
+WITHIN = 0.4  # of mouth times depth lies within a bay: half in one that comes to a point
+CLOSE, NEIGHBOURS = (
+    2.5,
+    5,
+)  # spacings of places: a place of a bar has so many so near; a speck has not
 FURTHEST = 4.0  # times as far as a bar is long, from its tip, the line is looked for
 
 
@@ -138,6 +146,9 @@ def round_bar(ink: SeenInk, legs: Array) -> Iterator[Rule]:
     half_mm = ink.half_mm
     away_mm = np.minimum(pen.away_from(ink.places_mm, legs), ink.known_mm)
     bar = ink.places_mm[(away_mm > BESIDE * half_mm) & (ink.darkness > 0.5)]
+    between = np.hypot(*(bar[:, None] - bar[None]).transpose(2, 0, 1))
+    near = between < CLOSE * math.sqrt(ink.area_mm2)
+    bar = bar[near.sum(axis=1) > NEIGHBOURS]
     if len(bar) < FEWEST:
         return
     # 1. the bar as a rectangle, and which side of that is its tip
@@ -206,7 +217,7 @@ def _drawn(ink: SeenInk, rule: Rule) -> Rule:
 
 def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     """A rule moved to where the pen leaves the ink that is there; None if the pen becomes another,
-    or comes off the ink.
+    comes off the ink, or runs out and back along one line.
     """
     from scipy.optimize import least_squares
 
@@ -229,7 +240,8 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     rule = rule_of(fit.x)
     least, most = LIKE_PEN
     is_pen = least * ink.half_mm < rule.half_mm < most * ink.half_mm
-    return _drawn(ink, rule) if is_pen and _is_on(ink, rule) else None
+    is_way = is_pen and _is_on(ink, rule) and _is_apart(rule, ink.width_mm)
+    return _drawn(ink, rule) if is_way else None
 
 
 def _is_on(ink: SeenInk, rule: Rule) -> bool:
@@ -240,3 +252,19 @@ def _is_on(ink: SeenInk, rule: Rule) -> bool:
         return False
     way = evenly(rule.way, EVERY * ink.half_mm)
     return bool(nearest_mm(way, dark).max() < ink.half_mm)
+
+
+def _is_apart(rule: Rule, width_mm: float) -> bool:
+    """Whether a rule does not cross itself, and its sides stay apart, or begin apart and meet in a point."""
+    corners, step_mm = rule.corners_mm, STEP * width_mm
+    way = evenly(rule.way, step_mm)
+    if len(crossings_of(way, np.arange(len(way) - 1))):
+        return False
+    if len(corners) > 2:
+        mouth = corners[[0, -1]]
+        deep_mm = float(pen.away_from(corners, mouth).max())
+        is_open = float(np.hypot(*(mouth[1] - mouth[0]))) > APART * width_mm
+        return is_open and abs(area_mm2(corners)) > WITHIN * APART * width_mm * deep_mm
+    # as if the way were closed far out
+    beyond = way[-1] + np.arange(1, len(way) + 1)[:, None] * (way[-1] - way[-2])
+    return not beside_itself.stretches(np.vstack([way, beyond]), step_mm, width_mm)

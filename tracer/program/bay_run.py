@@ -1,0 +1,111 @@
+"""The run along narrow bays: a closed line with the head run from memory along rules in place of stretches.
+
+The head comes to a bay and goes on from it as fast as it came and went before; where a bay lies on the place
+at which the line begins, the line is begun after it.
+
+Signals: a line and bays along it in; the line with its positions and who led the head out.
+
+Source: our own, as through tangles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.polyline import length_mm, lengths_mm
+from morfax.tracer.following.line import Line
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.head import screws
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.leaders import REDRAWN, Led
+from morfax.tracer.head.stance import Stance
+from morfax.tracer.head.state import set_fields
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.tangles.folding_rule import Rule
+
+
+class Bay(NamedTuple):
+    """A rule that replaces a stretch of a way, between two places along it, mm; and what it gains."""
+
+    first_mm: float
+    last_mm: float
+    rule: Rule
+    gain: float
+
+    def moved(self, by_mm: float, round_mm: float) -> Bay:
+        """The bay moved along a closed way of a length."""
+        first_mm = (self.first_mm + by_mm) % round_mm
+        return self._replace(first_mm=first_mm, last_mm=first_mm + self.last_mm - self.first_mm)
+
+
+def laid(setup: Setup, line: Line, bays: Sequence[Bay]) -> Line:
+    """A line with the head run along the rules of some bays, in the order of its way."""
+    # 1. begun where no bay is
+    round_mm = length_mm(line.xy_mm)
+    begin_mm = next((bay.last_mm for bay in bays if bay.last_mm > round_mm), None)
+    begin_mm = next((bay.last_mm for bay in bays if bay.first_mm < 0), begin_mm)
+    if begin_mm is not None:
+        begin_mm %= round_mm
+        line = _begun_at(line, begin_mm)
+        bays = [bay.moved(-begin_mm, round_mm) for bay in bays]
+    # 2. the way from bay to bay, and the runs along their rules
+    come_mm, at = lengths_mm(line.xy_mm), 0
+    ways, leaders = list[Array](), list[NDArray[np.int8]]()
+    for bay in sorted(bays, key=lambda bay: bay.first_mm):
+        splice = _run(setup, line.xy_mm, come_mm, bay)
+        ways += [line.xy_mm[at : splice.first + 1], splice.way_mm]
+        leaders.append(line.led.of(splice.first + 1 - at, at))
+        leaders.append(np.full(len(splice.way_mm), REDRAWN, np.int8))
+        at = splice.last
+    xy_mm = np.vstack([*ways, line.xy_mm[at:]])
+    led = Led.along(np.concatenate([*leaders, line.led.of(len(line.xy_mm) - at, at)]))
+    return replace(line, xy_mm=xy_mm, led=led, length_mm=length_mm(xy_mm))
+
+
+def _begun_at(line: Line, begin_mm: float) -> Line:
+    """A closed line begun at a place along it."""
+    count = len(line.xy_mm)
+    at = int(np.searchsorted(lengths_mm(line.xy_mm), begin_mm))
+    led = Led.along(np.roll(line.led.of(count), -at))
+    return replace(line, xy_mm=np.roll(line.xy_mm, -at, axis=0), led=led)
+
+
+class Splice(NamedTuple):
+    """The head's run along a rule, (n, 2) mm at the motion rate, after one of a line's positions and before
+    another.
+    """
+
+    first: int
+    last: int
+    way_mm: Array
+
+
+def _run(setup: Setup, xy_mm: Array, come_mm: Array, bay: Bay) -> Splice:
+    """The head's run along a bay's rule from memory, as fast as it comes and goes on."""
+    first, last = np.searchsorted(come_mm, [bay.first_mm, bay.last_mm]).tolist()
+    view = view_of(setup.sheet, setup.settings.aperture_mm, 2 * bay.rule.half_mm)
+    ahead = bay.rule.corners_mm[0] - bay.rule.first_mm
+    stance = Stance(xy_mm[first], math.atan2(ahead[1], ahead[0]), view)
+    carriage = Carriage(stance, setup.settings, MOTION_RATE_HZ)
+    # 1. the drives lag: the axis is where its demand comes to the bay
+    lag = round(screws.owed_s(carriage.tuning.drive_gain, 1.0))
+    first = max(first - lag, 1)
+    velocity = (xy_mm[first] - xy_mm[first - 1]) * MOTION_RATE_HZ
+    set_fields(carriage.state, x_mm=xy_mm[first, 0], y_mm=xy_mm[first, 1])
+    set_fields(carriage.state, vx_mm_s=velocity[0], vy_mm_s=velocity[1])
+    set_fields(carriage.state, speed_mm_s=float(np.hypot(*velocity)))
+    # 2. along the rule, and on where the way is nearest
+    end_mm_s = float(np.hypot(*(xy_mm[last] - xy_mm[last - 1]))) * MOTION_RATE_HZ
+    carriage.run(bay.rule.stretches(), end_mm_s, REDRAWN)
+    way_mm = carriage.positions_mm[1:]
+    after = max(last - 2 * lag, first + 1)
+    nearest = np.hypot(*(xy_mm[after : last + 1] - way_mm[-1]).T)
+    return Splice(first, after + int(np.argmin(nearest)) + 1, way_mm)
