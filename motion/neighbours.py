@@ -198,7 +198,7 @@ def _searched(
     """
     points, _ = numbered
     leaves = len(boxes) // 2
-    left = np.empty(2 * DEEPEST, np.int64)
+    left, left_off = np.empty(DEEPEST, np.int64), np.empty(DEEPEST)
     for m in range(len(places)):
         place = places[m]
         far, mine = squared[m], found[m]
@@ -209,18 +209,21 @@ def _searched(
             for i in found[m - 1]:
                 reached = max(reached, _apart(points[i], place))
             limit = min(limit, reached)
-        # 2. down from the box round all
-        left[0], waiting = 1, 1
-        while waiting > 0:
-            waiting -= 1
-            box = left[waiting]
-            if _off(boxes[box], place[0], place[1]) > min(limit, far[-1]):
-                continue
-            if box >= leaves:
+        # 2. down from the box round all, always into the nearer one first
+        box, off, waiting = 1, _off(boxes[1], place[0], place[1]), 0
+        while True:
+            if off <= min(limit, far[-1]):
+                if box < leaves:
+                    box, other = 2 * box, 2 * box + 1
+                    off = _off(boxes[box], place[0], place[1])
+                    other_off = _off(boxes[other], place[0], place[1])
+                    if other_off < off:
+                        box, other, off, other_off = other, box, other_off, off
+                    left[waiting], left_off[waiting] = other, other_off
+                    waiting += other_off <= limit
+                    continue
                 _look_through(numbered, (box - leaves) * LEAF, place, far, mine)
-                continue
-            near, other = 2 * box, 2 * box + 1
-            if _off(boxes[other], place[0], place[1]) < _off(boxes[near], place[0], place[1]):
-                near, other = other, near
-            left[waiting], left[waiting + 1] = other, near
-            waiting += 2
+            if waiting == 0:
+                break
+            waiting -= 1
+            box, off = left[waiting], left_off[waiting]
