@@ -74,10 +74,11 @@ class _Tiles(NamedTuple):
 
     def about(self, row: int, column: int) -> NDArray[np.int64]:
         """The numbers of the places in a tile and in the eight about it."""
-        firsts = (np.arange(row - 1, row + 2) * self.across + column - 1).tolist()
-        ends = np.searchsorted(
-            self.of_place, [(first, first + 3) for first in firsts], sorter=self.order
-        )
+        firsts = (np.arange(row - 1, row + 2) * self.across + column - 1)[:, None]
+        edges = (firsts + np.array([0, 3])).astype(
+            self.of_place.dtype
+        )  # else all would be copied
+        ends = np.searchsorted(self.of_place, edges, sorter=self.order)
         return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
 
 
