@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from benchmarks.rows import Row, tell
+from benchmarks.start import ENVIRONMENT
 from morfax.motion.units import MM_PER_INCH
 
 DPI, LINE_MM = 600, 0.5
@@ -120,7 +121,7 @@ def used(file: Path, *options: str) -> tuple[float, float]:
         "-q",
         *options,
     ]
-    process = subprocess.Popen(words)
+    process = subprocess.Popen(words, env=ENVIRONMENT)
     _, status, usage = os.wait4(process.pid, 0)
     if status:
         sys.exit(f"tracing {file} ended with {status}")

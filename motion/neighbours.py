@@ -10,7 +10,7 @@ box, each two boxes a larger one, up to one box round all:
     box 4   box 5    box 6   box 7
     0…7     8…15     16…23   24…31       numbers of points
 
-Points without such an order are put into one first, along a Z-curve.
+Where that makes large boxes, as of many short lines in any order, the points are put along a Z-curve first.
 
 A place looks into the nearer of two boxes first, and into no box that is further off than what was found. It
 begins with what the place before it found, since places come along lines as well. Of points at the same
@@ -31,8 +31,10 @@ from morfax.motion.compiled import njit
 
 LEAF = 8  # points to a smallest box: 4 and 16 take a tenth longer
 DEEPEST = 64  # boxes within boxes: no memory holds 2^64 points
-# way from point to point in times of √(n · area): 0.7 along a curve that fills the area, √n / 2 at random
-IN_ORDER = 4.0
+# a place meets more boxes than this: the points are in no order. Along lines it meets 4 to 24, along a
+# Z-curve 6 to 40, and of 1000 circles in any order 1050
+MOST_MET = 50.0
+TINY = 1e-100  # of points that are all alike
 BITS = 16  # of each axis of the Z-curve
 
 
@@ -40,13 +42,13 @@ class Neighbours:
     """Finds the nearest of some points (n, 2)."""
 
     def __init__(self, points: ArrayLike) -> None:
-        given = np.asarray(points, np.float64).reshape(-1, 2)
-        self._order = None if _is_in_order(given) else _along_z(given)
-        ordered = given if self._order is None else given[self._order]
-        self._points = np.ascontiguousarray(ordered)
-        leaves = 1 << (-(-len(given) // LEAF) - 1).bit_length()
-        self._boxes = np.empty((2 * leaves, 4))
-        _boxed(self._points, leaves, self._boxes)
+        self._points = np.ascontiguousarray(points, np.float64).reshape(-1, 2)
+        self._boxes = _boxes_of(self._points)
+        self._numbers = np.arange(len(self._points) + 1)  # the last one is none
+        if _met(self._boxes, len(self._points)) > MOST_MET:
+            self._numbers[:-1] = _along_z(self._points)
+            self._points = self._points[self._numbers[:-1]]
+            self._boxes = _boxes_of(self._points)
 
     def nearest(
         self, places: ArrayLike, within: float = np.inf
@@ -68,12 +70,10 @@ class Neighbours:
         """Distances and numbers (m, count) of the nearest points."""
         at = np.ascontiguousarray(places, np.float64).reshape(-1, 2)
         squared = np.full((len(at), count), within * within)
-        number = np.full((len(at), count), len(self._points))
-        _searched(self._points, self._boxes, at, squared, number)
-        away = np.where(number < len(self._points), np.sqrt(squared), np.inf)
-        if self._order is not None:
-            number = np.r_[self._order, len(self._points)][number]
-        return away, number
+        found = np.full((len(at), count), len(self._points))
+        _searched((self._points, self._numbers), self._boxes, at, squared, found)
+        away = np.where(found < len(self._points), np.sqrt(squared), np.inf)
+        return away, self._numbers[found]
 
 
 def pairs_within(points: ArrayLike, reach: float) -> NDArray[np.int64]:
@@ -90,13 +90,24 @@ def pairs_within(points: ArrayLike, reach: float) -> NDArray[np.int64]:
     return np.vstack(found)
 
 
-def _is_in_order(points: Array) -> bool:
-    """Whether points of neighbouring numbers lie near each other."""
-    if not len(points):
-        return True
-    sides = np.ptp(points, axis=0)
-    way = float(np.hypot(*np.diff(points, axis=0).T).sum())
-    return way <= IN_ORDER * (float(np.sqrt(len(points) * sides.prod())) + float(sides.sum()))
+def _boxes_of(points: Array) -> Array:
+    """The boxes (2 · leaves, 4) round some points: lowest and highest x and y; the first is none."""
+    leaves = 1 << (-(-len(points) // LEAF) - 1).bit_length()
+    boxes = np.empty((2 * leaves, 4))
+    _boxed(points, leaves, boxes)
+    return boxes
+
+
+def _met(boxes: Array, count: int) -> float:
+    """How many boxes a place anywhere meets with a square about it that holds one of so many points."""
+    if not count:
+        return 0.0
+    width, height = (boxes[1:, 2:] - boxes[1:, :2]).T
+    wide, high = float(width[0]), float(height[0])
+    reach = float(np.sqrt(wide * high / count)) + max(wide, high) / count + TINY
+    is_some = width >= 0.0
+    met = (width[is_some] + reach) * (height[is_some] + reach)
+    return float(met.sum()) / ((wide + reach) * (high + reach))
 
 
 def _along_z(points: Array) -> NDArray[np.int64]:
@@ -142,59 +153,77 @@ def _apart(point: Array, place: Array) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _put(away: float, i: int, squared: Array, number: NDArray[np.int64]) -> None:
+def _put(
+    away: float, i: int, numbers: NDArray[np.int64], squared: Array, found: NDArray[np.int64]
+) -> None:
     """Put a point among the nearest of a place, in its order; the last of them falls out."""
     slot = len(squared) - 1
     while slot > 0 and (
-        away < squared[slot - 1] or (away == squared[slot - 1] and i < number[slot - 1])
+        away < squared[slot - 1]
+        or (away == squared[slot - 1] and numbers[i] < numbers[found[slot - 1]])
     ):
         squared[slot] = squared[slot - 1]
-        number[slot] = number[slot - 1]
+        found[slot] = found[slot - 1]
         slot -= 1
-    squared[slot], number[slot] = away, i
+    squared[slot], found[slot] = away, i
 
 
 @njit(cache=True, nogil=True)
 def _look_through(
-    points: Array, first: int, place: Array, squared: Array, number: NDArray[np.int64]
+    numbered: tuple[Array, NDArray[np.int64]],
+    first: int,
+    place: Array,
+    squared: Array,
+    found: NDArray[np.int64],
 ) -> None:
     """Put the points of a leaf among the nearest of a place, as far as they are."""
+    points, numbers = numbered
     for i in range(first, min(first + LEAF, len(points))):
         away = _apart(points[i], place)
-        if away < squared[-1] or (away == squared[-1] and i < number[-1]):
-            _put(away, i, squared, number)
+        if away < squared[-1] or (away == squared[-1] and numbers[i] < numbers[found[-1]]):
+            _put(away, i, numbers, squared, found)
 
 
 @njit(cache=True, nogil=True)
 def _searched(
-    points: Array, boxes: Array, places: Array, squared: Array, number: NDArray[np.int64]
+    numbered: tuple[Array, NDArray[np.int64]],
+    boxes: Array,
+    places: Array,
+    squared: Array,
+    found: NDArray[np.int64],
 ) -> None:
-    """Fill in squares of distances and numbers (m, k), which hold the limit and n to begin with."""
+    """Fill in squares of distances and points (m, k), which hold the limit and n to begin with.
+
+    `numbered`: the points as they stand in the boxes, and the number of each.
+    """
+    points, _ = numbered
     leaves = len(boxes) // 2
-    left = np.empty(2 * DEEPEST, np.int64)
+    left, left_off = np.empty(DEEPEST, np.int64), np.empty(DEEPEST)
     for m in range(len(places)):
         place = places[m]
-        far = squared[m]
-        found = number[m]
+        far, mine = squared[m], found[m]
         # 1. what the place before found is no nearer than what this one will find
         limit = far[-1]
-        if m > 0 and number[m - 1, -1] < len(points):
+        if m > 0 and found[m - 1, -1] < len(points):
             reached = 0.0
-            for i in number[m - 1]:
+            for i in found[m - 1]:
                 reached = max(reached, _apart(points[i], place))
             limit = min(limit, reached)
-        # 2. down from the box round all
-        left[0], waiting = 1, 1
-        while waiting > 0:
+        # 2. down from the box round all, always into the nearer one first
+        box, off, waiting = 1, _off(boxes[1], place[0], place[1]), 0
+        while True:
+            if off <= min(limit, far[-1]):
+                if box < leaves:
+                    box, other = 2 * box, 2 * box + 1
+                    off = _off(boxes[box], place[0], place[1])
+                    other_off = _off(boxes[other], place[0], place[1])
+                    if other_off < off:
+                        box, other, off, other_off = other, box, other_off, off
+                    left[waiting], left_off[waiting] = other, other_off
+                    waiting += other_off <= limit
+                    continue
+                _look_through(numbered, (box - leaves) * LEAF, place, far, mine)
+            if waiting == 0:
+                break
             waiting -= 1
-            box = left[waiting]
-            if _off(boxes[box], place[0], place[1]) > min(limit, far[-1]):
-                continue
-            if box >= leaves:
-                _look_through(points, (box - leaves) * LEAF, place, far, found)
-                continue
-            near, other = 2 * box, 2 * box + 1
-            if _off(boxes[other], place[0], place[1]) < _off(boxes[near], place[0], place[1]):
-                near, other = other, near
-            left[waiting], left[waiting + 1] = other, near
-            waiting += 2
+            box, off = left[waiting], left_off[waiting]

@@ -30,8 +30,8 @@ _NAMES = {"t": "t_s", "time_s": "t_s", "x": "x_mm", "y": "y_mm", "z": "z_mm"}
 _FURTHER = tuple(f"{axis}_mm" for axis in FURTHER_AXES)
 _COLUMNS = ("t_s", "x_mm", "y_mm", "z_mm", "tool", "loop", *_FURTHER)
 _OTHER_UNITS = {"", "in", "inch", "cm", "m", "um", "deg", "rad", "ms", "us", "min"}
-_UP = {"0", "0.0", "false", "up"}
-_DOWN = {"1", "1.0", "true", "down"}
+_TOOL = dict.fromkeys(("0", "0.0", "false", "up"), 0.0)
+_TOOL |= dict.fromkeys(("1", "1.0", "true", "down"), 1.0)
 _EXPECTED = "a line of names such as t_s,x_mm,y_mm,z_mm,tool"
 
 LARGEST_MM = LONGEST_MM  # of a place; as long as a length may be that is given by hand
@@ -70,9 +70,7 @@ class PathTable:
 def read_table(file: File) -> PathTable:
     """Read the columns that a path needs; raises MotionFault with the line if they are not a path's."""
     written = enumerate(_read_text(file).splitlines(), 1)
-    lines = [
-        (n, line) for n, line in written if line.strip() and not line.lstrip().startswith("#")
-    ]
+    lines = [(n, line) for n, line in written if (bare := line.strip()) and bare[0] != "#"]
     if len(lines) < 3:
         raise MotionFault(
             f"{file}: {max(0, len(lines) - 1)} points in it; a path needs {_EXPECTED}, then two or more"
@@ -158,10 +156,12 @@ def _convert(lines: list[str], where: dict[str, int], separator: str) -> Array |
 
 def _tool(text: str) -> float:
     """1.0 in the work, 0.0 up."""
-    word = text.strip().lower()
-    if word not in _UP | _DOWN:
+    value = _TOOL.get(text)  # as nearly all are written
+    if value is None:
+        value = _TOOL.get(text.strip().lower())
+    if value is None:
         raise ValueError(text)
-    return float(word in _DOWN)
+    return value
 
 
 def _culprit(lines: Lines, where: dict[str, int], separator: str) -> str:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from morfax.motion.neighbours import LEAF, Neighbours, pairs_within
+from morfax.motion.neighbours import LEAF, MOST_MET, Neighbours, _met, pairs_within
 
 ROUNDING = 1e-12  # of places up to 100
 
@@ -37,6 +37,9 @@ def test_the_nearest_is_that_of_trying_all(seed: int, count: int, kind: str) -> 
     every = tried(points, places)
     assert away == pytest.approx(every.min(axis=1), abs=ROUNDING)
     assert every[np.arange(len(places)), number] == pytest.approx(away, abs=ROUNDING)
+    if kind in ("on a grid", "all alike"):  # distances that are alike are so to the bit
+        squares = ((places[:, None] - points[None]) ** 2).sum(axis=2)
+        assert number.tolist() == squares.argmin(axis=1).tolist()
     few = min(4, count)
     several = Neighbours(points).several(places, few)
     found = np.take_along_axis(every, several, axis=1)
@@ -68,6 +71,21 @@ def test_points_in_any_order_are_put_in_order_first() -> None:
     # a square for 8 of 4096 points has sides of 4.4
     assert np.median(sides) < 6.0
     assert np.array_equal(found.nearest(points)[1], np.arange(4096))
+
+
+def test_short_lines_in_any_order_are_put_in_order_and_a_long_line_stays() -> None:
+    """900 circles: in any order a place lies in a hundred boxes. Of points as near the first is found."""
+    random = np.random.default_rng(1)
+    angles = np.linspace(0, 2 * np.pi, 32, endpoint=False)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    middles = 5.0 * np.argwhere(np.ones((30, 30)))
+    circles = np.vstack([circle + middle for middle in random.permutation(middles)])
+    for points, is_ordered in ((circles, True), (np.cumsum(np.abs(circles), axis=0), False)):
+        found = Neighbours(points)
+        assert bool((np.diff(found._numbers) != 1).any()) is is_ordered
+        assert _met(found._boxes, len(points)) < MOST_MET
+    twice = np.vstack([circles, circles])
+    assert np.array_equal(Neighbours(twice).nearest(circles)[1], np.arange(len(circles)))
 
 
 @settings(max_examples=30)

@@ -79,13 +79,24 @@ class Patches:
         tops, bottoms, lefts, rights = self.boxes[chosen].T
         return int(tops.min()), int(bottoms.max()), int(lefts.min()), int(rights.max())
 
+    def runs_between(self, top: int, bottom: int) -> slice:
+        """The runs from a row up to another.
+
+        They are sought in the rows' own type: for any other numpy makes a copy of all rows first.
+        """
+        kind = self.row.dtype
+        most = np.iinfo(kind).max
+        between = np.array([min(max(row, 0), most) for row in (top, bottom)], kind)
+        first, last = np.searchsorted(self.row, between)
+        return slice(int(first), int(last))
+
     def painted(
         self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
     ) -> Mask:
         """Mask (rows, columns) of the chosen patches in a part of the sheet."""
         mask = np.zeros((bottom - top, right - left), np.uint8)
-        first, last = np.searchsorted(self.row, (top, bottom))
-        own = first + np.flatnonzero(chosen[self.patch[first:last]])
+        rows = self.runs_between(top, bottom)
+        own = rows.start + np.flatnonzero(chosen[self.patch[rows]])
         _paint(mask, self.row[own] - top, self.begin[own] - left, self.end[own] - left)
         return mask
 
@@ -93,8 +104,8 @@ class Patches:
         self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
     ) -> tuple[Numbers, Numbers, Numbers]:
         """Row, begin and end of the runs of the chosen patches in a part of the sheet, from its corner."""
-        first, last = np.searchsorted(self.row, (top, bottom))
-        own = first + np.flatnonzero(chosen[self.patch[first:last]])
+        rows = self.runs_between(top, bottom)
+        own = rows.start + np.flatnonzero(chosen[self.patch[rows]])
         begin = np.maximum(self.begin[own] - np.int32(left), np.int32(0))
         end = np.minimum(self.end[own] - np.int32(left), np.int32(right - left))
         within = begin < end

@@ -262,7 +262,7 @@ class Drawing:
             if reading.pale_is_ink:  # a line of a pixel is paler now
                 pale_mm += deepened(darkness, pitch_mm / finer, None, shapes)
         notes = (*notes, deepened_note(pale_mm)) if pale_mm else notes
-        return cls(
+        drawing = cls(
             darkness,
             pitch_mm / finer,
             file,
@@ -274,6 +274,9 @@ class Drawing:
             grainy=behind is not None,
             paper_noise=paper_noise,
         )
+        if behind is None and finer == 1:  # the darkness that was measured
+            vars(drawing)["noise"] = lines.found.noise(pitch_mm)
+        return drawing
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Any:

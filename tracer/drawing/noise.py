@@ -71,27 +71,50 @@ class Noise:
     width_mm: float
 
 
+class InPixels(NamedTuple):
+    """The same in pixels, whatever their pitch is."""
+
+    paper: float
+    ink: float = math.nan
+    grain: float = math.nan
+    softness_px: float = math.nan
+    width_px: float = math.nan
+
+    @classmethod
+    def of(cls, darkness: Kept, profiles: Profiles | None, paper: float | None) -> InPixels:
+        """The noise that the profiles of a drawing show; `paper` is its paper's, where known."""
+        paper = of_sheet(darkness) if paper is None else paper
+        if profiles is None:
+            return cls(paper)
+        ink, grain = _ink(darkness, profiles)
+        return cls(paper, ink, grain, *_pen(profiles, paper, ink))
+
+    def noise(self, pitch_mm: float) -> Noise:
+        """The same on pixels of a pitch."""
+        soft, wide = self.softness_px, self.width_px
+        return Noise(*self[:4], soft * pitch_mm, wide * pitch_mm)
+
+
 def measured(darkness: Kept, pitch_mm: float, paper: float | None = None) -> Noise:
     """The noise of a drawing of darkness 0..1 on pixels of a pitch; `paper` is its paper's, where known."""
-    paper = of_sheet(darkness) if paper is None else paper
-    profiles = profiles_of(darkness)
-    if profiles is None:
-        return Noise(paper, math.nan, math.nan, math.nan, math.nan, math.nan)
-    ink, grain = _ink(darkness, profiles)
-    softness_px, width_px = _pen(profiles, paper, ink)
-    return Noise(paper, ink, grain, softness_px, softness_px * pitch_mm, width_px * pitch_mm)
+    return InPixels.of(darkness, profiles_of(darkness), paper).noise(pitch_mm)
 
 
 class Within(NamedTuple):
-    """The grain of the ink within single lines, the width of the pen, pixels, and how wide lines look.
+    """The grain of the ink within single lines, how wide lines look, and the noise that they show.
 
     A line that is less wide than two pixels looks as wide as two, but where a pixel lies right on it: there
     `seen_px`, the ink across it over the darkness in its middle, goes on falling.
     """
 
     grain: float
-    width_px: float
     seen_px: float
+    found: InPixels
+
+    @property
+    def width_px(self) -> float:
+        """The width of the pen."""
+        return self.found.width_px
 
 
 def within(darkness: Kept, paper: float | None = None) -> Within:
@@ -103,26 +126,26 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
     without any line.
     """
     profiles = profiles_of(darkness)
+    found = InPixels.of(darkness, profiles, paper)
     if profiles is None:
-        return Within(math.nan, math.nan, math.nan)
-    paper = of_sheet(darkness) if paper is None else paper
+        return Within(math.nan, math.nan, found)
+    paper, width_px = found.paper, found.width_px
     middle = np.maximum(middle_of(profiles), PAPER)
     looks_px = STEP_PX * profiles.seen.sum(axis=1) / middle
     seen_px = percentile(looks_px, RIGHT_ON_IT)
-    width_px = _pen(profiles, paper, _ink(darkness, profiles)[0])[1]
     along = profiles.across[:, ::-1] * [1, -1]
     here = seen_at(darkness, profiles.middles.T)
     there = seen_at(darkness, (profiles.middles + width_px * along).T)
     on_line = there > PAPER * median(here)
     if np.count_nonzero(on_line) < FEWEST_PROFILES:
-        return Within(math.nan, width_px, seen_px)
+        return Within(math.nan, seen_px, found)
     differ = _spread((there - here)[on_line]) / math.sqrt(2)
     profiles_differ = _along(darkness, profiles)
     grain, of_profiles = (
         math.sqrt(max(some**2 - INTERPOLATED_NOISE * paper**2, 0.0))
         for some in (differ, profiles_differ)
     )
-    return Within(min(grain, of_profiles / LEFT_OF_GRAIN), width_px, seen_px)
+    return Within(min(grain, of_profiles / LEFT_OF_GRAIN), seen_px, found)
 
 
 def _along(darkness: Kept, profiles: Profiles) -> float:

@@ -184,11 +184,9 @@ class Sheet:
         while (
             True
         ):  # all runs of a large sheet take longer than those of the rows about the place
-            first, last = np.searchsorted(
-                self.patches.row, (row - about_px, row + about_px + 1)
-            )
-            found = self._nearest_of(place_mm, slice(first, last))
-            is_all = first == 0 and last == len(self.patches.row)
+            runs = self.patches.runs_between(row - about_px, row + about_px + 1)
+            found = self._nearest_of(place_mm, runs)
+            is_all = runs == slice(0, len(self.patches.row))
             if is_all or found[0] < (about_px - 1) * pitch_mm:
                 return found
             about_px *= 4

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.head.state import set_fields
+from morfax.tracer.head.state import field_of, set_fields
 from morfax.tracer.sensing.leg import Leg
 
 # of the lead: what was felt of a leg this far ahead tells where the cell will see it
@@ -31,8 +31,8 @@ def begin_sweep(state: Any) -> None:
 
 def set_to(state: Any, lead_mm: float) -> None:
     """Set the mount to a lead, with its sweep about the curve that the line has been on."""
-    state.middle_mm *= (lead_mm / state.lead_mm) ** 2
-    state.lead_mm = lead_mm
+    was_mm, middle_mm = field_of(state, "lead_mm"), field_of(state, "middle_mm")
+    set_fields(state, middle_mm=middle_mm * (lead_mm / was_mm) ** 2, lead_mm=lead_mm)
     begin_sweep(state)
 
 

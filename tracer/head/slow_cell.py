@@ -28,7 +28,7 @@ from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
-from morfax.tracer.head.state import HOME, MORE, Home, Tuning, put_on_drum
+from morfax.tracer.head.state import HOME, MORE, Home, Tuning, field_of, put_on_drum, set_fields
 from morfax.tracer.head.windows import (
     Ahead,
     Window,
@@ -172,11 +172,11 @@ def _through(
     state, why, parts, end_mm = begun, MORE, list[Array](), 0.0
     for long_mm, t in course:
         end_mm = min(end_mm + long_mm, longest_mm)
-        left_mm = end_mm - (state.travel_mm - begun.travel_mm)
+        left_mm = end_mm - (field_of(state, "travel_mm") - field_of(begun, "travel_mm"))
         if why != MORE or left_mm <= 0.0:
             break
         # the mount is drawn in at once; out it slides by itself
-        state = _drawn_in(state, t) if t.lead_mm < state.lead_mm else state
+        state = _drawn_in(state, t) if t.lead_mm < field_of(state, "lead_mm") else state
         tried = _for(cells, state, t, home, left_mm)
         state, why = tried.state, tried.why
         parts.append(tried.positions)
@@ -212,10 +212,11 @@ def _on_felt(state: Any, t: Tuning, way: Array) -> Any:
 def _for(cells: Cells, begun: Any, t: Tuning, home: Home, length_mm: float) -> Tried:
     """Follow for a length, mm, past what the guard cells say."""
     state = begun.copy()
-    end_mm = state.trusted_mm = state.travel_mm + length_mm
+    end_mm = field_of(state, "travel_mm") + length_mm
+    set_fields(state, trusted_mm=end_mm)
     parts, why = list[Array](), MORE
-    while why == MORE and state.travel_mm < end_mm:
-        left_s = (end_mm - state.travel_mm) / max(state.speed_mm_s, t.speed_mm_s)
+    while why == MORE and (left_mm := end_mm - field_of(state, "travel_mm")) > 0.0:
+        left_s = left_mm / max(field_of(state, "speed_mm_s"), t.speed_mm_s)
         out = np.empty((max(1, math.ceil(left_s / t.period_s)), 2))
         n, why = kernel.follow(cells, state, t, home, out)
         parts.append(out[:n])

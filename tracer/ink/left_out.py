@@ -153,7 +153,7 @@ def _pixels_of(sheet: Sheet, mask: Mask) -> NDArray[np.float64]:
     """How many pixels of each patch are in a mask, strip by strip."""
     runs, within = sheet.patches, np.zeros(len(sheet.patches.row), np.int32)
     for top, bottom, rows in strips(mask.shape, pixels=FEW_PX):
-        own = slice(*np.searchsorted(runs.row, (top, bottom)))
+        own = runs.runs_between(top, bottom)
         sums = np.zeros((bottom - top, mask.shape[1] + 1), np.int32)
         np.cumsum(mask[rows], axis=1, out=sums[:, 1:])
         row = runs.row[own] - top

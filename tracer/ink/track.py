@@ -237,11 +237,12 @@ class InkHead:
     def _course(self, run: Run, at: int, end: tuple[Array, float]) -> Array:
         """From where the head stands along a run's stations to a place and heading at its end, (n, 2) mm."""
         stands = self.carriage.stands()
-        spacing = max(1, round(NODES_MM / run.view.step_mm))
+        step_mm = run.view.step_mm
+        spacing = max(1, round(NODES_MM / step_mm))
         nodes = [stands]
         way = np.array([math.cos(end[1]), math.sin(end[1])])
         for k in range(at + spacing, len(run), spacing):
-            place, left_mm = run.places_mm[k], (len(run) - 1 - k) * run.view.step_mm
+            place, left_mm = run.places_mm[k], (len(run) - 1 - k) * step_mm
             # a loop comes by its end at its beginning, too
             if (end[0] - place) @ way < 0.5 * NODES_MM and left_mm < NEAR_MM:
                 break

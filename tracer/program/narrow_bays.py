@@ -50,11 +50,12 @@ GAIN = 0.001  # and by how much more the head's own way must leave
 FURTHER = (
     0.01  # the same, of a width by which a way is longer: it runs out and back on one line
 )
+DOUBTFUL = 0.3  # of the limit above which a way is beside its ink: it may be wrong
 ROUNDS = 3  # a bay may come to light when another is mended
 MOST = 40  # bays of one line that are tried
 
 
-LeftBy = Callable[[Setup, Sequence[Line]], tuple[Unexplained, ...]]
+LeftBy = Callable[[Setup, Sequence[Line], float], tuple[Unexplained, ...]]
 
 
 class Suspect(NamedTuple):
@@ -91,12 +92,12 @@ def _mended(
     setup: Setup, lines: Sequence[Line], left_by: LeftBy
 ) -> tuple[list[Line], tuple[Unexplained, ...]]:
     """The lines with their narrow bays mended, until no more is found, and what is left of what was told."""
-    lines, left = list(lines), left_by(setup, lines)
+    lines, left = list(lines), left_by(setup, lines, DOUBTFUL)
     for _ in range(ROUNDS):
         mended = _once_mended(setup, lines, left)
         if all(new is line for new, line in zip(mended, lines, strict=True)):
             break
-        lines, left = mended, left_by(setup, mended)
+        lines, left = mended, left_by(setup, mended, DOUBTFUL)
     return lines, tuple(place for place in left if place.is_sure)
 
 

@@ -77,9 +77,12 @@ class Unexplained(NamedTuple):
     is_sure: bool = True
 
 
-def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
+def unexplained(
+    setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
+) -> tuple[Unexplained, ...]:
     """What the closed ones of some lines leave unexplained, the longest first; of lines that ran into
-    themselves only ink, for there the head may have turned off its line.
+    themselves only ink, for there the head may have turned off its line. A way is beside its ink from so much
+    of the limit on.
 
     Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
     """
@@ -91,22 +94,24 @@ def unexplained(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
     found += _tips_cut(sheet.drawing.edges_mm, closed)
     found += _once(_off_edges(sheet.drawing, closed))
     found = found or list(_astray(sheet, closed))
-    found += _beside_ink(sheet.drawing, lines, found)
+    found += _beside_ink(sheet.drawing, lines, found, of_limit)
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
-def beside_ink(setup: Setup, lines: Sequence[Line]) -> tuple[Unexplained, ...]:
-    """Where closed ones of some lines run beside their ink, the longest first."""
-    found = _beside_ink(setup.sheet.drawing, lines, ()) if lines else ()
+def beside_ink(
+    setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
+) -> tuple[Unexplained, ...]:
+    """Where closed ones of some lines run beside their ink, from so much of the limit on; the longest first."""
+    found = _beside_ink(setup.sheet.drawing, lines, (), of_limit) if lines else ()
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
 def _beside_ink(
-    drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained]
+    drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained], of_limit: float
 ) -> Iterator[Unexplained]:
     """Stretches of closed lines beside their ink, but for those about what was found otherwise."""
     about_mm = BESIDE_WIDTHS * max(line.width_mm for line in lines)
-    for place_mm, long_mm, is_sure in beside(drawing, lines):
+    for place_mm, long_mm, is_sure in beside(drawing, lines, of_limit):
         if all(math.dist(place_mm, other.place_mm) > about_mm for other in found):
             yield Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
 

@@ -229,8 +229,10 @@ def softness_of(view: View, leg: Leg) -> float:
     """Softness of the line's edges, mm: that with which the pen's ink is most like the leg's."""
     # 1. the leg's darkness across it
     stations = leg.seen[::STATIONS_EVERY, :2]
-    way = np.gradient(stations, axis=0)
-    unit = way / np.hypot(*way.T)[:, None]
+    unit = np.array([[math.cos(leg.heading_rad), math.sin(leg.heading_rad)]])
+    if len(stations) > 1:  # a leg of few stations has one
+        way = np.gradient(stations, axis=0)
+        unit = way / np.hypot(*way.T)[:, None]
     left = np.column_stack([-unit[:, 1], unit[:, 0]])
     u = ACROSS * (leg.width_mm + PAPER_MM)
     places = stations[:, None] + u[:, None] * left[:, None]

@@ -73,7 +73,8 @@ def test_a_pencilled_line_ends_where_it_was_drawn_to() -> None:
 def test_the_slit_takes_grain_away_and_leaves_the_paper() -> None:
     levels = pencilled(arc((22.0, 22.0), 16.0), 0.45, 6)
     darkness = np.asarray((235 - levels) / (BLACK_LEVELS * FAINT), np.float32)
-    before, width_px, _ = within(darkness)
+    seen_before = within(darkness)
+    before, width_px = seen_before.grain, seen_before.width_px
     slit = grain.slit_for(before, width_px, PITCH_MM)
     assert slit is not None
     seen = grain.behind(slit, darkness)
@@ -109,7 +110,8 @@ def test_clean_ink_and_lines_of_several_pens_have_no_grain() -> None:
     both[: len(both) // 2] *= 0.6
     assert within(both).grain < 0.06
     clean = inked(arc((22.0, 22.0), 16.0), seed=2)
-    assert grain.slit_for(*within(clean.darkness)[:2], PITCH_MM) is None
+    seen = within(clean.darkness)
+    assert grain.slit_for(seen.grain, seen.width_px, PITCH_MM) is None
 
 
 def test_small_bends_pressed_harder_and_softer_are_no_grain() -> None:

@@ -17,6 +17,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.noise import measured
 from tests.tracer.inked import DPI, NOISE, SOFTNESS_MM, UM, WIDTH_MM, arc, inked, polyline
 
+SAMPLE = Path(__file__).parents[3] / "samples" / "cam.png"
 PITCH_MM = 0.1
 SIDE_PX = 500
 APART_PX = 40.0  # of paper between the lines
@@ -119,3 +120,15 @@ def test_a_sheet_without_lines_has_paper_only(darkness: float) -> None:
     assert (
         math.isnan(found.width_mm) and math.isnan(found.softness_px) and math.isnan(found.ink)
     )
+
+
+@pytest.mark.parametrize("by", [1, 5])
+def test_the_noise_of_an_opened_drawing_is_that_of_its_own_darkness(
+    by: int, tmp_path: Path
+) -> None:
+    """As it was scanned; and so coarse, 60 dpi, that its pixels are made finer after they were measured."""
+    with Image.open(SAMPLE) as image:
+        image.reduce(by).save(tmp_path / "sheet.png", dpi=(300 / by, 300 / by))
+    drawing = Drawing.open(tmp_path / "sheet.png")
+    assert (drawing.finer > 1) == (by > 1)
+    assert drawing.noise == measured(drawing.darkness, drawing.pitch_mm, drawing.paper_noise)

@@ -12,7 +12,17 @@ from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.own_ink import _nearest, beside
+from morfax.tracer.program.own_ink import beside
+from morfax.tracer.program.pen_on_ink import (
+    Pen,
+    Room,
+    Ways,
+    _Band,
+    _in_boxes,
+    _most,
+    _nearest,
+    over_at,
+)
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.unexplained import unexplained
@@ -96,11 +106,41 @@ def test_what_is_found_is_told_once_with_its_place() -> None:
 
 
 def test_the_nearest_of_some_places_within_reach() -> None:
-    away, owner = np.full((3, 5), np.inf), np.full((3, 5), -1)
-    places = np.array([(0.0, 1.0), (3.0, 1.5)])
-    _nearest.py_func(places, np.array([7, 8]), 1.6, away, owner)
+    away2, owner = np.full((3, 5), 1.6**2, np.float32), np.full((3, 5), -1)
+    places = np.array([(0.0, 1.0), (3.0, 1.5)], np.float32)
+    _nearest.py_func(places, np.array([7, 8]), 1.6, away2, owner)
     assert owner[1].tolist() == [7, 7, 8, 8, 8]
-    assert away[1].tolist() == pytest.approx(
-        [0, 1, math.hypot(1, 0.5), 0.5, math.hypot(1, 0.5)]
-    )
-    assert owner[0, 4] == -1 and math.isinf(away[0, 4])
+    assert away2[1].tolist() == [0, 1, 1.25, 0.25, 1.25]
+    assert owner[0, 4] == -1
+
+
+def test_sums_over_boxes_and_the_most_of_them_about_a_pixel() -> None:
+    """Of values at some pixels of 4 x 6, over boxes of 3 x 3; the room is as empty as before."""
+    spread, sums = np.zeros((4, 6)), np.empty((4, 6))
+    values = {(0, 0): 1.0, (1, 1): 2.0, (3, 5): -4.0, (2, 5): 8.0}
+    at = np.array(list(values))
+    band = _Band(at[:, 0], at[:, 1], np.empty(4), np.empty(4), np.empty(4))
+    most = _in_boxes.py_func(band, np.array(list(values.values())), 3, spread, sums)
+    expected = [
+        sum(v for (i, j), v in values.items() if abs(i - row) <= 1 and abs(j - column) <= 1)
+        for row in range(4)
+        for column in range(6)
+    ]
+    assert sums.ravel().tolist() == expected and not spread.any()
+    assert most == 8.0
+    assert [_most.py_func(sums, place, 3) for place in ((0, 3), (2, 2), (5, 0))] == [2, 3, 8]
+
+
+def test_a_pen_of_its_own_width_explains_its_line_and_a_bare_way_is_over() -> None:
+    """The kernel's plain Python; a line of 4 px along row 10 up to column 20, its way goes on to 39."""
+    rows, columns = np.mgrid[0:21, 0:40].astype(np.float32)
+    seen = np.clip(2.5 - np.abs(rows - 10), 0, 1) * (columns <= 20)
+    places = np.column_stack([np.arange(40.0), np.full(40, 10.0)]).astype(np.float32)
+    ways = Ways(places, np.zeros(40, np.int32), np.array([2.0]), np.array([True]))
+    pen = Pen(2.0, 0.3, 5.0, 0.0, (0.8, 1.0), 0.05)
+    over = np.empty(2)
+    stations, room = np.array([(8, 10), (33, 10)]), Room.of(seen.size)
+    over_at.py_func(seen.astype(np.float32), ways, stations, pen, room, over)
+    assert over[0] < 0.05
+    # beyond its end the pen draws all of the box, but leaves no ink: a gap
+    assert over[1] <= 0.0

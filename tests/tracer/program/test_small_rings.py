@@ -48,13 +48,27 @@ def test_a_zigzag_too_narrow_to_be_followed_is_told() -> None:
     assert "the head can nowhere be put down" in said
 
 
-def test_a_slot_whose_sides_run_together_is_told_with_its_place() -> None:
-    """Its sides are 1.1 mm apart, and its line is 1 mm wide: no paper is seen within. A dot is none."""
-    slot = polyline((12, 20), (14.4, 20), (14.4, 21.1), (12, 21.1), (12, 20))
+def plate_with_slot(wide_mm: float) -> Trace:
+    """The contours of a plate with a slot 2.4 mm long and a dot, both drawn with a line of 1 mm."""
+    slot = polyline((12, 20), (14.4, 20), (14.4, 20 + wide_mm), (12, 20 + wide_mm), (12, 20))
     dot = polyline((30, 20), (30.01, 20))
-    trace = trace_lines(inked(PLATE, slot, dot, width_mm=1.0, dpi=150, seed=1))
+    return trace_lines(inked(PLATE, slot, dot, width_mm=1.0, dpi=150, seed=1))
+
+
+def test_a_slot_whose_sides_run_together_is_told_with_its_place() -> None:
+    """Its sides are as far apart as its line is wide: no paper is seen within, and no seam. A dot is none."""
+    trace = plate_with_slot(1.0)
     assert [line.ending for line in trace.lines if not line.is_dot] == ["closed"]
     (patch,) = trace.unclear
-    assert patch.place_mm == pytest.approx((13.2, 20.55), abs=2 * PITCH_MM)
+    assert patch.place_mm == pytest.approx((13.2, 20.5), abs=2 * PITCH_MM)
     said = " ".join(of_ink(trace, several=True))
     assert "1 line is left out" in said and "with a finer pen" in said
+
+
+def test_a_slot_whose_ink_shows_the_seam_between_its_sides_is_cut() -> None:
+    """Within half a pixel, 85 um: its sides are 0.1 mm further apart than its line is wide."""
+    trace = plate_with_slot(1.1)
+    assert trace.unclear == ()
+    (slot,) = (line for line in trace.lines if line.length_mm < 10 and not line.is_dot)
+    low, high = slot.xy_mm.min(axis=0), slot.xy_mm.max(axis=0)
+    assert [*low, *high] == pytest.approx([12, 20, 14.4, 21.1], abs=0.5 * PITCH_MM)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import permutations, product
+from itertools import combinations, permutations, product
 
 import numpy as np
 import pytest
@@ -50,10 +50,21 @@ def test_dashes_of_a_line_are_run_one_after_the_other() -> None:
     assert idle_mm(some, others, way, turned) == pytest.approx(29, abs=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_no_stretch_that_is_turned_makes_the_order_shorter(seed: int) -> None:
+    begins, ends = strokes(40, seed)
+    way, turned = in_order(begins, ends)
+    found_mm = idle_mm(begins, ends, way, turned)
+    for i, j in combinations(range(41), 2):
+        other, flipped = way.copy(), turned.copy()
+        other[i:j], flipped[i:j] = way[i:j][::-1], ~turned[i:j][::-1]
+        assert idle_mm(begins, ends, other, flipped) > found_mm - 1e-6  # rounding
+
+
 def test_the_plain_kernel_says_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     begins, ends = strokes(9, 3)
     compiled = in_order(begins, ends)
-    for name in ("_on_to_nearest", "_turn_stretches", "_apart"):
+    for name in ("_on_to_nearest", "_turn_stretches", "_lay_out", "_apart"):
         monkeypatch.setattr(stroke_order, name, getattr(stroke_order, name).py_func)
     plain = in_order(begins, ends)
     assert all(np.array_equal(a, b) for a, b in zip(compiled, plain, strict=True))

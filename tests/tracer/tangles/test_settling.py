@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.tangles import pen, settling
 from morfax.tracer.tangles.pen import Drawn, Ink
+from morfax.tracer.tangles.sketch import softness_of
+from tests.tracer.inked import WIDTH_MM, inked, polyline
 
 HALF_MM, SOFT_MM = 0.25, 0.06
 PLACES_MM = np.stack(np.meshgrid(np.arange(0, 4, 0.11), np.arange(0, 3, 0.11)), -1).reshape(
@@ -72,3 +76,14 @@ def test_vertices_go_back_to_where_the_ink_was_drawn() -> None:
     left = settling.settle(ink, way, moved, 30)
     assert left < 0.01  # of ink without noise
     assert np.abs(moved - VERTICES_MM)[:4].max() < 0.02  # mm
+
+
+@pytest.mark.parametrize("stations", [1, 3, 4, 20])
+def test_a_leg_of_few_stations_shows_how_soft_its_edges_are(stations: int) -> None:
+    """As a long one does, within the steps in which it is tried; of three stations one is looked at."""
+    view = view_of(inked(polyline((4, 4), (16, 12))).sheet, None, WIDTH_MM)
+    heading, along = np.arctan2(8, 12), 0.1 * np.arange(20)
+    places = [10, 8] - along[::-1, None] * [np.cos(heading), np.sin(heading)]
+    seen = np.column_stack([places, np.full(20, WIDTH_MM)])
+    leg, few = (Leg(places[-1], heading, 0.0, WIDTH_MM, seen[-n:]) for n in (20, stations))
+    assert softness_of(view, few) == pytest.approx(softness_of(view, leg), rel=0.3)

@@ -1,0 +1,220 @@
+"""Pen on ink: a part of a sheet is held against the ink of a pen on the ways there, pixel by pixel.
+
+    1. what way is nearest to each pixel within reach: its line, and how far it is
+    2. what a pen of the felt width leaves wrong in the box about each of those pixels; where that is hardly
+       anything, the best pen draws no more than that on paper, and stations are judged by it
+    3. else the pen, of some widths, that explains each box best: what it draws on paper, and what it leaves
+
+Signals: darkness of a part of the sheet (rows, columns), places of the ways (n, 2) in its columns and rows,
+stations (m, 2) of closed lines among them; what is over about each station out (see `own_ink`).
+
+Source: our own. Questions: none.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
+from morfax.tracer.tangles.pen import ink_at
+from morfax.tracer.tangles.tangle import DARKEST
+
+
+class Pen(NamedTuple):
+    """The pen of most lines: half its width and its softness in pixels, how far from a way it is looked at,
+    the variance of the paper's noise on either side, shares of the width that are tried, and how much may be
+    over for nothing else to be tried, in widths.
+    """
+
+    half_px: float
+    softness_px: float
+    reach_px: float
+    noise: float
+    of_width: tuple[float, ...]
+    over: float
+
+
+class Ways(NamedTuple):
+    """Places (n, 2) of all ways on a sheet, columns and rows in pixels; the number of the line of each; and
+    by lines: half the width in pixels, and whether it is closed.
+    """
+
+    places_px: NDArray[np.float32]
+    line: NDArray[np.int32]
+    half_px: Array
+    closed: NDArray[np.bool_]
+
+    def seen_from(self, corner: NDArray[np.float32], some: NDArray[np.int64]) -> Ways:
+        """Some of the places, counted from a corner."""
+        return self._replace(places_px=self.places_px[some] - corner, line=self.line[some])
+
+
+class Room(NamedTuple):
+    """Room to work in, for as many pixels (n,) as the largest part of a sheet has: squares of distances,
+    lines, and two rows of values, of which the first is zero before and after.
+    """
+
+    away2: NDArray[np.float32]
+    owner: NDArray[np.int32]
+    spread: Array
+    boxes: Array
+
+    @classmethod
+    def of(cls, pixels: int) -> Room:
+        """Room for so many pixels: made once, as the system wipes what it gives out."""
+        away2, owner = np.empty(pixels, np.float32), np.empty(pixels, np.int32)
+        return cls(away2, owner, np.zeros(pixels), np.empty(pixels))
+
+
+class _Band(NamedTuple):
+    """Pixels nearest to closed ways: rows and columns, how far the way is, half its width, the darkness."""
+
+    row: NDArray[np.int64]
+    column: NDArray[np.int64]
+    away_px: Array
+    half_px: Array
+    dark: Array
+
+
+@njit(cache=True)
+def over_at(seen, ways, stations, pen, room, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (m,) with what is over in the worst box about each station, in widths of the pen squared."""
+    band = _band(seen, ways, pen, room)
+    shape, side = seen.shape, 2 * round(pen.half_px) + 1
+    spread, boxes = (
+        room.spread[: seen.size].reshape(shape),
+        room.boxes[: seen.size].reshape(shape),
+    )
+    width2 = (2 * pen.half_px) ** 2
+    # 1. the felt pen alone
+    values = np.empty(len(band.dark))
+    for k in range(len(values)):
+        wrong = ink_at(band.away_px[k], pen.half_px, pen.softness_px) - band.dark[k]
+        values[k] = wrong * wrong - 2 * pen.noise
+    most = _in_boxes(band, values, side, spread, boxes)
+    if most < pen.over * width2:
+        for k in range(len(stations)):
+            out[k] = _most(boxes, stations[k], side) / width2
+        return
+    # 2. the best of some pens
+    on_paper, on_ink = np.zeros(shape), np.zeros(shape)
+    _best(band, pen, spread, on_paper, on_ink)
+    for k in range(len(stations)):
+        paper, left = _most(on_paper, stations[k], side), _most(on_ink, stations[k], side)
+        out[k] = min(paper, left) / width2
+
+
+@njit(cache=True)
+def _best(band, pen, spread, on_paper, on_ink):  # type: ignore[no-untyped-def]
+    """Fill in what the pen that explains each box best draws on paper there, and what ink it leaves."""
+    side = 2 * round(pen.half_px) + 1
+    paper, left = np.empty(len(band.dark)), np.empty(len(band.dark))
+    papers, lefts = np.empty(spread.shape), np.empty(spread.shape)
+    least = np.full(spread.shape, np.inf)
+    for share in pen.of_width:
+        for k in range(len(band.dark)):
+            away_px = band.away_px[k] - (share - 1) * band.half_px[k]
+            wrong = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
+            paper[k] = max(wrong, 0.0) ** 2 - pen.noise
+            left[k] = max(-wrong, 0.0) ** 2 - pen.noise
+        _in_boxes(band, paper, side, spread, papers)
+        _in_boxes(band, left, side, spread, lefts)
+        for i in range(len(spread)):
+            for j in range(spread.shape[1]):
+                both = papers[i, j] + lefts[i, j]
+                if both < least[i, j]:
+                    least[i, j], on_paper[i, j], on_ink[i, j] = both, papers[i, j], lefts[i, j]
+
+
+@njit(cache=True)
+def _band(seen, ways, pen, room):  # type: ignore[no-untyped-def]
+    """The pixels of a part of the sheet that are nearest to closed ways."""
+    rows, columns = seen.shape
+    away2 = room.away2[: seen.size].reshape(seen.shape)
+    owner = room.owner[: seen.size].reshape(seen.shape)
+    away2[:], owner[:] = pen.reach_px**2, -1
+    _nearest(ways.places_px, ways.line, pen.reach_px, away2, owner)
+    count = 0
+    for i in range(rows):
+        for j in range(columns):
+            count += owner[i, j] >= 0 and ways.closed[owner[i, j]]
+    row, column = np.empty(count, np.int64), np.empty(count, np.int64)
+    away, half, dark = np.empty(count), np.empty(count), np.empty(count)
+    n = 0
+    for i in range(rows):
+        for j in range(columns):
+            line = owner[i, j]
+            if line >= 0 and ways.closed[line]:
+                row[n], column[n] = i, j
+                away[n], half[n] = math.sqrt(away2[i, j]), ways.half_px[line]
+                dark[n] = min(float(seen[i, j]), DARKEST)
+                n += 1
+    return _Band(row, column, away, half, dark)
+
+
+@njit(cache=True)
+def _nearest(places, lines, reach_px, away2, owner):  # type: ignore[no-untyped-def]
+    """For each pixel the square of how far the nearest of some places (n, 2) is, if less than what is there,
+    and of which line it is; no place changes a pixel out of reach.
+    """
+    rows, columns = away2.shape
+    across2 = np.empty(2 * math.ceil(reach_px) + 2, np.float32)
+    for k in range(len(places)):
+        x, y, line = places[k, 0], places[k, 1], lines[k]
+        left = max(0, math.ceil(x - reach_px))
+        wide = min(columns, int(x + reach_px) + 1) - left
+        for j in range(wide):
+            across2[j] = (left + j - x) ** 2
+        for row in range(max(0, math.ceil(y - reach_px)), min(rows, int(y + reach_px) + 1)):
+            down2 = np.float32((row - y) ** 2)
+            for j in range(wide):
+                square = across2[j] + down2
+                if square < away2[row, left + j]:
+                    away2[row, left + j] = square
+                    owner[row, left + j] = line
+
+
+@njit(cache=True)
+def _in_boxes(band, values, side, spread, sums):  # type: ignore[no-untyped-def]
+    """Fill in sums of the values of the band's pixels over a box about each pixel; give the largest sum.
+
+    `spread` is room to work in: zeros before and after.
+    """
+    rows, columns = sums.shape
+    half, most = side // 2, -np.inf
+    for k in range(len(values)):
+        spread[band.row[k], band.column[k]] = values[k]
+    # sums down the columns, with half a box of paper to the left and right of them
+    down = np.zeros(columns + 2 * half + 1)
+    inner = down[half + 1 : half + 1 + columns]
+    for row in range(-half, rows):
+        if row + half < rows:
+            inner += spread[row + half]
+        if row > half:
+            inner -= spread[row - half - 1]
+        if row < 0:
+            continue
+        total = down[:side].sum()
+        for column in range(columns):
+            total += down[column + side] - down[column]
+            sums[row, column] = total
+            most = max(most, total)
+    for k in range(len(values)):
+        spread[band.row[k], band.column[k]] = 0.0
+    return most
+
+
+@njit(cache=True)
+def _most(boxes, pixel, side):  # type: ignore[no-untyped-def]
+    """The most that is in the boxes about a pixel (column and row)."""
+    half, most = side // 2, -np.inf
+    for row in range(max(0, pixel[1] - half), min(len(boxes), pixel[1] + half + 1)):
+        left, right = max(0, pixel[0] - half), min(boxes.shape[1], pixel[0] + half + 1)
+        for column in range(left, right):
+            most = max(most, boxes[row, column])
+    return most
