@@ -85,9 +85,7 @@ class _Tiles(NamedTuple):
         return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
 
 
-def beside(
-    drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0
-) -> Iterator[Beside]:
+def beside(drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0) -> Iterator[Beside]:
     """Where closed lines run beside their ink, by so much of the limit; nothing where no pen can be told."""
     if not drawing.noise.softness_px > 0 or drawing.grainy:
         return

@@ -101,7 +101,7 @@ def unexplained(
 def beside_ink(
     setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
 ) -> tuple[Unexplained, ...]:
-    """Where closed ones of some lines run beside their ink, from so much of the limit on; the longest first."""
+    """Where closed lines run beside their ink, from so much of the limit on; the longest first."""
     found = _beside_ink(setup.sheet.drawing, lines, (), of_limit) if lines else ()
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from morfax.jobs.remarks_on_ink import of_ink
+from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import Points, arc, inked, polyline
