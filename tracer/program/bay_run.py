@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import length_mm, lengths_mm
+from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head import screws
@@ -46,21 +47,19 @@ class Bay(NamedTuple):
         return self._replace(first_mm=first_mm, last_mm=first_mm + self.last_mm - self.first_mm)
 
 
-def laid(setup: Setup, line: Line, bays: Sequence[Bay]) -> Line:
-    """A line with the head run along the rules of some bays, in the order of its way."""
+def laid(setup: Setup, line: Line, bays: Sequence[Bay], round_mm: float) -> Line:
+    """A closed line, so long by its thinned places, with the head run along the rules of some bays."""
     # 1. begun where no bay is
-    round_mm = length_mm(line.xy_mm)
     begin_mm = next((bay.last_mm for bay in bays if bay.last_mm > round_mm), None)
     begin_mm = next((bay.last_mm for bay in bays if bay.first_mm < 0), begin_mm)
     if begin_mm is not None:
-        begin_mm %= round_mm
-        line = _begun_at(line, begin_mm)
+        line = _begun_at(line, begin_mm % round_mm)
         bays = [bay.moved(-begin_mm, round_mm) for bay in bays]
     # 2. the way from bay to bay, and the runs along their rules
-    come_mm, at = lengths_mm(line.xy_mm), 0
+    at = 0
     ways, leaders = list[Array](), list[NDArray[np.int8]]()
     for bay in sorted(bays, key=lambda bay: bay.first_mm):
-        splice = _run(setup, line.xy_mm, come_mm, bay)
+        splice = _run(setup, line, bay)
         ways += [line.xy_mm[at : splice.first + 1], splice.way_mm]
         leaders.append(line.led.of(splice.first + 1 - at, at))
         leaders.append(np.full(len(splice.way_mm), REDRAWN, np.int8))
@@ -72,10 +71,16 @@ def laid(setup: Setup, line: Line, bays: Sequence[Bay]) -> Line:
 
 def _begun_at(line: Line, begin_mm: float) -> Line:
     """A closed line begun at a place along it."""
-    count = len(line.xy_mm)
-    at = int(np.searchsorted(lengths_mm(line.xy_mm), begin_mm))
+    count, at = len(line.xy_mm), _position(line, begin_mm)
     led = Led.along(np.roll(line.led.of(count), -at))
     return replace(line, xy_mm=np.roll(line.xy_mm, -at, axis=0), led=led)
+
+
+def _position(line: Line, at_mm: float) -> int:
+    """The position of a line at a length along its thinned places; not its first one."""
+    come_mm = lengths_mm(line.places_mm)
+    at = round(THINNED * float(np.interp(at_mm, come_mm, np.arange(len(come_mm)))))
+    return min(max(at, 1), len(line.xy_mm) - 1)
 
 
 class Splice(NamedTuple):
@@ -88,9 +93,10 @@ class Splice(NamedTuple):
     way_mm: Array
 
 
-def _run(setup: Setup, xy_mm: Array, come_mm: Array, bay: Bay) -> Splice:
+def _run(setup: Setup, line: Line, bay: Bay) -> Splice:
     """The head's run along a bay's rule from memory, as fast as it comes and goes on."""
-    first, last = np.searchsorted(come_mm, [bay.first_mm, bay.last_mm]).tolist()
+    xy_mm = line.xy_mm
+    first, last = _position(line, bay.first_mm), _position(line, bay.last_mm)
     view = view_of(setup.sheet, setup.settings.aperture_mm, 2 * bay.rule.half_mm)
     ahead = bay.rule.corners_mm[0] - bay.rule.first_mm
     stance = Stance(xy_mm[first], math.atan2(ahead[1], ahead[0]), view)

@@ -120,21 +120,24 @@ class _Bays:
     left: Sequence[Unexplained]
 
     def mended(self) -> Line:
-        """The line as it is; one with narrow bays along the rules that explain them."""
+        """The line as it is, or along the rules that explain narrow bays on it."""
         line = self.line
         is_marked = line.is_lead or line.reference_mm is not None or line.marks or line.guides
         is_plain = line.ending == "closed" and not is_marked and not line.loop_from
-        is_known = self.setup.sheet.drawing.noise.softness_px > 0
-        if not is_plain or line.on_edge or not is_known or self.setup.sheet.drawing.edges_mm:
+        drawing = self.setup.sheet.drawing
+        # on large pixels every step of them looks like a corner
+        is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1 and not drawing.grainy
+        if not is_plain or line.on_edge or not is_clear or drawing.edges_mm:
             return line
         step_mm = STEP * line.width_mm
         way = evenly(line.loop_mm, step_mm)
+        round_mm = len(way) * step_mm
         suspects = list(self._suspects(way, step_mm))[:MOST]
         bays = [bay for each in suspects if (bay := self._bay(way, step_mm, each)) is not None]
         if line.as_told:  # it begins where it is told to
-            bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < line.length_mm]
-        bays = _apart(bays, line.length_mm)
-        return laid(self.setup, line, bays) if bays else line
+            bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < round_mm]
+        bays = _apart(bays, round_mm)
+        return laid(self.setup, line, bays, round_mm) if bays else line
 
     def _suspects(self, way: Array, step_mm: float) -> Iterator[Suspect]:
         """Where the way may have passed a bay by or cut it short."""

@@ -147,6 +147,8 @@ class SmallLoops:
     @cached_property
     def filled_up(self) -> dict[int, Loop]:
         """The loops that patches are whose sides run together, by the patch; the largest are looked at."""
+        if not self.sheet.drawing.noise.softness_px > 0:
+            return {}
         largest_first = np.argsort(-self.sheet.patches.areas, kind="stable").tolist()
         broad = [patch for patch in largest_first if self._is_broad(patch)][:MOST_BROAD]
         loops = {patch: self._with_seam(patch) for patch in broad}

@@ -55,6 +55,7 @@ EVERY = 0.5  # of half a width, between the places of a way that are held agains
 FEWEST = 20  # places that a bar of ink has, at the least
 STEP = 0.1  # widths, between the places of a way that are held against each other
 APART = 0.8  # widths: the sides of a bay begin, at the least
+DEEP = 1.2  # widths: a bay is so deep at the least; a flatter one is hidden in the line
 WITHIN = 0.4  # of mouth times depth lies within a bay: half in one that comes to a point
 CLOSE, NEIGHBOURS = (
     2.5,
@@ -264,6 +265,7 @@ def _is_apart(rule: Rule, width_mm: float) -> bool:
         mouth = corners[[0, -1]]
         deep_mm = float(pen.away_from(corners, mouth).max())
         is_open = float(np.hypot(*(mouth[1] - mouth[0]))) > APART * width_mm
+        is_open &= deep_mm > DEEP * width_mm
         return is_open and abs(area_mm2(corners)) > WITHIN * APART * width_mm * deep_mm
     # as if the way were closed far out
     beyond = way[-1] + np.arange(1, len(way) + 1)[:, None] * (way[-1] - way[-2])
