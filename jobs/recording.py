@@ -133,8 +133,8 @@ class RecordingUnit:
         if scale != 1:
             listener.warning(
                 f"scaled by {scale:g}: the drawn contour allows for a cutter's radius, which is scaled too, "
-                f"so the cutter must be {scale:g} times as thick; X and Y run {scale:g} times as fast; "
-                "Z is not scaled"
+                f"so the cutter must be {scale:g} times as thick; leads and tabs are {scale:g} times as long,"
+                f" and X and Y run {scale:g} times as fast; Z is not scaled"
             )
 
     def record(self, stream: Iterable[Motion], file: FilePath, listener: Listener) -> Report:

@@ -78,7 +78,8 @@ class RunJob:
         self._make_folder()
         traced = tracing.trace(drawing, listener)
         source = correction_settings.named(self.drawing.file.name, drawing.corrected)
-        unit = traced.placed(self.unit, program_file, source, self.settings.tool.described)
+        tool = self.settings.tool.described(self.unit.scale)
+        unit = traced.placed(self.unit, program_file, source, tool)
         program, _ = traced.record(program_file, unit, listener)
         traced_file = traced.write(self.file(".traced.csv"), unit)
         # 2. play

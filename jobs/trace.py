@@ -101,7 +101,7 @@ class TraceJob:
         self, outputs: TraceOutputs, drawing: Drawing, traced: Traced, listener: Listener
     ) -> TraceResult:
         """Write what was traced, also by an equal tracing before this one; raises the recorders' faults."""
-        source, tool = self._source(drawing), self.settings.tool.described
+        source, tool = self._source(drawing), self.settings.tool.described(self.unit.scale)
         unit = traced.placed(self.unit, outputs.program, source, tool)
         written = dict[str, Any]()
         timed = dict[str, Any]()

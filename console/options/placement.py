@@ -100,7 +100,8 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         type=NUMBER,
         default=1.0,
         show_default=True,
-        help="Make X and Y this many times as large; the cutter's radius scales with them, Z does not.",
+        help="Make X and Y this many times as large; the cutter's radius, leads and tabs scale with them, Z "
+        "does not.",
     )
     @option(
         GROUP,
