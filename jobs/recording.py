@@ -127,8 +127,13 @@ class RecordingUnit:
             return None
         return self.chosen(program).lines
 
-    def warn(self, listener: Listener) -> None:
-        """Say what a scale does to the cutter and the speed."""
+    def warn(self, program: FilePath | None, listener: Listener) -> None:
+        """Say what a scale does to the cutter and the speed, and name a feed that no machine cuts with."""
+        if program is not None and medium.has_machine(program):
+            for text in machining.doubtful_feeds(
+                self.chosen(program), self.feed_mm_s, self.plunge_mm_s
+            ):
+                listener.warning(text)
         scale = self.scale
         if scale != 1:
             listener.warning(
