@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from morfax.console.options.files import machine_names
 from morfax.console.options.groups import option, renamed
 from morfax.console.options.types import ANGLE, FEED, LENGTH, NUMBER, PLACE
 from morfax.jobs.recording import PICK_UPS, RecordingUnit
@@ -39,6 +40,7 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         GROUP,
         "--machine",
         metavar="MACHINE",
+        shell_complete=machine_names,
         help="The machine that G-code or a plotter file is for: a name that `morfax machines` lists, or a "
         ".toml file of your own.  [default: linuxcnc; hpgl for .plt]",
     )
