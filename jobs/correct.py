@@ -103,7 +103,9 @@ class CorrectJob:
         count = len(before.each)
         has = f"there {'is' if count == 1 else 'are'} {count or 'none'}"
         if self.undo > count:
-            raise WrongUse(f"{self.undo} corrections were to be undone, and {has}")
+            raise WrongUse(
+                f"--undo {self.undo} takes back more corrections than there are: {has}"
+            )
         last = range(count - self.undo + 1, count + 1)
         for number in self.remove:
             if not 1 <= number <= count:

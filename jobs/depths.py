@@ -118,6 +118,8 @@ def refuse_without_z(card: Card, medium: str) -> None:
 
 def of_tabs(trace: Trace) -> Iterator[str]:
     """A remark on lines inside others that have fewer tabs than asked for, or none."""
+    from morfax.tracer.program.tabs import is_milled_away
+
     asked = trace.work.tabs
     if asked is None:
         return
@@ -125,6 +127,7 @@ def of_tabs(trace: Trace) -> Iterator[str]:
         (line.number, len(tabs))
         for line, tabs in zip(trace.lines, trace.tabs, strict=True)
         if line.comes_round and len(tabs) < asked.count
+        if not is_milled_away(line, trace.work.cutter_mm)
     ]
     if fewer:
         listed = ", ".join(f"line {number} has {count or 'none'}" for number, count in fewer)

@@ -4,6 +4,7 @@ cannot hold of a card.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
@@ -64,6 +65,22 @@ def _numbers(values: tuple[str, ...]) -> dict[str, float]:
                 f"--machine-value {value!r} is no NAME=NUMBER; give one such as speed=18000"
             ) from None
     return numbers
+
+
+def doubtful_feeds(
+    machine: Machine, feed_mm_s: float | None, plunge_mm_s: float | None
+) -> Iterator[str]:
+    """Warnings of feeds that are faster than the machine's rapids: likely mm/min without their unit."""
+    limits_mm_s = min(machine.rapid_mm_s[:2]), machine.rapid_mm_s[2]
+    for name, asked_mm_s, most_mm_s in zip(
+        ("--feed", "--plunge"), (feed_mm_s, plunge_mm_s), limits_mm_s, strict=True
+    ):
+        if asked_mm_s is not None and asked_mm_s > most_mm_s:
+            yield (
+                f"{name} is {asked_mm_s:g} mm/s, F{60 * asked_mm_s:.0f}; {machine.name} has rapids of"
+                f" {most_mm_s:g} mm/s: a bare number is in mm/s, give mm/min with its unit, such as"
+                f" {asked_mm_s:g}mm/min"
+            )
 
 
 def tell_what_is_lost(

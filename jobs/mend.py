@@ -49,6 +49,8 @@ class MendJob:
                 acceleration_mm_s2=self.acceleration_mm_s2,
                 progress=lambda done_s, total_s: advance(done_s / (total_s or 1)),
             )
+        for note in mended.notes:
+            listener.note(note)
         rows = [
             {
                 "dropout": number,

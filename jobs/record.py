@@ -80,7 +80,7 @@ class RecordJob:
         read = read_or_play(self.source, ByHand(), listener, feed_mm_s, self.drawn_unit)
         unit = self.unit.at(of_path_mm(self.zero, read, self.unit.placement))
         placed = unit.placement.path(read)
-        unit.warn(listener)
+        unit.warn(program, listener)
         recording = self._recorded(placed, program, settings, listener)
         # 3. what was recorded
         length = length_mm(placed) if placed.tool.any() else 0.0

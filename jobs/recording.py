@@ -127,14 +127,19 @@ class RecordingUnit:
             return None
         return self.chosen(program).lines
 
-    def warn(self, listener: Listener) -> None:
-        """Say what a scale does to the cutter and the speed."""
+    def warn(self, program: FilePath | None, listener: Listener) -> None:
+        """Say what a scale does to the cutter and the speed, and name a feed that no machine cuts with."""
+        if program is not None and medium.has_machine(program):
+            for text in machining.doubtful_feeds(
+                self.chosen(program), self.feed_mm_s, self.plunge_mm_s
+            ):
+                listener.warning(text)
         scale = self.scale
         if scale != 1:
             listener.warning(
                 f"scaled by {scale:g}: the drawn contour allows for a cutter's radius, which is scaled too, "
-                f"so the cutter must be {scale:g} times as thick; X and Y run {scale:g} times as fast; "
-                "Z is not scaled"
+                f"so the cutter must be {scale:g} times as thick; leads and tabs are {scale:g} times as long,"
+                f" and X and Y run {scale:g} times as fast; Z is not scaled"
             )
 
     def record(self, stream: Iterable[Motion], file: FilePath, listener: Listener) -> Report:

@@ -126,7 +126,7 @@ def _of_gaps(trace: Trace, allowed_mm: float) -> Iterator[str]:
             x, y = line.place(len(line.xy_mm) - 1)
             yield (
                 f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm before a gap of {line.gap_mm:.1f} mm that"
-                f" --gap {allowed_mm:g}mm allows, but the line behind the gap lies neither straight ahead"
+                f" --gap {allowed_mm:.3g}mm allows, but the line behind the gap lies neither straight ahead"
                 " nor along the bend: close the gap on the drawing"
             )
         elif line.gap_mm is not None:

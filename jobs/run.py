@@ -78,7 +78,8 @@ class RunJob:
         self._make_folder()
         traced = tracing.trace(drawing, listener)
         source = correction_settings.named(self.drawing.file.name, drawing.corrected)
-        unit = traced.placed(self.unit, program_file, source, self.settings.tool.described)
+        tool = self.settings.tool.described(self.unit.scale)
+        unit = traced.placed(self.unit, program_file, source, tool)
         program, _ = traced.record(program_file, unit, listener)
         traced_file = traced.write(self.file(".traced.csv"), unit)
         # 2. play
@@ -86,7 +87,7 @@ class RunJob:
         chart = following.new_chart(raw=False) if self.charted else None
         played = Playing(program, by_hand, chart=chart).whole(listener)
         played_file = self._write(played, traced)
-        unit.warn(listener)
+        unit.warn(program, listener)
         # 3. compare, as the drawing was before it was mirrored, scaled and turned
         about = unit.placement.about(traced.path.positions_mm[0])
         path = about.back(played.path)

@@ -167,12 +167,11 @@ class ToolSettings:
     cutter_mm: float | None = None  # diameter; None: the tool runs on the line
     side: CutterSide = "outside"
 
-    @property
-    def described(self) -> str:
-        """The tool in the words of a program's head."""
+    def described(self, scale: float) -> str:
+        """The tool that a program of this scale needs, in the words of its head."""
         if self.cutter_mm is None:
             return "on the line"
-        return f"{self.cutter_mm:g} mm wide, {self.side}"
+        return f"{scale * self.cutter_mm:g} mm wide, {self.side}"
 
     def cutter(self) -> Cutter | None:
         """The cutter, if there is one."""

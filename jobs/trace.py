@@ -101,7 +101,7 @@ class TraceJob:
         self, outputs: TraceOutputs, drawing: Drawing, traced: Traced, listener: Listener
     ) -> TraceResult:
         """Write what was traced, also by an equal tracing before this one; raises the recorders' faults."""
-        source, tool = self._source(drawing), self.settings.tool.described
+        source, tool = self._source(drawing), self.settings.tool.described(self.unit.scale)
         unit = traced.placed(self.unit, outputs.program, source, tool)
         written = dict[str, Any]()
         timed = dict[str, Any]()
@@ -115,7 +115,7 @@ class TraceJob:
         picture = None if outputs.picture is None else traced.name(outputs.picture)
         if picture is not None:
             written["picture"] = str(picture)
-        unit.warn(listener)
+        unit.warn(outputs.program, listener)
         flat = {**flattening.figures(drawing, picture), **figures_of(drawing)}
         figures = {"drawing": str(self.drawing.file), **written, **flat, **traced.figures()}
         figures |= {**timed, **traced.zero_figures(unit), **unit.figures()}

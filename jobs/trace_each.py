@@ -7,6 +7,7 @@ it is done. A drawing that fails does not stop the others. All names are checked
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -98,9 +99,16 @@ class TraceEachJob:
         return TraceJob(drawing, names, self.settings, self.unit)
 
     def _named(self, name: FilePath | None, stem: str) -> FilePath | None:
-        """A name with the drawing's in it; raises WrongUse for one name for several drawings."""
-        if name is None or NAME in str(name):
-            return None if name is None else FilePath(str(name).replace(NAME, stem))
+        """A name with the drawing's in it, and its folder made; raises WrongUse for one name for several
+        drawings.
+        """
+        if name is None:
+            return None
+        if NAME in str(name):
+            named = FilePath(str(name).replace(NAME, stem))
+            with suppress(OSError):  # then the name is refused as for one drawing
+                named.parent.mkdir(exist_ok=True)
+            return named
         raise WrongUse(
             f"{name} is one name for the results of {len(self.drawings)} drawings; put {NAME} in it for the "
             f"drawing's name, such as {name.with_name(NAME + name.suffix)}"

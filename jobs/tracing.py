@@ -16,7 +16,7 @@ from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.remarks_on_edges import of_picture_edge
 from morfax.jobs.remarks_on_reference import of_reference
-from morfax.jobs.skips import gap_across_skips
+from morfax.jobs.skips import gap_across_skips, of_pieces
 from morfax.jobs.stub_lines import StubLines
 from morfax.jobs.traced import Traced
 from morfax.jobs.two_lines import TwoLines
@@ -112,6 +112,8 @@ class Tracing:
         yield from remarks(followed, self.settings, self.of_head.gap_mm, times)
         yield from of_reference(followed, drawing, self.settings)
         yield from of_picture_edge(followed, drawing)
+        if self.settings.line.lines in ("contours", "outer"):
+            yield from of_pieces(drawing, followed, self.of_head)
         yield from of_order(followed, self.settings.line.order)
         if led is not None:
             yield from led.remarks()

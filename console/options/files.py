@@ -29,13 +29,25 @@ PICTURES = (".png", ".svg", ".pdf")
 PATHS = (".csv",)
 
 
+def machine_names(
+    ctx: click.Context, param: click.Parameter, incomplete: str
+) -> list[click.shell_completion.CompletionItem]:
+    """Have the shell complete the machines of that beginning; a file, if there is none."""
+    from click.shell_completion import CompletionItem
+
+    from morfax.recorder.gcode.machine import names
+
+    found = [CompletionItem(name) for name in names() if name.startswith(incomplete)]
+    return found or [CompletionItem(incomplete, type="file")]
+
+
 class Result(click.ParamType):
     """The name for a result, which ends in one of some suffixes."""
 
     name = "file"
 
     def __init__(self, *suffixes: str) -> None:
-        self.suffixes = suffixes
+        self.suffixes = tuple(dict.fromkeys(suffixes))  # some kinds of result share a suffix
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None

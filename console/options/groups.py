@@ -43,6 +43,15 @@ class Verb(click.Command):
         """-h and --help, also where no group stands above the verb: click keeps the first answer."""
         return ["-h", "--help"]
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Refuse a second -o where there is one result: click would take the last without a word."""
+        takes_many = any("-o" in param.opts and param.multiple for param in self.params)
+        if not takes_many and args.count("-o") > 1:
+            raise click.UsageError(
+                "-o is given twice, and there is one result; give it once", ctx
+            )
+        return super().parse_args(ctx, args)
+
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, a section for each group."""
         sections: dict[str, list[tuple[str, str]]] = {name: [] for name in (*ORDER, REST)}

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from morfax.console.options.files import machine_names
 from morfax.console.options.groups import option, renamed
 from morfax.console.options.types import ANGLE, FEED, LENGTH, NUMBER, PLACE
 from morfax.jobs.recording import PICK_UPS, RecordingUnit
@@ -39,6 +40,7 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         GROUP,
         "--machine",
         metavar="MACHINE",
+        shell_complete=machine_names,
         help="The machine that G-code or a plotter file is for: a name that `morfax machines` lists, or a "
         ".toml file of your own.  [default: linuxcnc; hpgl for .plt]",
     )
@@ -100,7 +102,8 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         type=NUMBER,
         default=1.0,
         show_default=True,
-        help="Make X and Y this many times as large; the cutter's radius scales with them, Z does not.",
+        help="Make X and Y this many times as large; the cutter's radius, leads and tabs scale with them, Z "
+        "does not.",
     )
     @option(
         GROUP,

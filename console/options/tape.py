@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
-from morfax.console.options.files import FILE
+from morfax.console.options.files import FILE, machine_names
 from morfax.console.options.groups import option, renamed
 from morfax.console.options.types import AXES, FREQUENCY, NUMBER, PLACES, TRACKS
 from morfax.jobs.playing import ByHand
@@ -19,6 +19,7 @@ FOR_MACHINE = option(
     "Machine",
     "--machine",
     metavar="MACHINE",
+    shell_complete=machine_names,
     help="The machine that a G-code program is for, as `morfax machines` lists them, or its .toml file: "
     "its words tell when the tool is in the work.  [default: what the program says]",
 )

@@ -36,9 +36,11 @@ class Quantity(click.ParamType):
         *,
         above_zero: bool = False,
         within: str | None = None,
+        bare: str = "",
     ) -> None:
         self.name, self._parse, self._above_zero = name, parse, above_zero
         self._within = within  # such as "0.05mm to 500mm"
+        self._bare = bare  # what a bare number is, where that may surprise
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -53,9 +55,8 @@ class Quantity(click.ParamType):
         if self._within is not None:
             least, most = (self._parse(end) for end in self._within.split(" to "))
             if not least <= quantity <= most:
-                self.fail(
-                    f"{value!r} is no {self.name} here; it may be {self._within}", param, ctx
-                )
+                allowed = f"it may be {self._within}{self._bare}"
+                self.fail(f"{value!r} is no {self.name} here; {allowed}", param, ctx)
         return quantity
 
 
@@ -271,7 +272,12 @@ BAR = Quantity("length", parse_length_mm, within="90mm to 110mm")  # further off
 FLATTEN = Quantity("marks|paper=FORMAT|places=WxH|auto", _flatten)
 CUTTER = Quantity("length", parse_length_mm, within="0.05mm to 500mm")
 SPEED = Quantity("speed", parse_speed_mm_s)
-FEED = Quantity("speed", parse_speed_mm_s, within="0.01mm/s to 1000mm/s")
+FEED = Quantity(
+    "speed",
+    parse_speed_mm_s,
+    within="0.01mm/s to 1000mm/s",
+    bare="; a bare number is in mm/s: give 1200mm/min",
+)
 FREQUENCY = Quantity("frequency", parse_frequency_hz)
 ANGLE = Quantity("angle", parse_angle_rad)
 SHARE = Quantity("share", parse_share)

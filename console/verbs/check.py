@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from morfax.console.options.desk import desk_options
-from morfax.console.options.files import FILE, PICTURES, Result
+from morfax.console.options.files import FILE, PICTURES, Result, machine_names
 from morfax.console.options.groups import Verb, given, option
 from morfax.console.options.types import PLACE, REACH, STOCK
 from morfax.jobs.check import CheckJob, CheckResult
@@ -33,6 +33,7 @@ Examples:
     "Machine",
     "--machine",
     metavar="MACHINE",
+    shell_complete=machine_names,
     help="The machine that will run the program: a name that `morfax machines` lists, or a .toml file of "
     "your own.  [default: the one that the program names, or linuxcnc]",
 )

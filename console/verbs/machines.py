@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from morfax.console.options.desk import desk_options
+from morfax.console.options.files import machine_names
 from morfax.console.options.groups import Verb
 from morfax.console.terminal.desk import Desk
 
@@ -16,7 +17,7 @@ Examples:
 
 
 @click.command("machines", cls=Verb, epilog=EXAMPLES)
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=machine_names)
 @desk_options
 def command(name: str | None, desk: Desk) -> None:
     """List the machines that programs are written for, or print one to change.

@@ -37,6 +37,9 @@ NOT_VOUCHED = (
     "the tape is bare, it has no check signal: lost or repeated samples, a late track, X and Y in each "
     "other's places and a tape that runs backwards show only where it ends elsewhere than it states"
 )
+NOT_PLACED = (
+    "the tape does not say where it starts: places count from zero, or from that of --from"
+)
 
 
 class BareTape:
@@ -46,6 +49,8 @@ class BareTape:
 
     def __init__(self, fmt: TapeFormat, start_mm: Array) -> None:
         self._format, self._start_mm = fmt, start_mm
+        is_placed = fmt.stated is not None or any(fmt.start_mm)
+        self.notes: tuple[str, ...] = (NOT_VOUCHED,) if is_placed else (NOT_VOUCHED, NOT_PLACED)
         self._own = OwnMotion(len(fmt.axes))
 
     def hear(self, frames: Stored) -> None:

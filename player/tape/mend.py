@@ -64,11 +64,12 @@ class Mend:
 
 @dataclass(frozen=True, slots=True)
 class Mended:
-    """The new tape, the doubtful dropouts in it, and how many there were in all."""
+    """The new tape, the doubtful dropouts in it, how many there were in all, and notes on the old tape."""
 
     recording: Recording
     mends: tuple[Mend, ...]
     dropouts: int
+    notes: tuple[str, ...]
 
 
 def mend(
@@ -118,7 +119,7 @@ def mend(
     else:
         mends = [_mend(place, found, reader, fmt) for place, found in doubtful.items()]
     mends.sort(key=lambda one: (one.time_s, fmt.axes.index(one.axis)))
-    return Mended(recording, tuple(mends), len(reader.bridged))
+    return Mended(recording, tuple(mends), len(reader.bridged), reader.notes)
 
 
 def is_checked(playback: TapePlayback) -> bool:

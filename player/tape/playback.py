@@ -33,7 +33,6 @@ from morfax.motion.faults import Fault, LockFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import Supervised
 from morfax.player.tape.ahead import ReadAhead
-from morfax.player.tape.bare import NOT_VOUCHED
 from morfax.player.tape.drives import Drives, Reference, following_limit
 from morfax.player.tape.lock_faults import Stood, ended_elsewhere, out_of_range
 from morfax.player.tape.phase_lock import PhaseLock
@@ -175,7 +174,7 @@ class TapePlayback(Supervised):
         )
         self.cell_edges: Array = np.zeros(len(fmt.axes))
         self.found_order: tuple[int, ...] | None = None
-        self.notes: tuple[str, ...] = ()  # a bare tape gives one when its first block is read
+        self.notes: tuple[str, ...] = ()  # some tapes give them when their first block is read
         self.conditions = [SOUND] * len(fmt.axes)
         self.limit = following_limit(
             self.settings, fmt.mm_per_cycle, self.rate_hz * self._steps
@@ -210,7 +209,7 @@ class TapePlayback(Supervised):
         monitor, self.end_error_mm = self.supervise(fmt.axes, self.rate_hz), None
         for read in self._read():
             phases = read.rows
-            self.notes = () if self.reader.is_checked else (NOT_VOUCHED,)
+            self.notes = self.reader.notes
             found = read.first_fault(fmt.motion_rate_hz, self.end_mm.tolist())
             sound = len(phases) if found is None else min(found[0], len(phases))
             zero_cycles = self._zero_mm * fmt.cycles_per_mm - read.bearings.zero_cycles

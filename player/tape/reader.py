@@ -98,6 +98,7 @@ class TapeReader:
         self.doubtful: dict[tuple[int, int], Bridge] = {}
         self.begun: CheckReader | None = None
         self.is_checked = False  # whether the tape has a check signal
+        self.notes: tuple[str, ...] = ()  # known when the first rows are read
         self.mends = (
             False  # whether the way of dropouts is laid anew, where counts behind them tell it
         )
@@ -144,7 +145,9 @@ class TapeReader:
         discriminator: Discriminator,
     ) -> _Run:
         """What keeps watch over this time through the tape, as its first rows and frames tell."""
-        bearings = self._bearings(first, start, warrant.begin(start), discriminator)
+        begun = warrant.begin(start)
+        self.notes = warrant.notes
+        bearings = self._bearings(first, start, begun, discriminator)
         fmt, start_mm = self._format, self._start_mm
 
         def place_mm(axis: int, cycles: float) -> float:

@@ -40,7 +40,7 @@ from morfax.recorder.tape.check_frame import SYMBOLS
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored
-from morfax.recorder.tape.told_figures import Stated, demand_agreement
+from morfax.recorder.tape.told_figures import Stated, agreed
 
 LARGEST_OFF_S = 6e-6  # of a delay off the line through seven: 0.036 cycle; 26 dB leave 2
 
@@ -71,6 +71,7 @@ class Vouching:
         self._counted = [0.0] * len(fmt.axes)  # the last row at which the count was right
         self._order = FrameOrder(fmt)
         self._fault: Fault | None = None
+        self.notes: tuple[str, ...] = ()
 
     def hear(self, frames: Stored) -> None:
         """Take the next frames of the tape."""
@@ -100,9 +101,8 @@ class Vouching:
         """Raise TapeFault unless each track is what it should be, and the text states what they say."""
         fmt = self._format
         faults.demand_tracks(self._check.tracks, fmt.axes)
-        if fmt.stated is not None:
-            used = Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm)
-            demand_agreement(self._check.found[0][0].said, fmt.stated, used)
+        used = Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm)
+        self.notes = agreed(self._check.found[0][0].said, fmt.stated, used)
 
     def _take_reports(self) -> None:
         """Take what the check reader has read by now."""

@@ -38,6 +38,7 @@ class Warrant(Protocol):
     """Stands for the rows of one tape."""
 
     is_checked: bool
+    notes: tuple[str, ...]  # on the tape, once it has begun
 
     def hear(self, frames: Stored) -> None:
         """Take the next frames of the tape."""

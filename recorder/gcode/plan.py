@@ -165,7 +165,7 @@ class _Planner:
         half = segment.turned_rad / 2
         dx, dy = (place - self.place)[:2]
         bulge = segment.length_mm / 2 * math.tan(half / 2)
-        is_straight = abs(bulge) < self.last_digit_mm
+        is_straight = abs(bulge) < self.last_digit_mm or (place == self.place).all()
         if is_straight or abs(segment.curvature_per_mm) * _LARGEST_RADIUS_MM < 1:
             chords = math.ceil(math.sqrt(abs(bulge) / (self.tolerance_mm - off_mm))) or 1
             for k in range(1, chords):

@@ -26,6 +26,10 @@ from morfax.recorder.gcode.normal_equations import offs
 from morfax.recorder.gcode.pieces import SPACING_MM, Piece, curvature_per_mm
 from morfax.recorder.gcode.settling import owners, settle, table_of
 
+# of an arc, half of what it turns. On a small circle a joint can slide until one arc goes round it once or
+# three times; the arc's ends, as they are written, then meet and tell no centre
+MOST_HALF_RAD = 0.75 * math.pi
+
 
 @dataclass(frozen=True, slots=True)
 class LineOrArc:
@@ -92,7 +96,7 @@ class Spline:
             settle(self.joints, self.halves, seen, self.columns, self.closed)
             table = table_of(self.joints, self.halves)
             off = np.abs(offs(table, self.places, owners(table, self.shares)))
-            if off.max() <= tolerance_mm:
+            if off.max() <= tolerance_mm and np.abs(self.halves).max() <= MOST_HALF_RAD:
                 return Chain(segments(rows_of(table)), float(off.max()))
             if off.max() > 2 * tolerance_mm:
                 break

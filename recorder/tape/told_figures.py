@@ -72,17 +72,46 @@ def demand_agreement(said: CheckFrame, stated: Stated, used: Stated) -> None:
             f"{cycles_per_mm:.6g}: the text was changed; play it with --cycles-per-mm {cycles_per_mm:.6g}, "
             "or with its label (--label)"
         )
-    speed, hard = (
-        to_code(said.speed, LEAST_SPEED),
-        to_code(said.acceleration, LEAST_ACCELERATION),
-    )
     given = (used.axes, used.start_mm) != (stated.axes, stated.start_mm)
-    if speed and hard and not given and (speed - 1, hard - 1) != divmod(_sum(stated), CODES):
+    if not given and _told_sum(said) not in (None, _sum(stated)):
         raise TapeFault(
             f"the tape's text states the axes {', '.join(stated.axes)} and the start "
             f"{','.join(f'{mm:g}' for mm in stated.start_mm)} mm, and its tracks were recorded with others: "
             "the text was changed; play it with its label (--label), or another copy of it"
         )
+
+
+def agreed(said: CheckFrame, stated: Stated | None, used: Stated) -> tuple[str, ...]:
+    """Notes on figures given by hand, or lost with the text, that are not those of the recording.
+
+    Raises TapeFault for a text that states others.
+    """
+    if stated is not None:
+        demand_agreement(said, stated, used)
+    notes = list[str]()
+    if said.counts and abs(said.counts - _scale(used.cycles_per_mm)) > 1:
+        recorded = 2.0 ** (said.counts / STEPS_PER_OCTAVE + LEAST_OCTAVE)
+        notes.append(
+            f"the tape was recorded with {recorded:.6g} cycles per mm and is played with"
+            f" {used.cycles_per_mm:g}: all lengths are {recorded / used.cycles_per_mm:.4g} times as long"
+        )
+    told = _told_sum(said)
+    if stated is None and told is not None and told != _sum(used):
+        places = ",".join(f"{mm:g}" for mm in used.start_mm)
+        notes.append(
+            f"the tape was not recorded from {places} mm, or not with the axes {', '.join(used.axes)}: the"
+            " path has its shape, and lies elsewhere; give the start (--from), or the tape's label (--label)"
+        )
+    return tuple(notes)
+
+
+def _told_sum(said: CheckFrame) -> int | None:
+    """The check sum that a tape tells; None on a tape that tells none."""
+    tens, ones = (
+        to_code(said.speed, LEAST_SPEED),
+        to_code(said.acceleration, LEAST_ACCELERATION),
+    )
+    return CODES * (tens - 1) + ones - 1 if tens and ones else None
 
 
 def _scale(cycles_per_mm: float) -> int:

@@ -44,6 +44,14 @@ def test_each_drawing_has_its_own_results_and_one_that_fails_stops_no_other(
     assert "3 of 3: large.png" in answer.err
 
 
+def test_the_folder_of_a_pattern_is_made(morfax: Morfax, rings: tuple[str, ...]) -> None:
+    answer = morfax("trace", "small.png", "large.png", "-o", "parts/{}.ngc")
+    assert answer.exit_code == 0
+    assert {file.name for file in Path("parts").iterdir()} == {"small.ngc", "large.ngc"}
+    deep = morfax("trace", "small.png", "large.png", "-o", "not/there/{}.ngc")
+    assert deep.exit_code == 8 and "there is no folder not/there" in deep.fault
+
+
 def test_a_folder_takes_the_tapes_and_none_is_written_over(
     morfax: Morfax, rings: tuple[str, ...]
 ) -> None:

@@ -30,6 +30,12 @@ def test_a_missing_file_is_told_by_its_name(
     assert list(here.iterdir()) == []
 
 
+def test_a_second_name_for_one_result_is_refused(morfax: Morfax, here: Path) -> None:
+    answer = morfax("trace", SAMPLES / "cam.png", "-o", "a.ngc", "-o", "b.csv")
+    assert answer.exit_code == 2 and "-o is given twice" in answer.fault
+    assert list(here.iterdir()) == []
+
+
 @pytest.mark.parametrize("output", ["nowhere/a.csv", "folder.csv"])
 def test_an_output_that_cannot_be_written_is_told_before_the_work(
     morfax: Morfax, here: Path, tape_file: Path, output: str

@@ -263,3 +263,17 @@ def test_the_machine_files_of_the_page_write_programs_that_are_read_back(
         assert morfax("compare", name, CAM, "--json").figures == compared.figures
         return
     assert morfax("check", name, "--machine", "mine.toml").exit_code == 0
+
+
+def test_a_feed_in_mm_a_minute_without_its_unit_is_doubted(
+    morfax: Morfax, path_file: Path, here: Path
+) -> None:
+    """A bare number is in mm/s; rapids of grbl-router are 50 mm/s, and 15 mm/s in Z."""
+    words = ("record", path_file, "-o", "a.nc", "--machine", "grbl-router")
+    doubted = morfax(*words, "--feed", "800", "--plunge", "16")
+    assert doubted.exit_code == 0
+    assert "--feed is 800 mm/s, F48000; grbl-router has rapids of 50 mm/s" in doubted.err
+    assert "--plunge is 16 mm/s" in doubted.err
+    assert morfax(*words, "--feed", "800mm/min", "--plunge", "15").err == ""
+    assert morfax(*words, "--feed", "800", "--rapid", "900").err == ""
+    assert "a bare number is in mm/s: give 1200mm/min" in morfax(*words, "--feed", "1200").fault

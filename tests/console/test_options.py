@@ -135,3 +135,24 @@ def test_quiet_says_only_what_went_wrong(morfax: Morfax, here: Path) -> None:
     (here / "bad.ngc").write_text((here / "cam.ngc").read_text().replace("M5", "G64 X"))
     told = morfax("check", "bad.ngc", "--quiet")
     assert told.exit_code == 1 and told.out.startswith("line ")
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("morfax trace --machine grbl-r", "plain,grbl-router"),
+        ("morfax check --machine hp", "plain,hpgl"),
+        ("morfax machines qt", "plain,qtplasmac"),
+        ("morfax play --machine my.to", "file,my.to"),
+    ],
+)
+def test_the_shell_completes_machines(
+    words: str, offered: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("_MORFAX_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(len(words.split()) - 1))
+    run = subprocess.run(
+        [sys.executable, "-m", "morfax"], capture_output=True, text=True, check=False
+    )
+    assert run.stdout.split() == [offered]

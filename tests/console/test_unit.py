@@ -66,6 +66,14 @@ def test_mirror_turn_and_scale_of_a_path(morfax: Morfax, here: Path) -> None:
     )  # what a path file keeps
 
 
+def test_a_scaled_program_names_the_tool_that_it_needs(morfax: Morfax, here: Path) -> None:
+    answer = morfax(
+        "trace", SAMPLES / "cam.png", "--cutter", "3mm", "--scale", "2", "-o", "cam.ngc"
+    )
+    assert "cutter must be 2 times as thick; leads and tabs are 2 times as long" in answer.err
+    assert "(tool: 6 mm wide, outside)\n" in Path("cam.ngc").read_text()
+
+
 def test_a_mirrored_drawing_is_compared_as_the_head_saw_it(morfax: Morfax, here: Path) -> None:
     answer = morfax(
         "run",

@@ -47,7 +47,9 @@ def test_the_file_is_made_added_to_undone(bracket: DrawingFile) -> None:
     assert CorrectJob(bracket, (STOP,), remove=(1,)).run().corrections.counts() == {"stop": 1}
     with pytest.raises(WrongUse, match="no correction 2: there is 1"):
         CorrectJob(bracket, remove=(2,)).run()
-    with pytest.raises(WrongUse, match="2 corrections were to be undone, and there is 1"):
+    with pytest.raises(
+        WrongUse, match="--undo 2 takes back more corrections than there are: there is 1"
+    ):
         CorrectJob(bracket, undo=2).run()
 
 

@@ -50,6 +50,20 @@ def test_skips_are_crossed_and_told_unless_a_gap_is_set() -> None:
     assert endings == ["ended"] and not any("skipped" in text for text in said)
 
 
+def test_a_hole_in_pieces_is_told_and_the_advice_follows_it() -> None:
+    """A hole of 2.5 mm radius in five pieces of 2.4 mm, in a ring in which the pen has skipped."""
+    hole = [arc((20.0, 20.0), 2.5, 72.0 * k, 72.0 * k + 45) for k in range(5)]
+    drawing = inked(*ring(0.7, 0.7, 0.7, 0.7), *hole, seed=1)
+    said, endings = said_of(drawing, LineSettings(lines="contours"))
+    assert (
+        endings == ["closed"] and len([text for text in said if "5 pieces of ink" in text]) == 1
+    )
+    said, endings = said_of(drawing, LineSettings(lines="all"))
+    assert len(endings) > 1 and not any("pieces of ink" in text for text in said)
+    said, _ = said_of(inked(*ring(0.7, 0.7, 0.7, 0.7), seed=1), LineSettings(lines="contours"))
+    assert not any("pieces of ink" in text for text in said)
+
+
 def test_pale_lines_are_told_where_all_ink_is_asked_for() -> None:
     said, _ = said_of(with_pale_bar(0.3), LineSettings(lines="all"))
     assert any("mm of line (17 %) are left out" in text for text in said)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from tests.packaging.test_door import lines
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+NOT_RECIPES = [page for page in PAGES if page.parent.name != "recipes"]
 NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 FILE = re.compile(
     r"`((?:motion|tracer|recorder|player|jobs|reports|console|samples|docs|tests)/[\w/-]+\.\w+)`"
@@ -47,3 +49,18 @@ def test_the_lines_of_the_door_are_on_the_page(page: str) -> None:
     wanted = [plain(line) for line in lines().splitlines()]
     first = shown.index("import morfax")
     assert shown[first : first + len(wanted)] == wanted
+
+
+@pytest.mark.parametrize("page", NOT_RECIPES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_commands_of_a_page_can_be_typed_one_after_the_other(page: Path) -> None:
+    """None writes over its own drawing, none makes up a tape that is there. test_recipes runs the recipes."""
+    lines = re.findall(
+        r"^ {4,}(morfax (?:trace|run) .*)$", page.read_text(encoding="utf-8"), re.M
+    )
+    made_up = list[str]()
+    for line in lines:
+        drawing, *words = shlex.split(line, comments=True)[2:]
+        assert drawing not in words, line
+        if "trace" in line and "-o" not in words and "--print-settings" not in words:
+            made_up.append(drawing)
+    assert len(made_up) == len(set(made_up))

@@ -19,9 +19,13 @@ from morfax.tracer.drawing.components import INK, SOFTENED_PX, Patches, strips
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.large import runs_darker
+from morfax.tracer.drawing.paper import WIDEST_STROKE_MM
 from morfax.tracer.drawing.tiles import Tiles
 
 DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
+# the rim of a filled shape is half of the widest stroke broad, or a little less: 2.9 to 3.5 mm at 100 to 600
+# dpi; a line that is drawn in a shadow as dark as a shape is narrower
+RIM_MM = 0.25 * WIDEST_STROKE_MM
 SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
 
 

@@ -31,6 +31,7 @@ MOST_OBLONG = 4.0  # sides of a pixel; a fax has 204 x 98 dpi, at its coarsest 2
 LEAST_APART_PX = (
     100.0  # a pixel is then 1 % of the scale; a part is no use with a greater error
 )
+OF_A_PHOTOGRAPH = "--flatten marks, or --flatten paper=a4"
 
 Place = tuple[float, float]
 
@@ -123,12 +124,14 @@ def _stated_mm(scan: Scan) -> tuple[float, float]:
     if stated is None:
         raise DrawingFault(
             f"{scan.file} states no resolution; "
-            "give --dpi 300, or the sheet's width with --width 120mm, or --known X,Y X,Y 100mm"
+            "give --dpi 300, or the sheet's width with --width 120mm, or --known X,Y X,Y 100mm; of a"
+            f" photograph {OF_A_PHOTOGRAPH}"
         )
     if stated.doubt is not None:
         raise DrawingFault(
             f"{scan.file} states {stated.dpi[0]:g} dpi, {stated.doubt}; give the sheet's width with"
-            f" --width 120mm, or --known X,Y X,Y 100mm, or --dpi {stated.dpi[0]:g} if that is true"
+            f" --width 120mm, or --known X,Y X,Y 100mm, or --dpi {stated.dpi[0]:g} if that is true; of a"
+            f" photograph {OF_A_PHOTOGRAPH}"
         )
     x_mm, y_mm = (MM_PER_INCH / dpi for dpi in stated.dpi)
     every = all(LEAST_PITCH_MM <= pitch_mm <= LARGEST_PITCH_MM for pitch_mm in (x_mm, y_mm))

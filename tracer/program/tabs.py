@@ -14,7 +14,7 @@ has left nothing to hold; of the places that are left the straighter ones are ta
 
 Source: our own; that tabs are longer by the cutter's diameter at its middle's path is as in CAM. Questions:
 the part hangs on the outermost line, so tabs that have no room there are a fault; a hole too small for its
-tabs gets as many as it has room for, down to none, and a remark says so.
+tabs gets as many as it has room for, down to none, and a remark says so, unless the cutter mills it all away.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
-from morfax.motion.polyline import at_lengths
+from morfax.motion.polyline import area_mm2, at_lengths
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Tabs
@@ -96,6 +96,14 @@ def is_inner(line: Line, lines: Sequence[Line]) -> bool:
 
     around = [other for other in lines if other is not line and other.comes_round]
     return any(nesting.lies_inside(line.loop_mm, other.loop_mm) for other in around)
+
+
+def is_milled_away(line: Line, cutter_mm: float) -> bool:
+    """Whether a cutter on this closed line leaves nothing within it that could come loose."""
+    from morfax.motion.offset import DriveCurve, offset
+
+    inwards = DriveCurve(line.loop_mm, closed=True, left=area_mm2(line.loop_mm) > 0)
+    return cutter_mm > 0 and not offset([inwards], 0.5 * cutter_mm)
 
 
 def tabs_on(

@@ -12,7 +12,7 @@ import soundfile
 
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import Motion, join
-from morfax.player.tape.bare import NOT_VOUCHED
+from morfax.player.tape.bare import NOT_PLACED, NOT_VOUCHED
 from morfax.player.tape.mend import mend
 from morfax.player.tape.playback import play, play_pipe
 from morfax.recorder.tape.own_motion import OWN_CYCLES, STATED_CYCLES, OwnMotion
@@ -60,6 +60,21 @@ def test_a_sound_tape_plays_and_says_what_it_cannot_vouch_for(tape: Path) -> Non
     join(playback)
     assert playback.notes == (NOT_VOUCHED,)
     assert "\n" not in NOT_VOUCHED
+
+
+def test_a_bare_tape_without_text_says_that_its_start_is_not_known(
+    tape: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "no-text.wav"
+    soundfile.write(file, soundfile.read(tape, dtype="int16")[0], RATE_HZ, "PCM_16")
+    figures = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
+    for start_mm, notes in (
+        (None, (NOT_VOUCHED, NOT_PLACED)),
+        ((1.0, 2.0, 2.0), (NOT_VOUCHED,)),
+    ):
+        playback = play(file, start_mm=start_mm, **figures)
+        join(playback)
+        assert playback.notes == notes
 
 
 @pytest.mark.parametrize("wear", [Wear(), replace(Wear(), noise_db=30.0, skew_s=3e-6)])

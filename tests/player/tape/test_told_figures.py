@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,35 @@ def test_what_the_fault_says_to_do_plays_the_tape(tape: Path, tmp_path: Path) ->
     clean = join(play(tape)).positions_mm
     other = changed(tape, tmp_path, cycles_per_mm=30.0)
     assert np.array_equal(join(play(other, cycles_per_mm=20.0)).positions_mm, clean)
-    assert len(join(play(tape, cycles_per_mm=10.0)).positions_mm)  # another travel, on purpose
+    doubled = play(tape, cycles_per_mm=10.0)  # another travel, on purpose
+    assert len(join(doubled).positions_mm) and "2 times as long" in doubled.notes[0]
+    assert not play(tape).notes
+
+
+@pytest.mark.parametrize(
+    ("by_hand", "says"),
+    [
+        ({"start_mm": (50.0, 20.0, 2.0)}, []),
+        ({}, ["not recorded from 0,0,0 mm.*--from"]),
+        ({"start_mm": (50.0, 20.0, 2.1)}, ["not recorded from 50,20,2.1 mm"]),
+        (
+            {"start_mm": (50.0, 20.0, 2.0), "cycles_per_mm": 10.0},
+            ["with 20 cycles per mm and is played with 10: all lengths are 2 times"],
+        ),
+    ],
+)  # fmt: skip
+def test_a_tape_that_has_lost_its_text_tells_figures_by_hand_that_are_not_its_own(
+    tape: Path, tmp_path: Path, by_hand: dict[str, Any], says: list[str]
+) -> None:
+    with soundfile.SoundFile(tape) as sound:
+        frames = sound.read(dtype="int16")
+    soundfile.write(tmp_path / "bare.wav", frames, 48000, "PCM_16")
+    playback = play(
+        tmp_path / "bare.wav", **{"reference_hz": 6000.0, "cycles_per_mm": 20.0, **by_hand}
+    )
+    join(playback)
+    assert len(playback.notes) == len(says)
+    assert all(re.search(text, note) for text, note in zip(says, playback.notes, strict=True))
 
 
 @pytest.mark.parametrize("cycles_per_mm", [20.0, 787.4015748, 1e-4, 12345.678])

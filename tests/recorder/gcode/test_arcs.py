@@ -63,3 +63,27 @@ def test_an_arc_shorter_than_the_spacing_of_places_keeps_its_bend(radius_mm):
     assert chain.deviation_mm <= 0.1 * radius_mm
     turned = sum(segment.turned_rad for segment in chain.segments)
     assert turned == pytest.approx(math.pi, abs=0.3)
+
+
+def ragged_round(seed: int) -> Array:
+    """A clockwise turn of 0.2 mm radius, ragged by 6 um a wave, after a straight way of 4 um, (121, 2) mm."""
+    rng = np.random.default_rng(seed)
+    angles = np.linspace(0, -math.tau, 120)
+    waves = [
+        rng.normal(0, 0.006) * np.cos(k * angles + rng.uniform(0, math.tau))
+        for k in range(1, 5)
+    ]
+    radii_mm = 0.2 + sum(waves)
+    places = radii_mm[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    ahead = (places[1] - places[0]) / math.dist(*places[:2])
+    return np.vstack([places[0] - 0.004 * ahead, places])
+
+
+@pytest.mark.parametrize("seed", [7, 23, 49, 78, 94, 98])
+def test_no_arc_of_a_small_round_goes_round_more_than_once(seed):
+    """One arc of three turns is as near to every place, and a program that holds only its ends loses it."""
+    turns = [
+        s.turned_rad for chain in fit(ragged_round(seed), TOLERANCE_MM) for s in chain.segments
+    ]
+    assert max(map(abs, turns)) <= 1.5 * math.pi
+    assert sum(turns) == pytest.approx(-math.tau, abs=0.5)  # its ends are ragged, too

@@ -193,7 +193,9 @@ def test_a_jpeg_s_own_resolution_counts(tmp_path: Path, grey: Grey) -> None:
 def test_a_placeholder_is_no_resolution(
     tmp_path: Path, grey: Grey, name: str, dpi: int
 ) -> None:
-    asks = rf"states {dpi} dpi, which is what programs write when they know no scale; .*--dpi {dpi} if"
+    asks = (
+        rf"states {dpi} dpi, which is what programs write.*; .*--dpi {dpi} if.*--flatten paper"
+    )
     with pytest.raises(DrawingFault, match=asks):
         opened(Image.fromarray(grey), tmp_path / name, dpi=(dpi, dpi))
     assert (

@@ -398,3 +398,16 @@ def test_where_light_falls_off_a_line_is_no_rim_and_a_filled_shape_is(
     sheet = Sheet.of(Drawing.open(file))
     assert not sheet.is_solid_at(np.array([152.0, 34.0 - 17]))
     assert sheet.is_solid_at(np.array([112.0, 34.0 - 17]))
+
+
+def test_a_line_in_a_shadow_as_dark_as_a_shape_is_no_rim(tmp_path: Path) -> None:
+    """Two rings of 0.5 mm lines, 20 mm across, of which one lies where a phone's shadow halves the light."""
+    ink = np.zeros((591, 827), np.uint8)  # 70 x 50 mm
+    for column in (210, 617):
+        cv2.circle(ink, (column, 295), 118, 255, 6, cv2.LINE_AA)
+    light = 1 - 0.5 / (1 + np.exp(-(np.arange(827) - 413) / 15))
+    grey = (235 - 195 * (ink / 255.0)) * light
+    file = tmp_path / "shadow.png"
+    Image.fromarray(np.round(grey).astype(np.uint8)).save(file, dpi=(300, 300))
+    sheet = Sheet.of(Drawing.open(file))
+    assert len(np.flatnonzero(sheet.lengths_mm > 50)) == 2 and not sheet.are_solid.any()

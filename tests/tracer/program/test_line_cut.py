@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from morfax.jobs.depths import of_tabs
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.feed import run_along
@@ -115,6 +116,17 @@ def test_a_tab_in_a_corner_is_moved_along_until_it_is_clear_of_it() -> None:
     for tab in tabs:
         away_mm = np.abs(np.subtract(tab.place_mm, [[0, 0], [60, 0], [60, 40], [0, 40]]))
         assert np.hypot(*away_mm.T).min() > 4.0 + 0.9
+
+
+@pytest.mark.parametrize(("path_radius_mm", "remarks"), [(1.4, 0), (1.6, 1)])
+def test_a_hole_that_the_cutter_mills_away_needs_no_tabs(
+    path_radius_mm: float, remarks: int
+) -> None:
+    """A cutter of 3 mm reaches the middle of a circle of 1.4 mm radius; 1.6 mm leave a core of 0.1 mm."""
+    work = Work(tabs=Tabs(4, 3.0, 1.0), cutter_mm=3.0)
+    hole = circle(path_radius_mm, (5.0, 5.0))
+    told = list(of_tabs(Trace([hole, circle()], Operator(work))))
+    assert len(told) == remarks and all("come loose" in text for text in told)
 
 
 def test_tabs_of_a_circle_stand_evenly_and_only_in_the_passes_below_their_top() -> None:
