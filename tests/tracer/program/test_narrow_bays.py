@@ -1,0 +1,83 @@
+"""Notches and tongues hardly wider than two lines are laid where the head's own way fails."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import REDRAWN
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace_ink import trace_ink
+from morfax.tracer.program.trace_lines import trace_lines
+from tests.tracer.inked import Points, inked, polyline
+
+WIDTH_MM, DEEP_MM = 0.5, 3.0
+UM = 1e-3
+
+
+def plate(*inner: tuple[float, float]) -> Points:
+    """A plate of 30 x 16 mm with some places in its upper side."""
+    return polyline((4, 4), (34, 4), (34, 20), *inner, (4, 20), (4, 4))
+
+
+def with_bay(wide_mm: float, deep_mm: float, aside_mm: float = 0.0) -> Points:
+    """A plate with a square notch in its upper side, or a tongue if it is not deep, maybe aslant."""
+    left, right, end = 18.0, 18.0 + wide_mm, 20 - deep_mm
+    return plate((right, 20), (right + aside_mm, end), (left + aside_mm, end), (left, 20))
+
+
+def off_mm(line: Line, truth: Points) -> float:
+    """How far the line is from a true one, or that from it."""
+    way, drawn = shapely.LinearRing(line.loop_mm), shapely.LineString(truth)
+    return float(
+        way.hausdorff_distance(
+            drawn,
+        )
+    )
+
+
+BAYS = [
+    pytest.param(
+        with_bay(widths * WIDTH_MM, deep_mm, aside_mm), id=f"{widths}-{deep_mm}-{aside_mm}"
+    )
+    for widths in (1.1, 1.5, 2.0)
+    for deep_mm in (DEEP_MM, -DEEP_MM)
+    for aside_mm in (0.0, 0.8)
+]
+
+
+@pytest.mark.parametrize("truth", BAYS)
+def test_a_bay_is_followed_as_it_is_drawn(truth: Points) -> None:
+    """Within 60 um, 0.7 of a pixel of 300 dpi; half a line is cut off or run past otherwise."""
+    (line,) = contours(truth).lines
+    assert line.ending == "closed" and off_mm(line, truth) < 60 * UM
+
+
+def contours(*lines: Points) -> Trace:
+    """The contours of a sheet."""
+    return trace_lines(inked(*lines, width_mm=WIDTH_MM, dpi=300, seed=1))
+
+
+def test_the_head_passes_on_to_a_bay_and_from_it_without_a_jump() -> None:
+    """Its steps are never longer than 10 mm/s makes them, and a twentieth, which bends add."""
+    (line,) = contours(with_bay(1.1 * WIDTH_MM, DEEP_MM)).lines
+    assert REDRAWN in line.led.leaders
+    speed_mm_s = np.hypot(*np.diff(line.xy_mm, axis=0).T) * MOTION_RATE_HZ
+    assert speed_mm_s.max() < 10.5
+    assert len(line.led.of(len(line.xy_mm))) == len(line.xy_mm)
+
+
+def test_a_tick_of_one_line_and_a_bar_to_another_are_no_bays() -> None:
+    tick, bar = polyline((12, 20), (12, 22)), polyline((24, 4), (24, 20))
+    trace = contours(plate(), tick, bar)
+    line = max(trace.lines, key=lambda each: each.length_mm)
+    assert line.length_mm == pytest.approx(92, abs=0.5)
+
+
+def test_of_all_the_ink_a_closed_line_with_a_bay_is_laid_too() -> None:
+    truth = with_bay(2.0 * WIDTH_MM, DEEP_MM)
+    trace = trace_ink(inked(truth, width_mm=WIDTH_MM, dpi=300, seed=1))
+    assert off_mm(trace.lines[0], truth) < 60 * UM

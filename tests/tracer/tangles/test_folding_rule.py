@@ -1,0 +1,104 @@
+"""The folding rule lays narrow bays where their ink is: notches of known size."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import nearest_mm, with_places
+from morfax.tracer.tangles import folding_rule, pen
+from morfax.tracer.tangles.folding_rule import Rule, explained
+from morfax.tracer.tangles.seen_ink import SeenInk
+from tests.tracer.inked import arc
+
+PITCH_MM, SOFTNESS_MM, HALF_MM = 0.085, 0.06, 0.25
+UM = 1e-3
+FIRST, LAST = np.array([1.0, 6.0]), np.array([6.0, 6.0])
+SQUARE = np.array([(3.1, 6), (3.1, 3), (3.9, 3), (3.9, 6)])
+ROUND = np.vstack([(3.1, 6), arc((3.5, 3.4), 0.4, 180, 360), (3.9, 6)])
+POINTED = np.array([(3.0, 6), (3.5, 3), (4.0, 6)])
+
+
+def way_of(corners: Array) -> Array:
+    """The way along a bay between the two ends."""
+    return np.vstack([FIRST, corners, LAST])
+
+
+def ink_of(corners: Array, noise: float = 0.0) -> SeenInk:
+    """The ink that a pen leaves along a bay, on pixels with noise."""
+    rows, columns = np.indices((90, 90)).reshape(2, -1)
+    places = PITCH_MM * np.column_stack([columns + 0.5, rows + 0.5])
+    away = pen.away_from(places, way_of(corners))
+    dark = np.empty(len(places))
+    pen.ink(away, HALF_MM, SOFTNESS_MM, dark)
+    dark += np.random.default_rng(1).normal(0.0, noise, len(dark))
+    near = away < 2 * HALF_MM
+    count = int(near.sum())
+    known = np.full(count, math.inf)
+    left_by_noise = count * noise**2
+    return SeenInk(
+        places[near], dark[near], known, HALF_MM, SOFTNESS_MM, PITCH_MM**2, left_by_noise
+    )
+
+
+def off_mm(rule: Rule, corners: Array) -> float:
+    """How far the rule's way is from a bay, and that from it, at most."""
+    laid, true = (with_places(some, 2 * UM) for some in (rule.way, way_of(corners)))
+    return float(max(nearest_mm(laid, true).max(), nearest_mm(true, laid).max()))
+
+
+@pytest.mark.parametrize(
+    "corners", [SQUARE, ROUND, POINTED], ids=["square", "round", "pointed"]
+)
+@pytest.mark.parametrize("noise", [0.0, 0.03])
+def test_a_bay_is_laid_true_round_its_bar_of_ink(corners: Array, noise: float) -> None:
+    """Within 30 um: the ink is 6 pixels wide, and its edges are 0.7 pixels soft."""
+    ink = ink_of(corners, noise)
+    legs = np.vstack([FIRST, [2.5, 6], [4.5, 6], LAST])
+    rule = explained(ink, folding_rule.round_bar(ink, legs))
+    assert rule is not None and off_mm(rule, corners) < 30 * UM
+
+
+@pytest.mark.parametrize("corners", [SQUARE, ROUND], ids=["square", "round"])
+def test_a_bay_whose_end_the_head_cut_short_is_laid_true(corners: Array) -> None:
+    cut = np.array([(3.1, 6), (3.15, 3.6), (3.5, 3.5), (3.85, 3.6), (3.9, 6)])
+    ink = ink_of(corners)
+    rule = explained(ink, folding_rule.along(way_of(cut), HALF_MM))
+    assert rule is not None and off_mm(rule, corners) < 30 * UM
+
+
+def test_one_line_out_is_no_bay() -> None:
+    """A tick of one line is followed out and back, and no two sides explain it."""
+    tick = np.array([(3.5, 6), (3.5, 3), (3.5, 6)])
+    ink = ink_of(tick)
+    legs = np.vstack([FIRST, [3, 6], [4, 6], LAST])
+    rules = [*folding_rule.along(way_of(tick), HALF_MM), *folding_rule.round_bar(ink, legs)]
+    rule = explained(ink, rules)
+    assert rule is None or rule.misfit > 0.035 * rule.length_mm / (2 * HALF_MM)
+
+
+def test_a_rounded_corner_is_an_arc_that_touches_both_sides() -> None:
+    corners = np.array([(3.5, 6.0)])
+    rule = Rule(FIRST, np.array([3.5, 1.0]), corners, np.array([True]), 0.5, HALF_MM)
+    (way,) = rule.stretches()
+    from_middle = np.hypot(*(way[1:-1] - (3.0, 5.5)).T)
+    assert from_middle == pytest.approx(np.full(len(way) - 2, 0.5))
+    assert way[1] == pytest.approx((3.0, 6.0)) and way[-2] == pytest.approx((3.5, 5.5))
+
+
+def test_arcs_take_no_more_than_half_of_the_side_between_them() -> None:
+    """So a radius of half the width makes the end of a notch half a circle, and a larger one, too."""
+    corners = np.array([(3.1, 6), (3.1, 3), (3.9, 3), (3.9, 6)])
+    rounded = np.array([False, True, True, False])
+    for radius_mm in (0.4, 2.0):
+        rule = Rule(FIRST, LAST, corners, rounded, radius_mm, HALF_MM)
+        end = rule.way[rule.way[:, 1] < 3.4 - UM]
+        assert np.hypot(*(end - (3.5, 3.4)).T) == pytest.approx(np.full(len(end), 0.4))
+
+
+def test_sharp_corners_part_the_way_into_stretches() -> None:
+    rule = Rule(FIRST, LAST, SQUARE, np.zeros(4, bool), 0.0, HALF_MM)
+    assert len(rule.stretches()) == 5 and rule.figures == 8
