@@ -26,7 +26,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.polyline import area_mm2
+from morfax.motion.neighbours import Neighbours
+from morfax.motion.polyline import area_mm2, evenly
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.tangles import pen
 
 SHARP = (3, 4, 5, 6)  # corners of the polygons that are tried
@@ -39,6 +41,10 @@ OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is t
 BEGIN = 0.3
 SURE = 0.003  # the same: a core that leaves less is taken at once
 MOST_SETTLED = 3  # of the cores, those that explain most to begin with
+# pen's widths: a place of a way from which ink is farther is beside its ink; that of a right way is within
+# half of one, and of the places that show ink some are left out
+BESIDE = 1.5
+EVERY_WIDTHS = 0.5  # of a width: places of a way are asked for ink so far apart
 STEPS = 40  # times that the ink is drawn for each figure of a core, at the most
 SHARPEST = (
     0.3  # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
@@ -105,6 +111,12 @@ class Core(NamedTuple):
         steps = self.points_mm - np.roll(self.points_mm, 1, axis=0)
         return round_mm + float(np.hypot(*steps.T).sum())
 
+    def is_on(self, ink: RingInk) -> bool:
+        """Whether the way lies on some ink all along: none was looked at where it would lie elsewhere."""
+        way = evenly(np.vstack(self.stretches()), EVERY_WIDTHS * ink.width_mm)
+        away_mm, _ = Neighbours(ink.places_mm[ink.darkness > INK]).nearest(way)
+        return bool(away_mm.max() < BESIDE * ink.width_mm)
+
     def stretches(self) -> list[Array]:
         """The way, counter-clockwise from the middle of a side: stretches (n, 2) mm between sharp corners."""
         points = self.points_mm
@@ -151,7 +163,9 @@ def _drawn(ink: RingInk, core: Core) -> Core:
 
 
 def _settled(ink: RingInk, start: Core) -> Core | None:
-    """A core moved to where the pen leaves the ink that is there; None if the pen becomes another."""
+    """A core moved to where the pen leaves the ink that is there; None if the pen becomes another, or the way
+    runs off that ink.
+    """
     from scipy.optimize import least_squares
 
     count, is_sharp = len(start.points_mm), start.radius_mm == 0
@@ -172,12 +186,12 @@ def _settled(ink: RingInk, start: Core) -> Core | None:
     )
     core = core_of(fit.x)
     is_pen = 0.5 * ink.half_mm < core.half_mm < 2 * ink.half_mm
-    return _drawn(ink, core) if is_pen else None
+    return _drawn(ink, core) if is_pen and core.is_on(ink) else None
 
 
 def _starts(ink: RingInk) -> Iterator[Core]:
     """Cores to begin with, by the outline of the ink."""
-    dark = ink.places_mm[ink.darkness > 0.5]
+    dark = ink.places_mm[ink.darkness > INK]
     if len(dark) < max(SHARP):
         return
     middle = dark.mean(axis=0)
