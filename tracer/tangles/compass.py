@@ -113,9 +113,13 @@ class Core(NamedTuple):
 
     def is_on(self, ink: RingInk) -> bool:
         """Whether the way lies on some ink all along: none was looked at where it would lie elsewhere."""
-        way = evenly(np.vstack(self.stretches()), EVERY_WIDTHS * ink.width_mm)
-        away_mm, _ = Neighbours(ink.places_mm[ink.darkness > INK]).nearest(way)
-        return bool(away_mm.max() < BESIDE * ink.width_mm)
+        dark, way = ink.places_mm[ink.darkness > INK], np.vstack(self.stretches())
+        off_mm = BESIDE * ink.width_mm
+        # a fit may throw a corner kilometres away: such a way is too long to be looked at
+        if np.any(way < dark.min(axis=0) - off_mm) or np.any(way > dark.max(axis=0) + off_mm):
+            return False
+        away_mm, _ = Neighbours(dark).nearest(evenly(way, EVERY_WIDTHS * ink.width_mm))
+        return bool(away_mm.max() < off_mm)
 
     def stretches(self) -> list[Array]:
         """The way, counter-clockwise from the middle of a side: stretches (n, 2) mm between sharp corners."""

@@ -96,7 +96,8 @@ def test_a_way_is_on_its_ink_where_no_side_leaves_it() -> None:
     ink = ink_of(TRIANGLE)
     assert Core(TRIANGLE, 0.0, HALF_MM).is_on(ink)
     # a corner half a width and two and a half from the ink of a side
-    for aside_mm, is_on in ((1.0 * HALF_MM, True), (5.0 * HALF_MM, False)):
+    # ... and one so far off that nobody looks along its sides
+    for aside_mm, is_on in ((1.0 * HALF_MM, True), (5.0 * HALF_MM, False), (1e11, False)):
         corner = 0.5 * (TRIANGLE[0] + TRIANGLE[1]) - (0.0, HALF_MM + aside_mm)
         beside = np.vstack([TRIANGLE[:1], [corner], TRIANGLE[1:]])
         assert Core(beside, 0.0, HALF_MM).is_on(ink) == is_on
