@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.median import percentile
 from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
-from morfax.tracer.drawing.noise import Noise, measured
+from morfax.tracer.drawing.noise import measured
 
 Darkness = NDArray[np.float32]
 
@@ -49,6 +49,8 @@ BEYOND_PX = (
 )
 TOUCHED = 0.7  # of a pale line's darkness: within the rim of ink it goes on where it is as dark
 LEAST_MM, LEAST_PX = 2.0, 8  # as for ink: what is shorter is a speck; by trial
+# letters are as low (see `lettering`): a shorter line than others counts if it stands out so much farther
+LETTER_MM, TWICE = 1.0, 2.0
 SLENDER = 3.0  # times its breadth: a shorter patch is a blot
 BROAD, BROAD_PX = 2.0, 2.0  # usual widths and pixels: a broader patch is shade
 DARKER = 80.0  # percentile of a line's pixels: those that no edge makes lighter, as of ink
@@ -85,7 +87,7 @@ def deepened(
         pale = pale_ink(darkness, level, rim_px, shortest_px)
         if shapes.any():
             pale &= 1 - shaded(shapes, pale.shape)
-        lines = _lines(pale, darkness, noise, pitch_mm)
+        lines = _lines(pale, darkness, (noise.width_mm / pitch_mm, level), pitch_mm)
         if lines is None:
             break
         length_px += lines.length_px
@@ -148,8 +150,12 @@ def noise_of_spots(darkness: Darkness) -> float:
     return high - middle
 
 
-def _lines(pale: Mask, darkness: Darkness, noise: Noise, pitch_mm: float) -> _Lines | None:
-    """The patches of a mask that are lines; None if none is."""
+def _lines(
+    pale: Mask, darkness: Darkness, usual: tuple[float, float], pitch_mm: float
+) -> _Lines | None:
+    """The patches of a mask that are lines; None if none is. Usual are the width of lines, pixels, and the
+    darkness from which on ink may be pale.
+    """
     count, labels, boxes, _ = cv2.connectedComponentsWithStats(pale, connectivity=8)
     if count < 2:
         return None
@@ -161,13 +167,14 @@ def _lines(pale: Mask, darkness: Darkness, noise: Noise, pitch_mm: float) -> _Li
     broad_px = np.maximum(4 * np.bincount(patch, depth, count) / areas - 2, 1)
     lengths_px = areas / broad_px
     long_px = boxes[:, 2:4].max(axis=1)
-    usual_px = noise.width_mm / pitch_mm
-    are_lines = long_px >= max(LEAST_PX, LEAST_MM / pitch_mm)
+    usual_px, level = usual
+    are_lines = long_px >= max(LEAST_PX, LETTER_MM / pitch_mm)
     are_lines &= lengths_px > SLENDER * broad_px
     are_lines &= broad_px < BROAD * usual_px + BROAD_PX
     are_lines[0] = False
     dark = _usual(darkness[rows, columns], patch, count)
     are_lines &= dark < FULL
+    are_lines &= (long_px >= LEAST_MM / pitch_mm) | (dark > TWICE * level)
     if not are_lines.any():
         return None
     numbers = (np.arange(count) * are_lines).astype(np.int32)

@@ -16,20 +16,25 @@ from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.shapes_among_lines import drawing_of_all_ink
 from morfax.tracer.program.trace_ink import trace_ink
-from tests.tracer.inked import DPI, arc, inked, polyline
+from tests.tracer.inked import DPI, WIDTH_MM, arc, inked, polyline, together
 
 SQUARE = polyline((6, 6), (46, 6), (46, 36), (6, 36), (6, 6))
 WAVE = np.column_stack(
     [np.linspace(6, 46, 800), 21 + 5 * np.sin(np.linspace(0, 4 * np.pi, 800))]
 )
 RING = arc((16, 12), 3.5)
+LETTER = polyline((26, 20), (26, 21.5), (27, 20), (27, 21.5))  # a printed N, 1.7 mm high
 NOISE = 0.02  # of a quiet scan
 UM = 1e-3
 
 
-def read(pale: float, *, grain: float = 0.0, all_ink: bool = True) -> Drawing:
-    """A scan of a square with a ring in it, and a paler wave from side to side."""
+def read(
+    pale: float, *, grain: float = 0.0, all_ink: bool = True, letter: bool = False
+) -> Drawing:
+    """A scan of a square with a ring in it, and a paler wave from side to side, or a letter in its place."""
     dark, wave = inked(SQUARE, RING).darkness, inked(WAVE, SQUARE).darkness
+    if letter:
+        wave = together((LETTER, 0.2), (SQUARE, WIDTH_MM)).darkness
     alone = np.maximum(wave - inked(SQUARE).darkness, 0)
     rng = np.random.default_rng(1)
     coarse = cv2.GaussianBlur(rng.normal(0, 1, dark.shape), (0, 0), 1.5)
@@ -76,6 +81,15 @@ def test_dark_lines_stay_where_they_are_beside_a_pale_one() -> None:
 def test_what_is_paler_than_what_shines_through_stays_as_it_is() -> None:
     drawing = read(0.1)
     assert off_mm(drawing, WAVE).max() > 1 and not drawing.notes
+
+
+@pytest.mark.parametrize(("pale", "is_followed"), [(0.45, True), (0.2, False)])
+def test_a_short_pale_line_counts_where_it_stands_out_twice_as_far(
+    pale: float, is_followed: bool
+) -> None:
+    """Grey letters of a map are lower than 2 mm; as pale as what shines through they are specks."""
+    off = off_mm(read(pale, letter=True), LETTER)
+    assert (np.percentile(off, 90) < 0.1) == is_followed
 
 
 def test_on_grained_paper_nothing_is_made_darker() -> None:
