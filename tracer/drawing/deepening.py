@@ -39,8 +39,9 @@ LEAST = 0.15
 ABOVE_NOISE = 12.5
 STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that tell its noise
 ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
-# percentiles one standard deviation apart: stains and rims of ink are on one side, lines on few places
-MIDDLE_AND_HIGH = 50.0, 84.13
+# percentiles half a standard deviation apart: rims of ink are on one side, and pale lines, which may be a
+# fifth of the paper that is near ink, beyond the other
+MIDDLE_AND_HIGH, APART = (50.0, 69.15), 0.5
 FAR_PX = 7  # from ink: its rims are no paper
 # pixels, and spots of the picture's softness: so near to ink is its own rim
 RIM_PX, SPOTS = 2, 2.0
@@ -147,7 +148,7 @@ def noise_of_spots(darkness: Darkness) -> float:
     if not len(paper):
         return 0.0
     middle, high = (percentile(paper, percent) for percent in MIDDLE_AND_HIGH)
-    return high - middle
+    return (high - middle) / APART
 
 
 def _lines(
