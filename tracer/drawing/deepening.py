@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.median import percentile
 from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
-from morfax.tracer.drawing.noise import Noise, measured
+from morfax.tracer.drawing.noise import measured
 
 Darkness = NDArray[np.float32]
 
@@ -39,8 +39,9 @@ LEAST = 0.15
 ABOVE_NOISE = 12.5
 STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that tell its noise
 ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
-# percentiles one standard deviation apart: stains and rims of ink are on one side, lines on few places
-MIDDLE_AND_HIGH = 50.0, 84.13
+# percentiles half a standard deviation apart: rims of ink are on one side, and pale lines, which may be a
+# fifth of the paper that is near ink, beyond the other
+MIDDLE_AND_HIGH, APART = (50.0, 69.15), 0.5
 FAR_PX = 7  # from ink: its rims are no paper
 # pixels, and spots of the picture's softness: so near to ink is its own rim
 RIM_PX, SPOTS = 2, 2.0
@@ -49,6 +50,8 @@ BEYOND_PX = (
 )
 TOUCHED = 0.7  # of a pale line's darkness: within the rim of ink it goes on where it is as dark
 LEAST_MM, LEAST_PX = 2.0, 8  # as for ink: what is shorter is a speck; by trial
+# letters are as low (see `lettering`): a shorter line than others counts if it stands out so much farther
+LETTER_MM, TWICE = 1.0, 2.0
 SLENDER = 3.0  # times its breadth: a shorter patch is a blot
 BROAD, BROAD_PX = 2.0, 2.0  # usual widths and pixels: a broader patch is shade
 DARKER = 80.0  # percentile of a line's pixels: those that no edge makes lighter, as of ink
@@ -85,7 +88,7 @@ def deepened(
         pale = pale_ink(darkness, level, rim_px, shortest_px)
         if shapes.any():
             pale &= 1 - shaded(shapes, pale.shape)
-        lines = _lines(pale, darkness, noise, pitch_mm)
+        lines = _lines(pale, darkness, (noise.width_mm / pitch_mm, level), pitch_mm)
         if lines is None:
             break
         length_px += lines.length_px
@@ -145,11 +148,15 @@ def noise_of_spots(darkness: Darkness) -> float:
     if not len(paper):
         return 0.0
     middle, high = (percentile(paper, percent) for percent in MIDDLE_AND_HIGH)
-    return high - middle
+    return (high - middle) / APART
 
 
-def _lines(pale: Mask, darkness: Darkness, noise: Noise, pitch_mm: float) -> _Lines | None:
-    """The patches of a mask that are lines; None if none is."""
+def _lines(
+    pale: Mask, darkness: Darkness, usual: tuple[float, float], pitch_mm: float
+) -> _Lines | None:
+    """The patches of a mask that are lines; None if none is. Usual are the width of lines, pixels, and the
+    darkness from which on ink may be pale.
+    """
     count, labels, boxes, _ = cv2.connectedComponentsWithStats(pale, connectivity=8)
     if count < 2:
         return None
@@ -161,13 +168,14 @@ def _lines(pale: Mask, darkness: Darkness, noise: Noise, pitch_mm: float) -> _Li
     broad_px = np.maximum(4 * np.bincount(patch, depth, count) / areas - 2, 1)
     lengths_px = areas / broad_px
     long_px = boxes[:, 2:4].max(axis=1)
-    usual_px = noise.width_mm / pitch_mm
-    are_lines = long_px >= max(LEAST_PX, LEAST_MM / pitch_mm)
+    usual_px, level = usual
+    are_lines = long_px >= max(LEAST_PX, LETTER_MM / pitch_mm)
     are_lines &= lengths_px > SLENDER * broad_px
     are_lines &= broad_px < BROAD * usual_px + BROAD_PX
     are_lines[0] = False
     dark = _usual(darkness[rows, columns], patch, count)
     are_lines &= dark < FULL
+    are_lines &= (long_px >= LEAST_MM / pitch_mm) | (dark > TWICE * level)
     if not are_lines.any():
         return None
     numbers = (np.arange(count) * are_lines).astype(np.int32)

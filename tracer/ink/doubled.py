@@ -9,7 +9,8 @@ rims of their ink.
 
 Only a clean sheet tells that: one whose lines have smooth edges and on which much of the ink is as narrow as
 the narrowest. Lettering has pens of its own, and the strokes of a printed letter swell. A nib or a brush
-swells and shrinks, too (see `nib`). Ink of one even width is a line of a broader pen.
+swells and shrinks, too (see `nib`). Ink of one even width is a line of a broader pen; so is a patch of ink
+that is nowhere as narrow as a line of the pen, for two lines cross, part, or end one after the other.
 
 Source: our own.
 """
@@ -17,7 +18,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -63,26 +64,29 @@ LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 class Doubled(NamedTuple):
     """The pen's width, mm, and the stretches that two lines share: which of the stations of each.
 
-    If that is not sure they are run once, and told.
+    Short pieces of the same lines are `cut` by others that cross them. If it is not sure that they are two
+    they are run once, and told.
     """
 
     pen_mm: float = math.nan
     stations: dict[int, Flags] = {}  # noqa: RUF012 - a NamedTuple's default, never written to
-    cut: frozenset[int] = (
-        frozenset()
-    )  # short pieces of the same lines, between others that cross them
+    cut: frozenset[int] = frozenset()
     is_sure: bool = True
 
     @classmethod
     def of(
-        cls, felt: Sequence[Run], ends: Sequence[Ends], some: Sequence[int], pixel_mm: float
+        cls,
+        felt: Sequence[Run],
+        ends: Sequence[Ends],
+        patch_of: Mapping[int, int],
+        pixel_mm: float,
     ) -> Doubled:
-        """Find the doubled stretches among some of a sheet, some of which end the ink; none of a sheet that
-        is not clean, or whose lines are few pixels of the picture wide.
+        """Find the doubled stretches among those whose patch is given, some of which end the ink; none of a
+        sheet that is not clean, or whose lines are few pixels of the picture wide.
         """
         # 1. how wide the ink is along each stretch, and whether one pen's line or two lines are
         found = {
-            n: swelling for n in some if (swelling := Swelling.of(felt[n], ends[n])) is not None
+            n: some for n in patch_of if (some := Swelling.of(felt[n], ends[n])) is not None
         }
         every = list(found.values())
         pen_mm, beside_mm = pen_of(every), pen_of_hollow(every)
@@ -93,6 +97,8 @@ class Doubled(NamedTuple):
         ink = Ink.TWO_LINES if beside_mm > 0 else _what_is(every, pen_mm)
         if ink == Ink.NIB:
             return cls()
+        if not beside_mm > 0:  # where all lines run in pairs no ink is one line's
+            found = _of_the_pen(found, patch_of, pen_mm)
         # 2. those that swell and shrink, and even ones where these go on
         broad = {
             n: flags
@@ -105,7 +111,7 @@ class Doubled(NamedTuple):
         stations = {n: broad[n] for n in sorted(doubled)}
         if ink == Ink.EITHER:
             return cls(pen_mm, stations, is_sure=False)
-        return cls(pen_mm, stations, _cut(felt, some, doubled, pen_mm))
+        return cls(pen_mm, stations, _cut(felt, patch_of, doubled, pen_mm))
 
     def length_mm(self, felt: Sequence[Run], number: int) -> float:
         """The length of the ink of a stretch that two lines share, mm."""
@@ -123,6 +129,14 @@ class Doubled(NamedTuple):
             if end_mm < FROM_ENDS * self.pen_mm:
                 found.add(n)
         return found
+
+
+def _of_the_pen(
+    found: dict[int, Swelling], patch_of: Mapping[int, int], pen_mm: float
+) -> dict[int, Swelling]:
+    """The stretches of the patches of which some ink is as narrow as a line of the pen."""
+    own = {patch_of[n] for n, some in found.items() if some.known.min() < SHARED * pen_mm}
+    return {n: some for n, some in found.items() if patch_of[n] in own}
 
 
 def _what_is(some: Sequence[Swelling], pen_mm: float) -> Ink:
@@ -159,7 +173,7 @@ def _goes_on(felt: Sequence[Run], number: int, doubled: set[int], pen_mm: float)
 
 
 def _cut(
-    felt: Sequence[Run], some: Sequence[int], doubled: set[int], pen_mm: float
+    felt: Sequence[Run], some: Iterable[int], doubled: set[int], pen_mm: float
 ) -> frozenset[int]:
     """Pieces that are too short to be told as doubled by themselves, between doubled ink straight on."""
     kept = {n for n in some if n not in doubled and _is_piece(felt[n], pen_mm)}

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.components import Mask, grouped
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 
@@ -94,6 +94,13 @@ class Graph:
             for node in stretch.nodes if stretch.nodes[0] != RING else ():
                 at.setdefault(node, []).append(number)
         return at
+
+    def patches(self) -> Indices:
+        """The patch of each stretch, by its number: stretches of one patch hang together at nodes."""
+        pairs = [(some[0], n) for some in self.at_nodes().values() for n in some[1:]]
+        return np.asarray(
+            grouped(np.array(pairs, np.int64).reshape(-1, 2), len(self.stretches))
+        )
 
     def _take_off_burrs(self) -> None:
         """Take off burrs, the shortest of a fork first; two stretches that are left at a fork are one."""

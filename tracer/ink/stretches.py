@@ -152,7 +152,8 @@ class FeltSheet:
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
         doubled, some = Doubled(), _no_letters(graph, letters)
         if not settings.line_width_mm:
-            doubled = Doubled.of(felt, ends, some, drawing.pitch_mm * drawing.finer)
+            patch, pixel_mm = graph.patches(), drawing.pitch_mm * drawing.finer
+            doubled = Doubled.of(felt, ends, {n: int(patch[n]) for n in some}, pixel_mm)
         if doubled.is_sure and math.isfinite(doubled.pen_mm):
             for n in set(some).intersection(of_two_lines(straight, measured, doubled.pen_mm)):
                 widths[n] = doubled.pen_mm

@@ -26,6 +26,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.polyline import area_mm2
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk
 
@@ -123,7 +124,9 @@ def _drawn(ink: SeenInk, core: Core) -> Core:
 
 
 def _settled(ink: SeenInk, start: Core) -> Core | None:
-    """A core moved to where the pen leaves the ink that is there; None if the pen becomes another."""
+    """A core moved to where the pen leaves the ink that is there; None if the pen becomes another, or the way
+    runs off that ink.
+    """
     from scipy.optimize import least_squares
 
     count, is_sharp = len(start.points_mm), start.radius_mm == 0
@@ -143,12 +146,12 @@ def _settled(ink: SeenInk, start: Core) -> Core | None:
     )
     core = core_of(fit.x)
     is_pen = 0.5 * ink.half_mm < core.half_mm < 2 * ink.half_mm
-    return _drawn(ink, core) if is_pen else None
+    return _drawn(ink, core) if is_pen and ink.holds(np.vstack(core.stretches())) else None
 
 
 def _starts(ink: SeenInk) -> Iterator[Core]:
     """Cores to begin with, by the outline of the ink."""
-    dark = ink.places_mm[ink.darkness > 0.5]
+    dark = ink.places_mm[ink.darkness > INK]
     if len(dark) < max(SHARP):
         return
     middle = dark.mean(axis=0)

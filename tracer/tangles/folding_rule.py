@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
-from morfax.motion.polyline import area_mm2, evenly, length_mm, nearest_mm
+from morfax.motion.polyline import area_mm2, evenly, length_mm
 from morfax.tracer.tangles import beside_itself, pen
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk
 
@@ -51,7 +51,6 @@ STRAIGHT = 1e-3  # tangent of half a turn: a smaller one is not rounded
 # of a piece: an arc takes half of it at the most, and all but this of one that ends where it is sharp
 KEPT = 0.02
 BESIDE = 1.2  # half widths from the line: darker ink further away is a bar's
-EVERY = 0.5  # of half a width, between the places of a way that are held against the ink
 FEWEST = 20  # places that a bar of ink has, at the least
 STEP = 0.1  # widths, between the places of a way that are held against each other
 APART = 0.8  # widths: the sides of a bay begin, at the least
@@ -241,18 +240,8 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     rule = rule_of(fit.x)
     least, most = LIKE_PEN
     is_pen = least * ink.half_mm < rule.half_mm < most * ink.half_mm
-    is_way = is_pen and _is_on(ink, rule) and _is_apart(rule, ink.width_mm)
+    is_way = is_pen and ink.holds(rule.way) and _is_apart(rule, ink.width_mm)
     return _drawn(ink, rule) if is_way else None
-
-
-def _is_on(ink: SeenInk, rule: Rule) -> bool:
-    """Whether a rule stays on ink: what lies beyond the places that are seen costs it nothing."""
-    dark, corners = ink.places_mm[ink.darkness > 0.5], rule.corners_mm
-    low, high = ink.places_mm.min(axis=0), ink.places_mm.max(axis=0)
-    if not len(dark) or np.any(corners < low) or np.any(corners > high):
-        return False
-    way = evenly(rule.way, EVERY * ink.half_mm)
-    return bool(nearest_mm(way, dark).max() < ink.half_mm)
 
 
 def _is_apart(rule: Rule, width_mm: float) -> bool:

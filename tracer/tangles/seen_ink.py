@@ -15,10 +15,15 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.tangles import pen
 
 OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is tried with these
 
+# widths: a place of a way from which ink is farther is beside its ink; that of a right way is within half of
+# one, and of the places that show ink some are left out
+BESIDE, EVERY_WIDTHS = 1.5, 0.5
 # Of a way that is fitted to the ink:
 PRICE = 0.01  # of a figure more, as misfit: noise alone pays less than a third of that
 STEPS = 40  # times that the ink is drawn for each figure, at the most
@@ -54,6 +59,17 @@ class SeenInk(NamedTuple):
         """How much darkness (n,) that is drawn leaves unexplained, in squares of the line's width."""
         left = float(np.sum((drawn - self.darkness) ** 2)) - self.noise
         return left * self.area_mm2 / self.width_mm**2
+
+    def holds(self, way: Array) -> bool:
+        """Whether a way (m, 2) mm lies on ink all along: beyond the places seen nothing costs it."""
+        dark, off_mm = self.places_mm[self.darkness > INK], BESIDE * self.width_mm
+        # a fit may throw a corner kilometres away: such a way is too long to be looked at
+        if not len(dark) or np.any(way < dark.min(axis=0) - off_mm):
+            return False
+        if np.any(way > dark.max(axis=0) + off_mm):
+            return False
+        away_mm = nearest_mm(evenly(way, EVERY_WIDTHS * self.width_mm), dark)
+        return bool(away_mm.max() < off_mm)
 
     def misfit_along(self, way: Array) -> float:
         """How much a pen along a way (m, 2) mm leaves unexplained, of the width that explains most."""

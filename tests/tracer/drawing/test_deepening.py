@@ -16,20 +16,25 @@ from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.shapes_among_lines import drawing_of_all_ink
 from morfax.tracer.program.trace_ink import trace_ink
-from tests.tracer.inked import DPI, arc, inked, polyline
+from tests.tracer.inked import DPI, WIDTH_MM, arc, inked, polyline, together
 
 SQUARE = polyline((6, 6), (46, 6), (46, 36), (6, 36), (6, 6))
 WAVE = np.column_stack(
     [np.linspace(6, 46, 800), 21 + 5 * np.sin(np.linspace(0, 4 * np.pi, 800))]
 )
 RING = arc((16, 12), 3.5)
+LETTER = polyline((26, 20), (26, 21.5), (27, 20), (27, 21.5))  # a printed N, 1.7 mm high
 NOISE = 0.02  # of a quiet scan
 UM = 1e-3
 
 
-def read(pale: float, *, grain: float = 0.0, all_ink: bool = True) -> Drawing:
-    """A scan of a square with a ring in it, and a paler wave from side to side."""
+def read(
+    pale: float, *, grain: float = 0.0, all_ink: bool = True, letter: bool = False
+) -> Drawing:
+    """A scan of a square with a ring in it, and a paler wave from side to side, or a letter in its place."""
     dark, wave = inked(SQUARE, RING).darkness, inked(WAVE, SQUARE).darkness
+    if letter:
+        wave = together((LETTER, 0.2), (SQUARE, WIDTH_MM)).darkness
     alone = np.maximum(wave - inked(SQUARE).darkness, 0)
     rng = np.random.default_rng(1)
     coarse = cv2.GaussianBlur(rng.normal(0, 1, dark.shape), (0, 0), 1.5)
@@ -78,10 +83,29 @@ def test_what_is_paler_than_what_shines_through_stays_as_it_is() -> None:
     assert off_mm(drawing, WAVE).max() > 1 and not drawing.notes
 
 
+@pytest.mark.parametrize(("pale", "is_followed"), [(0.45, True), (0.2, False)])
+def test_a_short_pale_line_counts_where_it_stands_out_twice_as_far(
+    pale: float, is_followed: bool
+) -> None:
+    """Grey letters of a map are lower than 2 mm; as pale as what shines through they are specks."""
+    off = off_mm(read(pale, letter=True), LETTER)
+    assert (np.percentile(off, 90) < 0.1) == is_followed
+
+
 def test_on_grained_paper_nothing_is_made_darker() -> None:
     """As on a photograph: grain would be lines."""
     drawing = read(0.3, grain=0.07)
     assert not any("less than half as dark" in note for note in drawing.notes)
+
+
+def test_pale_lines_are_no_noise_though_they_take_up_a_sixth_of_the_paper() -> None:
+    """A page of notes: nearly all paper that is near ink has writing and rules on it."""
+    paper = np.random.default_rng(1).normal(0, 0.06, (400, 400)).astype(np.float32)
+    lined = paper.copy()
+    for first in range(3):
+        lined[first::20] += 0.4
+    # a whole standard deviation higher, where lines are, it is 2.8 times as high
+    assert noise_of_spots(lined) < 2.2 * noise_of_spots(paper)
 
 
 @pytest.mark.parametrize("pale", [0.3, 0.45])

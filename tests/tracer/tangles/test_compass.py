@@ -82,6 +82,30 @@ def test_the_pen_may_be_broader_than_was_felt() -> None:
     assert off_mm(core, CIRCLE) < 5 * UM
 
 
+def test_no_loop_is_laid_off_the_ink_of_a_ring_with_a_tail() -> None:
+    """A letter: no core explains it, and the sides of one that tries leave the ink that was looked at."""
+    ring = arc((2.57, 2.79), 0.79, 246, 606)
+    tail = np.array([(3.9, 1.62), (5.01, 0.83)])
+    ink = ink_of(np.vstack([ring, tail, tail[:1]]), noise=0.05)
+    core = explained(ink)
+    dark = ink.places_mm[ink.darkness > 0.5]
+    if core is not None:
+        way = with_places(np.vstack(core.stretches()), 2 * UM)
+        away = np.hypot(*(way[:, None] - dark).T).min(axis=0)
+        assert away.max() < 3 * HALF_MM
+
+
+def test_a_way_is_on_its_ink_where_no_side_leaves_it() -> None:
+    ink = ink_of(TRIANGLE)
+    assert ink.holds(np.vstack(Core(TRIANGLE, 0.0, HALF_MM).stretches()))
+    # a corner half a width and two and a half from the ink of a side
+    # ... and one so far off that nobody looks along its sides
+    for aside_mm, is_on in ((1.0 * HALF_MM, True), (5.0 * HALF_MM, False), (1e11, False)):
+        corner = 0.5 * (TRIANGLE[0] + TRIANGLE[1]) - (0.0, HALF_MM + aside_mm)
+        beside = np.vstack([TRIANGLE[:1], [corner], TRIANGLE[1:]])
+        assert ink.holds(np.vstack(Core(beside, 0.0, HALF_MM).stretches())) == is_on
+
+
 def test_a_way_that_cuts_a_loop_short_leaves_ink_unexplained() -> None:
     """A chord cuts off a segment as high as half the line is wide."""
     ink = ink_of(CIRCLE)
