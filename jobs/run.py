@@ -94,15 +94,11 @@ class RunJob:
         listener.detail("comparing drawing, traced path and played path")
         ink = comparison.measured_on(drawing)
         from_ink = comparison.from_drawing(ink, path, "played", _radius_mm(traced))
-        written = {
-            medium.called(program): str(program),
-            "traced_path": str(traced_file),
-            "played_path": str(played_file),
-            "picture": str(picture),
-        }
         figures: dict[str, Any] = {
             "drawing": str(self.drawing.file),
-            **written,
+            medium.called(program): str(program),
+            **{"traced_path": str(traced_file), "played_path": str(played_file)},
+            "picture": str(picture),
             **flattening.figures(drawing, picture),
             **correction_settings.figures(drawing),
             **_compared(ink, traced, path, from_ink),

@@ -15,6 +15,7 @@ import numpy as np
 
 from morfax.motion.units import drawn_length_mm
 from morfax.reports.canvas import new_figure, save, show_drawing
+from morfax.reports.sheet import DARKEST
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from morfax.tracer.flatten.flat import Flattening
 
 OUTLINE, ARROW = "#1f5fa8", "#c1121f"
-DARKEST = 1.5  # ink as dark grey
 LONGEST_SHARE = 0.08  # of the photograph: the longest arrow
 OUTLINE_PLACES = 40  # on a side of the sheet, so that the lens shows
 ARROW_WIDTH = 0.004  # of the picture

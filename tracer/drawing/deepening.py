@@ -24,8 +24,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import percentile
+from morfax.motion.median import ONE_ABOVE, percentile
 from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
+from morfax.tracer.drawing.contrast import DARKER
 from morfax.tracer.drawing.noise import Noise, measured
 
 Darkness = NDArray[np.float32]
@@ -40,7 +41,7 @@ ABOVE_NOISE = 12.5
 STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that tell its noise
 ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
 # percentiles one standard deviation apart: stains and rims of ink are on one side, lines on few places
-MIDDLE_AND_HIGH = 50.0, 84.13
+MIDDLE_AND_HIGH = 50.0, ONE_ABOVE
 FAR_PX = 7  # from ink: its rims are no paper
 # pixels, and spots of the picture's softness: so near to ink is its own rim
 RIM_PX, SPOTS = 2, 2.0
@@ -51,7 +52,6 @@ TOUCHED = 0.7  # of a pale line's darkness: within the rim of ink it goes on whe
 LEAST_MM, LEAST_PX = 2.0, 8  # as for ink: what is shorter is a speck; by trial
 SLENDER = 3.0  # times its breadth: a shorter patch is a blot
 BROAD, BROAD_PX = 2.0, 2.0  # usual widths and pixels: a broader patch is shade
-DARKER = 80.0  # percentile of a line's pixels: those that no edge makes lighter, as of ink
 FULL = 0.9  # a thin line may be as dark as ink and be seen pale behind the spot: it stays
 ROUNDS = 3  # each reaches what is half as dark: three reach an eighth
 
