@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.motion.long_array import one_in
-from morfax.tracer.following.followed import THINNED
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
 LEAST_CELL_SHARE = 0.6
 # the `LEADERS` as a reader of the figures understands them
 IN_WORDS = ("its_own_cell", "places_felt_ahead", "memory_of_corners", "redrawn_tangles")
+THINNED = 30  # one position in 30 is drawn: every 50 um at 10 mm/s
 
 
 @dataclass(frozen=True, slots=True)
