@@ -97,7 +97,8 @@ class RunJob:
         figures: dict[str, Any] = {
             "drawing": str(self.drawing.file),
             medium.called(program): str(program),
-            **{"traced_path": str(traced_file), "played_path": str(played_file)},
+            "traced_path": str(traced_file),
+            "played_path": str(played_file),
             "picture": str(picture),
             **flattening.figures(drawing, picture),
             **correction_settings.figures(drawing),
@@ -107,12 +108,8 @@ class RunJob:
         }
         faults = tuple(fault for fault in (traced.fault, played.fault) if fault is not None)
         report = traced.name(self.file(".json"))
-        return RunResult(
-            *(figures, drawing, traced, path, from_ink, picture, report, faults),
-            chart=chart,
-            placement=about,
-            program=program,
-        )
+        seen = (figures, drawing, traced, path, from_ink, picture, report, faults)
+        return RunResult(*seen, chart=chart, placement=about, program=program)
 
     def prepared(self, panel: Panel | None = None) -> tuple[FilePath, Tracing]:
         """The program's name, and the head as it is set; raises WrongUse, CardFault and FileFault."""

@@ -14,7 +14,8 @@ Not counted:
 - 0, 1, 2 and a half with either sign; in bodies also 3 and 4, which count axes, corners and powers;
 - units: 25.4, 180, 360, 3600, and 255 and 256 for the levels of a byte; in bodies also 60, 90, and powers of
   ten from 10 on and from 1e-3 on downwards in thousandths;
-- numbers of a protocol: written in hexadecimal, octal or binary, or as bytes and text;
+- numbers of a protocol: written in hexadecimal, octal or binary, or as bytes and text; in bodies 8, 16, 24,
+  32 and 64, which count bits and bytes, and the largest of 16 bit;
 - numbers that only name cases: names that are given whole numbers one after the other (`A, B, C = 3, 4, 5`);
 - tables, colours and shapes: a display of three or more values, a dictionary, what stands in [ ];
 - what is computed from other constants, without a number of its own;
@@ -35,7 +36,8 @@ PACKAGES = (
     "motion", "tracer", "recorder", "player", "jobs", "reports", "panel", "batch", "console", "samples",
 )  # fmt: skip
 PLAIN = {0.0, 0.5, 1.0, 2.0, 25.4, 180.0, 255.0, 256.0, 360.0, 3600.0}
-IN_BODIES = PLAIN | {3.0, 4.0, 60.0, 90.0, 10.0, 100.0, 1e3, 1e4, 1e6, 1e9, 1e-3, 1e-6}
+BITS = {8.0, 16.0, 24.0, 32.0, 64.0, 32767.0, 32768.0}
+IN_BODIES = PLAIN | BITS | {3.0, 4.0, 60.0, 90.0, 10.0, 100.0, 1e3, 1e4, 1e6, 1e9, 1e-3, 1e-6}
 TABLE = 3  # values of a display: from so many on it is a table
 
 
