@@ -31,7 +31,7 @@ from morfax.tracer.head.state import DRUM, Home
 from morfax.tracer.junctions import planner
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles import memory
+from morfax.tracer.tangles import solution
 from samples import draw
 
 PITCH_MM = 1 / draw.PIXELS_PER_MM
@@ -319,7 +319,7 @@ def tangle_figure() -> plt.Figure:
     )
     drawing, by = inked(own)
     run = put_head(drawing, by + np.array([1.5, 0]))
-    with listening(memory, "unravelled") as unravelled:
+    with listening(solution, "unravelled") as unravelled:
         done = run.follow(40.0)
     sketch, way = next(
         (words[0], answer[1]) for words, answer in unravelled if answer[1] is not None
