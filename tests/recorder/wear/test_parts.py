@@ -141,3 +141,15 @@ def test_the_level_is_that_of_the_unevenness() -> None:
     gains = deck._uneven.gains(0, len(out), RATE_HZ)
     assert np.abs(out - 0.5 * gains)[100:-100].max() < 1e-3  # -54 dB; the level moves by 10 %
     assert np.ptp(gains) > 0.05
+
+
+def test_places_are_true_to_what_eight_frames_bend() -> None:
+    scrape = Tones.drawn(1e-3, timebase.SCRAPE_HZ, np.random.default_rng(3))
+    weave = Tones.drawn(0.0, timebase.WEAVE_HZ, np.random.default_rng(4))
+    base = timebase.Timebase(0.0, (scrape,), 0.0, weave)
+    places = base.places(0, RATE_HZ, RATE_HZ, 1)[:, 0]
+    true = base.programme_s(np.arange(RATE_HZ) / RATE_HZ) * RATE_HZ
+    # a chord of length h is off by h² / 8 of the second derivative: of all tones together, in frames
+    steepest = float((scrape.amplitude * 2 * np.pi * scrape.hz).sum())
+    off = (8 / RATE_HZ) ** 2 / 8 * steepest * RATE_HZ
+    assert 0.25 * off < np.abs(places - true).max() < off
