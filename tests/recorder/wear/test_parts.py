@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from morfax.recorder.wear import signal, timebase
-from morfax.recorder.wear.settings import SETS, Wear
+from morfax.recorder.wear.settings import SETS, Wear, check
 from morfax.recorder.wear.timebase import Head, Tones
 from morfax.recorder.wear.transport import Deck
 
@@ -153,3 +153,20 @@ def test_places_are_true_to_what_eight_frames_bend() -> None:
     steepest = float((scrape.amplitude * 2 * np.pi * scrape.hz).sum())
     off = (8 / RATE_HZ) ** 2 / 8 * steepest * RATE_HZ
     assert 0.25 * off < np.abs(places - true).max() < off
+
+
+def test_noise_is_told_of_the_carrier_behind_blank_tape() -> None:
+    t_s = np.arange(2 * RATE_HZ) / RATE_HZ
+    tone = np.where(t_s < 1, 0.0, 0.25 * np.sin(2 * np.pi * 6000 * t_s)).astype(np.float32)
+    blocks = iter(np.split(np.tile(tone[:, None], (1, 2)), 8))
+    noisy = np.concatenate(list(Deck(Wear(noise_db=40), RATE_HZ, 2, 1).frames(blocks)))
+    blocks = iter(np.split(np.tile(tone[:, None], (1, 2)), 8))
+    clean = np.concatenate(list(Deck(Wear(), RATE_HZ, 2, 1).frames(blocks)))
+    noise = (noisy - clean)[int(1.5 * RATE_HZ) : -100]
+    assert 20 * np.log10(0.25 / np.sqrt(2) / noise.std()) == pytest.approx(40, abs=0.1)
+
+
+def test_a_header_holds_a_rate_of_31_bits() -> None:
+    check(Wear(stamped_hz=2**31 - 1), 4)
+    with pytest.raises(ValueError, match="2147483647"):
+        check(Wear(stamped_hz=2**31), 4)
