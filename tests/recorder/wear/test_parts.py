@@ -56,6 +56,17 @@ def test_the_reel_is_the_revox_of_the_page() -> None:
     assert said == (0.002, 52, 45, 0.02, 20_000)
 
 
+def test_a_studio_machine_is_as_good_as_a_reel_in_every_part_and_a_cassette_worse() -> None:
+    studio, reel, cassette = (SETS[name] for name in ("studio-15ips", "reel", "cassette"))
+    for name in ("speed", "wow", "flutter", "scrape", "skew_s", "weave_s", "third", "uneven_db",
+                 "dropouts_per_min", "dropout_s", "dropout_db"):  # fmt: skip
+        good, usual, bad = (getattr(each, name) for each in (studio, reel, cassette))
+        assert good <= usual < bad, name
+    for name in ("noise_db", "crosstalk_db", "print_db", "bandwidth_hz"):
+        good, usual, bad = (getattr(each, name) for each in (studio, reel, cassette))
+        assert good >= usual > bad, name
+
+
 def test_the_answering_machine_has_the_band_of_a_telephone() -> None:
     machine = SETS["answering-machine"]
     assert machine.band_hz == (300, 3_400)  # ITU-T G.712
