@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from morfax.jobs.broad_lines import FINER
 from morfax.jobs.on_lines import OnLines
 from morfax.motion.by_number import and_so
 
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.drawing.hollow import Hollow
     from morfax.tracer.program.program import Trace
-
-FINER = 2.0  # times the resolution shows a gap that this one hardly shows
 
 
 @dataclass(frozen=True, slots=True)

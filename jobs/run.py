@@ -95,15 +95,12 @@ class RunJob:
         listener.detail("comparing drawing, traced path and played path")
         ink = comparison.measured_on(drawing)
         from_ink = comparison.from_drawing(ink, path, "played", _radius_mm(traced))
-        written = {
+        figures: dict[str, Any] = {
+            "drawing": str(self.drawing.file),
             medium.called(program): str(program),
             "traced_path": str(traced_file),
             "played_path": str(played_file),
             "picture": str(picture),
-        }
-        figures: dict[str, Any] = {
-            "drawing": str(self.drawing.file),
-            **written,
             **flattening.figures(drawing, picture),
             **correction_settings.figures(drawing),
             **_compared(ink, traced, path, from_ink),
@@ -112,12 +109,8 @@ class RunJob:
         }
         faults = tuple(fault for fault in (traced.fault, played.fault) if fault is not None)
         report = traced.name(self.file(".json"))
-        return RunResult(
-            *(figures, drawing, traced, path, from_ink, picture, report, faults),
-            chart=chart,
-            placement=about,
-            program=program,
-        )
+        seen = (figures, drawing, traced, path, from_ink, picture, report, faults)
+        return RunResult(*seen, chart=chart, placement=about, program=program)
 
     def prepared(self, panel: Panel | None = None) -> tuple[FilePath, Tracing]:
         """The program's name, and the head as it is set; raises WrongUse, CardFault and FileFault."""

@@ -27,6 +27,7 @@ from morfax.jobs.settings import DrawingFile, TraceSettings
 from morfax.jobs.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
+from morfax.motion.segments import SAME_PLACE_MM
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -41,7 +42,6 @@ HELD_OVER_S = 0.5  # a step of 10 um is a fivehundredth of the way at 10 mm/s
 CORNER_RAD = 0.5  # of turn within 50 um
 WINDOW_MM = 0.05
 # points of a path that are nearer than this have no direction between them
-SAME_PLACE_MM = 1e-6
 
 
 @dataclass(frozen=True, slots=True)

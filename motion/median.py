@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
+ONE_ABOVE = 84.13  # percentile one standard deviation above the median
+OUTLIERS = 3.0  # robust standard deviations: what is further off is left out
 MANY = 500  # numbers: to find their middle takes less time than to put them in order
 
 

@@ -12,6 +12,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 
+NO_LENGTH = 1e-12  # so that nothing is divided by zero
+
 
 def direction(heading_rad: float) -> Array:
     """The direction of a heading, of length 1."""
@@ -26,6 +28,11 @@ def heading_of(way: Array) -> float:
 def left_of(way: Array) -> Array:
     """A direction a quarter of a turn to the left, as long."""
     return np.array([-way[1], way[0]])
+
+
+def unit(ways: Array) -> Array:
+    """Directions (2,) or (n, 2), of length 1; one of no length stays so."""
+    return np.asarray(ways / np.maximum(np.hypot(*ways.T), NO_LENGTH)[..., None])
 
 
 def cross(a: Array, b: Array) -> float:

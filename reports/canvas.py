@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
 
 UM_PER_MM = 1000.0
+WIDTH_IN, SHEET_IN = 8.5, 8.0  # of a figure, and of the sheet in it
+NUMBERS_IN = 1.4  # room for a title, and for the numbers along the axes
+FLATTEST, TALLEST = 0.2, 1.4  # height to width of what is drawn
 DPI = 130
 LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
 REFERENCE = "#555555"
@@ -40,7 +43,7 @@ COMPRESSION = 3  # of zlib: a fifth larger than with 6, in two fifths of the tim
 
 
 def new_figure(
-    width_in: float = 8.5, height_in: float = 8.5, layout: str = "constrained"
+    width_in: float = WIDTH_IN, height_in: float = WIDTH_IN, layout: str = "constrained"
 ) -> Figure:
     """An empty figure that needs no screen."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -49,6 +52,12 @@ def new_figure(
     figure = Figure(figsize=(width_in, height_in), layout=layout, dpi=DPI)  # type: ignore[arg-type]
     FigureCanvasAgg(figure)
     return figure
+
+
+def sheet_figure(width_mm: float, height_mm: float) -> Figure:
+    """An empty figure for a sheet with its axes' numbers and a title."""
+    high = min(max(height_mm / width_mm, FLATTEST), TALLEST)
+    return new_figure(WIDTH_IN, NUMBERS_IN + high * SHEET_IN, "compressed")
 
 
 def save(figure: Figure, file: FilePath, *, trim: bool = True) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.reports.canvas import new_figure, save
+from morfax.reports.looks import NUMBERS_PT, THIN_PT, WORDS_PT
 from morfax.reports.overlay import MARGIN_SHARE
 from morfax.reports.plate import View
 
@@ -66,7 +67,10 @@ def draw_checked(result: CheckResult, name: str, file: FilePath) -> None:
     above.set(xlim=view[:2], ylim=view[2:])
     if above.get_legend_handles_labels()[0]:
         figure.legend(
-            *above.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=8
+            *above.get_legend_handles_labels(),
+            loc="outside lower center",
+            ncols=6,
+            fontsize=WORDS_PT,
         )
     save(figure, file)
 
@@ -205,7 +209,7 @@ def _marked(axes: Axes, findings: Sequence[Finding]) -> None:
             (place_mm[0], place_mm[1]),
             (6, 6),
             textcoords="offset points",
-            fontsize=7,
+            fontsize=NUMBERS_PT,
             color=STOPS if any(each.stops for each in here) else REMARK,
             zorder=7,
         )
@@ -225,7 +229,7 @@ def _side_view(axes: Axes, steps: Sequence[Step], result: CheckResult) -> None:
         along_mm = ends[1]
     _collection(axes, rapids, "rapid", RAPID, 0.7, "-")
     _collection(axes, lines, "line", CUT, 1.0, "-")
-    axes.axhline(surface_mm, color="#a07840", linewidth=0.8)
+    axes.axhline(surface_mm, color="#a07840", linewidth=THIN_PT)
     if stock is not None and stock.thickness_mm is not None:
         axes.axhspan(surface_mm - stock.thickness_mm, surface_mm, color=WOOD, zorder=0)
     axes.autoscale_view()

@@ -12,6 +12,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.plane import left_of
+from morfax.reports.looks import LINE_PT, NUMBERS_PT
 from morfax.reports.plate import Area, Line, Mark, Spot, Words
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def _stroke(stroke: Stroke) -> list[Mark]:
     """A stroke of the rubber as areas, one of the pen as a line."""
     places_mm = stroke.places_mm
     if stroke.do == "bridge" and len(places_mm) > 1:
-        return [Line(places_mm, COLOUR, 1.2, dash=(2, 1), order=4)]
+        return [Line(places_mm, COLOUR, LINE_PT, dash=(2, 1), order=4)]
     if stroke.do == "rub-area":
         return [_rubbed(places_mm)]
     half_mm = 0.5 * (stroke.width_mm or 1.0)
@@ -78,4 +79,4 @@ def _spot(shape: str, place_mm: PlaceMm) -> Spot:
 
 def _number(number: int, place_mm: PlaceMm) -> Words:
     """The number of a correction beside its place."""
-    return Words(place_mm, f"c{number}", 7, COLOUR, (7, -11))
+    return Words(place_mm, f"c{number}", NUMBERS_PT, COLOUR, (7, -11))

@@ -15,6 +15,8 @@ import numpy as np
 
 from morfax.motion.units import drawn_length_mm
 from morfax.reports.canvas import new_figure, save, show_drawing
+from morfax.reports.looks import GRID, NAME_PT
+from morfax.reports.sheet import DARKEST
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
     from morfax.tracer.flatten.flat import Flattening
 
 OUTLINE, ARROW = "#1f5fa8", "#c1121f"
-DARKEST = 1.5  # ink as dark grey
 LONGEST_SHARE = 0.08  # of the photograph: the longest arrow
 OUTLINE_PLACES = 40  # on a side of the sheet, so that the lens shows
 ARROW_WIDTH = 0.004  # of the picture
@@ -42,8 +43,10 @@ def draw_flattening(drawing: Drawing, file: FilePath) -> None:
     )
     flat.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     finest_mm, coarsest_mm = (drawn_length_mm(pixel_mm) for pixel_mm in made.mm_per_px)
-    flat.set_title(f"flat: {made.told}; a pixel is {finest_mm} to {coarsest_mm}", fontsize=9)
-    flat.grid(linewidth=0.3, alpha=0.4)
+    flat.set_title(
+        f"flat: {made.told}; a pixel is {finest_mm} to {coarsest_mm}", fontsize=NAME_PT
+    )
+    flat.grid(**GRID)
     save(figure, file)
 
 
@@ -66,7 +69,7 @@ def _draw_photograph(axes: Axes, made: Flattening) -> None:
     axes.set(
         xlim=(0, size.width), ylim=(size.height, 0), xlabel="px", ylabel="px", aspect="equal"
     )
-    axes.set_title(title, fontsize=9)
+    axes.set_title(title, fontsize=NAME_PT)
 
 
 def _draw_residual(axes: Axes, made: Flattening) -> str:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.files import written_beside
 from morfax.reports.canvas import UM_PER_MM, new_figure, save
+from morfax.reports.looks import GRID, THIN_PT, TITLE_PT, WORDS_PT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,8 +47,10 @@ def picture(chart: Chart, title: str, speeds: Speeds | None = None) -> Figure:
     for number, name in enumerate(chart.axes):
         _panel(axes[number], chart, number, name)
         axes[number].sharex(axes[0])
-    axes[0].set_title(title, fontsize=10, loc="left")
-    axes[0].legend(fontsize=8, ncols=3, loc="lower right", bbox_to_anchor=(1, 1), frameon=False)
+    axes[0].set_title(title, fontsize=TITLE_PT, loc="left")
+    axes[0].legend(
+        fontsize=WORDS_PT, ncols=3, loc="lower right", bbox_to_anchor=(1, 1), frameon=False
+    )
     axes[len(chart.axes) - 1].set_xlabel("time, s")
     if speeds is not None:
         _speeds(axes[-1], speeds)
@@ -61,7 +64,7 @@ def _panel(axes: Axes, chart: Chart, number: int, name: str) -> None:
     error_um = np.maximum(np.abs(chart.error_mm[:, number]) * UM_PER_MM, SMALLEST_UM)
     limit_um = chart.limit_mm[:, number] * UM_PER_MM
     axes.semilogy(chart.t_s, limit_um, color=LIMIT, linewidth=1.0, label="limit")
-    axes.semilogy(chart.t_s, error_um, color=ERROR, linewidth=0.8, label="following error")
+    axes.semilogy(chart.t_s, error_um, color=ERROR, linewidth=THIN_PT, label="following error")
     over = error_um > limit_um
     if over.any():
         axes.semilogy(
@@ -69,7 +72,7 @@ def _panel(axes: Axes, chart: Chart, number: int, name: str) -> None:
         )
     axes.set_ylabel(f"{name.upper()}, µm")
     axes.set_ylim(bottom=SMALLEST_UM)
-    axes.grid(alpha=0.3)
+    axes.grid(**GRID)
 
 
 def _speeds(axes: Axes, speeds: Speeds) -> None:
@@ -84,11 +87,13 @@ def _speeds(axes: Axes, speeds: Speeds) -> None:
     )
     for (name, held), colour in zip(speeds.items(), (ERROR, TRUE), strict=False):
         axes.plot(
-            held.way_mm, held.held_mm_s, color=colour, linewidth=0.8, label=f"held, {name}"
+            held.way_mm, held.held_mm_s, color=colour, linewidth=THIN_PT, label=f"held, {name}"
         )
     axes.set(xlabel="way along the program, mm", ylabel="speed, mm/s", ylim=(0, None))
-    axes.legend(fontsize=8, ncols=3, loc="lower right", bbox_to_anchor=(1, 1), frameon=False)
-    axes.grid(alpha=0.3)
+    axes.legend(
+        fontsize=WORDS_PT, ncols=3, loc="lower right", bbox_to_anchor=(1, 1), frameon=False
+    )
+    axes.grid(**GRID)
 
 
 def _write_csv(chart: Chart, file: FilePath) -> None:

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.reports import corrected, vector
-from morfax.reports.canvas import LARGEST_IMAGE_PX, REFERENCE, new_figure, save
+from morfax.reports.canvas import LARGEST_IMAGE_PX, REFERENCE, save, sheet_figure
+from morfax.reports.looks import LINE_PT, SEE_THROUGH, TITLE_PT, WORDS_PT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +32,6 @@ COLOURS = (
 )
 LEFT_OUT = "#b0b0b0"
 LETTERING = "#e0b000"
-PATH_PT = 1.2
 
 
 def draw_numbered(result: LinesResult) -> None:
@@ -40,13 +40,13 @@ def draw_numbered(result: LinesResult) -> None:
         return
     drawing, seen = result.drawing, result.survey
     width_mm, height_mm = drawing.width_mm, drawing.height_mm
-    figure = new_figure(8.5, 1.4 + 8 * min(max(height_mm / width_mm, 0.2), 1.4), "compressed")
+    figure = sheet_figure(width_mm, height_mm)
     axes = figure.add_subplot()
     extent = (0.0, width_mm, 0.0, height_mm)
     axes.imshow(_painted(seen), extent=extent, interpolation="nearest", zorder=0)
     for line in seen.lines:
         colour = _colour(line.number)
-        axes.plot(*line.places_mm.T, color=colour, linewidth=PATH_PT, zorder=2)
+        axes.plot(*line.places_mm.T, color=colour, linewidth=LINE_PT, zorder=2)
     for entry in seen.entries:
         _number(axes, entry)
     axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
@@ -55,7 +55,7 @@ def draw_numbered(result: LinesResult) -> None:
             vector.put(axes, mark)
     _legend(axes, seen)
     name = drawing.file.name if drawing.file else "drawing"
-    axes.set_title(f"{name}: numbers for --lines", fontsize=10)
+    axes.set_title(f"{name}: numbers for --lines", fontsize=TITLE_PT)
     save(figure, result.picture)
 
 
@@ -110,7 +110,7 @@ def _number(axes: Axes, entry: Entry) -> None:
         entry.place_mm,
         (5, 5),
         textcoords="offset points",
-        fontsize=8,
+        fontsize=WORDS_PT,
         color=colour,
         bbox=box,
     )
@@ -123,4 +123,4 @@ def _legend(axes: Axes, seen: Survey) -> None:
     if seen.lettering:
         axes.plot([], [], color=LETTERING, linewidth=4, label="likely lettering")
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper right", fontsize=8, framealpha=0.8)
+        axes.legend(loc="upper right", fontsize=WORDS_PT, framealpha=SEE_THROUGH)

@@ -21,6 +21,7 @@ from morfax.motion.motion import Path
 from morfax.reports import corrected, leaders, left_out
 from morfax.reports.canvas import COMPRESSION, REFERENCE, UM_PER_MM, grey, save, write
 from morfax.reports.coloured import error_lines
+from morfax.reports.looks import LINE_PT, NAME_PT, NUMBERS_PT, THIN_PT, WORDS_PT
 from morfax.reports.page import INSETS, Page, lay_out
 from morfax.reports.plate import BLACK, Colours, Line, Plate, Spot, View, Words, with_gaps
 
@@ -68,7 +69,9 @@ def draw(picture: Picture, file: FilePath) -> None:
     for number, (box, place_mm) in enumerate(zip(page.insets, places, strict=True), 1):
         plates.append((box, _enlarged(picture, place_mm, number)))
         at = (float(place_mm[0]), float(place_mm[1]))
-        main.add(Spot(at, "+", 9, BLACK, order=5), Words(at, str(number), 9, offset_pt=(9, 9)))
+        main.add(
+            Spot(at, "+", 9, BLACK, order=5), Words(at, str(number), NAME_PT, offset_pt=(9, 9))
+        )
     if file.suffix.lower() == PIXELS:
         from morfax.reports import bitmap
 
@@ -102,7 +105,7 @@ def _ground(plate: Plate, picture: Picture) -> None:
     if picture.drawing is not None:
         plate.ground = grey(picture.drawing, plate.view, LIGHT)
     if picture.reference is not None and (runs := picture.reference.runs()):
-        plate.add(Line(with_gaps(runs), REFERENCE, 0.8, dash=(4, 2), order=1))
+        plate.add(Line(with_gaps(runs), REFERENCE, THIN_PT, dash=(4, 2), order=1))
 
 
 def _is_measured(picture: Picture) -> bool:
@@ -143,7 +146,7 @@ def _ends(plate: Plate, path: Path) -> None:
 def _numbers(plate: Plate, picture: Picture) -> None:
     """Number several lines, each beside its start, in a ring: the enlargements have plain numbers."""
     for number, place_mm in picture.numbers_mm:
-        plate.add(Words(place_mm, number, 8, offset_pt=(-11, -11), ring=REFERENCE))
+        plate.add(Words(place_mm, number, WORDS_PT, offset_pt=(-11, -11), ring=REFERENCE))
 
 
 def _stops(plate: Plate, picture: Picture) -> None:
@@ -151,10 +154,10 @@ def _stops(plate: Plate, picture: Picture) -> None:
     if not picture.stops_mm:
         return
     raised = np.where(picture.path.tool[:, None], np.nan, picture.path.xy_mm)
-    plate.add(Line(raised, RAISED, 1.2, dash=(4, 2), label="tool up"))
+    plate.add(Line(raised, RAISED, LINE_PT, dash=(4, 2), label="tool up"))
     for name, place_mm in picture.stops_mm.items():
         plate.add(Spot(place_mm, "D", 6, RAISED, order=5))
-        plate.add(Words(place_mm, name, 8, RAISED, (7, 7)))
+        plate.add(Words(place_mm, name, WORDS_PT, RAISED, (7, 7)))
 
 
 def _enlarged(picture: Picture, place_mm: Array, number: int) -> Plate:
@@ -167,7 +170,9 @@ def _enlarged(picture: Picture, place_mm: Array, number: int) -> Plate:
     x, y = (float(side) for side in place_mm)
     view = (x - reach_mm, x + reach_mm, y - reach_mm, y + reach_mm)
     title = f"{number}: {error_mm * UM_PER_MM:.3g} µm at {x:.1f}, {y:.1f}"
-    plate = Plate(view, title, 8, numbers_pt=7, most_numbers=FEW_NUMBERS, names=None)
+    plate = Plate(
+        view, title, WORDS_PT, numbers_pt=NUMBERS_PT, most_numbers=FEW_NUMBERS, names=None
+    )
     _ground(plate, picture)
     _contour(plate, picture, line_pt=2.2)
     return plate

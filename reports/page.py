@@ -19,9 +19,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from morfax.reports.canvas import FLATTEST, TALLEST
+
 INSETS = 3  # at most
 WIDE = 0.6  # height to width, below which the enlargements stand below
-FLATTEST, TALLEST = 0.2, 1.4  # height to width of the main axes
 WIDTH_IN, BESIDE_IN = 7.4, 3.0  # of the main axes, and of a column of enlargements
 LEFT_IN, RIGHT_IN = 0.75, 0.25  # room for numbers and names beside axes
 TITLE_IN, NAMES_IN = 0.45, 0.6  # above and below the main axes

@@ -15,6 +15,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
 from morfax.reports.canvas import REFERENCE, UM_PER_MM, new_figure, show_drawing
+from morfax.reports.looks import GRID, NAME_PT, NUMBERS_PT, THIN_PT, TITLE_PT, WORDS_PT
 from morfax.reports.overlay import LIGHT, Picture, view_of
 
 if TYPE_CHECKING:
@@ -47,8 +48,8 @@ def contours(
     show_drawing(main, drawing, view, LIGHT)
     _lines(main, ran, traced, np.zeros(2), 1.0)
     main.set(xlim=view[:2], ylim=view[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
-    main.set_title(title, fontsize=10)
-    main.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+    main.set_title(title, fontsize=TITLE_PT)
+    main.legend(fontsize=WORDS_PT, loc="center left", bbox_to_anchor=(1, 0.5))
     for number, (place_mm, what) in enumerate(_places(ran, corners_mm), 1):
         axes = figure.add_subplot(grid[1 + (number - 1) // 3, (number - 1) % 3])
         _enlarge(
@@ -59,7 +60,7 @@ def contours(
             f"{number}: {what} at {place_mm[0]:.1f}, {place_mm[1]:.1f}",
         )
         main.annotate(
-            str(number), tuple(place_mm), (7, 7), textcoords="offset points", fontsize=9
+            str(number), tuple(place_mm), (7, 7), textcoords="offset points", fontsize=NAME_PT
         )
         main.plot(*place_mm, "+", color="black", markersize=8)
     return figure
@@ -76,10 +77,10 @@ def errors(results: Sequence[SystemResult]) -> Figure:
         error_um = result.from_ink.error_mm * UM_PER_MM
         way_mm = lengths_mm(points)
         axes.axhline(0, color=REFERENCE, linewidth=0.6)
-        axes.plot(way_mm, error_um, color=COLOURS[result.suffix], linewidth=0.8)
+        axes.plot(way_mm, error_um, color=COLOURS[result.suffix], linewidth=THIN_PT)
         axes.set_ylabel("µm")
-        axes.set_title(result.name, fontsize=9, loc="left")
-        axes.grid(alpha=0.3)
+        axes.set_title(result.name, fontsize=NAME_PT, loc="left")
+        axes.grid(**GRID)
     panels[-1].set_xlabel("way along the contour, mm")
     return figure
 
@@ -140,7 +141,7 @@ def _enlarge(
         )
     _lines(axes, ran, traced, place_mm, UM_PER_MM)
     axes.set(xlim=(-reach_um, reach_um), ylim=(-reach_um, reach_um), aspect="equal")
-    axes.set_title(title, fontsize=8)
-    axes.tick_params(labelsize=7)
-    axes.set_xlabel("µm", fontsize=7)
-    axes.grid(alpha=0.3)
+    axes.set_title(title, fontsize=WORDS_PT)
+    axes.tick_params(labelsize=NUMBERS_PT)
+    axes.set_xlabel("µm", fontsize=NUMBERS_PT)
+    axes.grid(**GRID)

@@ -17,6 +17,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import FileFault
 from morfax.motion.files import written_beside
+from morfax.reports.pixels import SHIFT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +30,6 @@ INK = 0.5  # darkness from which a pixel is ink: half way between paper and line
 PAPER, GREYS = 0.12, 12  # what is lighter is paper, and so many greys: noise makes a file large
 LIGHT = 0.45  # ink is drawn so dark, for a line to lie on
 LINE_BGR = (33, 18, 193)
-SHIFT = 4  # binary places of a pixel in which OpenCV takes places
 
 
 def draw_small(result: TraceResult, file: FilePath) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.reports.axis_numbers import numbers
 from morfax.reports.canvas import new_figure
+from morfax.reports.looks import SEE_THROUGH, WORDS_PT
 from morfax.reports.page import Box, Page
 from morfax.reports.plate import Area, Colours, Line, Mark, Plate, Spot, Words, free_corner
 
@@ -98,7 +99,7 @@ def _fill(axes: Axes, plate: Plate) -> None:
     if plate.legend:
         is_upper, is_right = free_corner(plate, LEGEND_SHARE)
         corner: Any = f"{'upper' if is_upper else 'lower'} {'right' if is_right else 'left'}"
-        axes.legend(loc=corner, fontsize=8, framealpha=0.8)
+        axes.legend(loc=corner, fontsize=WORDS_PT, framealpha=SEE_THROUGH)
 
 
 def _line(axes: Axes, line: Line) -> None:

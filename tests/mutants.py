@@ -10,8 +10,8 @@ function or in a constant of a module:
     0.8       1.6, 0.27         3         6                  0        1               floor    ceil
 
 A mutant is found where a test fails, or where the tests take three times the processor time that they
-should. The quickest files of tests are run first. What builds a message (`raise`, `assert`, f-strings) is
-left alone, and so are types and decorators.
+should, or wait for ever. The quickest files of tests are run first. What builds a message (`raise`, `assert`,
+f-strings) is left alone, and so are types and decorators.
 
 Questions: mutants that change nothing (a bound that is never reached) are counted as not found.
 """
@@ -43,6 +43,9 @@ _PAIRS = [("min", "max"), ("argmin", "argmax"), ("floor", "ceil")]
 TWINS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
 SLOWER = 3.0  # times the tests' own time, for a mutant
 SPARE_S = 30.0  # to compile the kernels of a mutant
+WAITS = (
+    10.0  # times that limit, by the clock: a mutant may also wait for ever, and take no time
+)
 
 
 @dataclass(frozen=True)
@@ -244,7 +247,17 @@ class Copy:
         how = {"cwd": self.root, "env": self._environment}
         pytest = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
         command = [*limited, *pytest, *self.tests]
-        return subprocess.run(command, capture_output=True, check=False, **how).returncode == 0
+        try:
+            done = subprocess.run(
+                command,
+                capture_output=True,
+                check=False,
+                timeout=WAITS * limit_s if limit_s else None,
+                **how,
+            )
+        except subprocess.TimeoutExpired:
+            return False
+        return done.returncode == 0
 
     def quickest_first(self) -> float | None:
         """Put the quickest files of tests first, as most mutants are found by any; the processor time of all,

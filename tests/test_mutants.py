@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -63,3 +64,12 @@ def test_a_copy_has_the_vectors_that_tests_ask_for(
     assert vectors("se_clock")
     copied = Copy(tmp_path, []).root.parent / "shared" / "vectors" / "se_clock.json"
     assert copied.is_file()
+
+
+def test_a_mutant_that_waits_for_ever_is_found(tmp_path: Path) -> None:
+    (tmp_path / "test_a.py").write_text(
+        "import time\n\ndef test_a():\n    time.sleep(60)\n", encoding="utf-8"
+    )
+    copy = object.__new__(Copy)
+    copy.root, copy.tests, copy._environment = tmp_path, ["test_a.py"], dict(os.environ)
+    assert not copy.passes(0.1)  # a second of the clock

@@ -31,7 +31,7 @@ from morfax.tracer.head.state import DRUM, Home
 from morfax.tracer.junctions import planner
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles import memory
+from morfax.tracer.tangles import solution
 from samples import draw
 
 PITCH_MM = 1 / draw.PIXELS_PER_MM
@@ -136,27 +136,29 @@ def sweep_figure() -> plt.Figure:
             title=f"{offset:g} mm to the right\nfundamental {first:+.2f}",
         )
         axes.legend(fontsize=7, loc="lower center")
+    show_characteristic(slope, run, place)
+    across.set_title("three sweeps across the line")
+    figure.tight_layout()
+    return figure
+
+
+def show_characteristic(axes: plt.Axes, run: follower.Follower, place: Array) -> None:
+    """The fundamental and the mean that the sweep hears, over the line's distance, mm."""
+    cells, tuning = run.view.cells, run.carriage.tuning
     every = np.linspace(-1.0, 1.0, 201)
-    both = np.array([photocell.sweep(cells, place, 0.0, (-e, amplitude), 24) for e in every])
-    slope.plot(every, both[:, 0], color=BLUE, label="fundamental")
-    slope.plot(every, both[:, 1], color=ORANGE, label="mean")
-    slope.plot(
-        every,
-        run.carriage.tuning.slope_per_mm * every,
-        ":",
-        color="#555555",
-        label="slope as calibrated",
-    )
-    slope.set(
+    heard = [photocell.sweep(cells, place, 0.0, (-e, tuning.amplitude_mm), 24) for e in every]
+    first, mean = np.array(heard).T
+    axes.plot(every, first, color=BLUE, label="fundamental")
+    axes.plot(every, mean, color=ORANGE, label="mean")
+    calibrated = tuning.slope_per_mm * every
+    axes.plot(every, calibrated, ":", color="#555555", label="slope as calibrated")
+    axes.set(
         ylim=(-1.1, 1.1),
         xlabel="line's distance to the left, mm",
         title="the detector's characteristic",
     )
-    slope.legend(fontsize=7)
-    slope.grid(alpha=0.3)
-    across.set_title("three sweeps across the line")
-    figure.tight_layout()
-    return figure
+    axes.legend(fontsize=7)
+    axes.grid(alpha=0.3)
 
 
 def seen_from_axis(run: follower.Follower) -> dict[str, Array]:
@@ -317,36 +319,22 @@ def tangle_figure() -> plt.Figure:
     )
     drawing, by = inked(own)
     run = put_head(drawing, by + np.array([1.5, 0]))
-    with listening(memory, "unravelled") as unravelled:
+    with listening(solution, "unravelled") as unravelled:
         done = run.follow(40.0)
     sketch, way = next(
         (words[0], answer[1]) for words, answer in unravelled if answer[1] is not None
     )
     figure, axes = plt.subplots(figsize=(13, 7))
     ground(axes, drawing, about(by + np.array([10, 0]), 4.5, 3.2))
-    axes.plot(
-        *sketch.tangle.places_mm.T,
-        ".",
-        color=BLUE,
-        markersize=2,
-        alpha=0.5,
-        label="places of the tangle's ink, and about it",
+    ends_mm = np.array([leg.end_mm for leg in sketch.tangle.legs])
+    marks = (
+        (sketch.tangle.places_mm, ".", BLUE, 2, "places of the tangle's ink, and about it"),
+        (ends_mm, "s", GREEN, 7, "clean ends of the legs"),
+        (way.vertices[0], "o", VIOLET, 7, "vertices, moved until the pen leaves this ink"),
     )
-    for k, leg in enumerate(sketch.tangle.legs):
-        axes.plot(
-            *leg.end_mm,
-            "s",
-            color=GREEN,
-            markersize=7,
-            label=None if k else "clean ends of the legs",
-        )
-    axes.plot(
-        *way.vertices[0].T,
-        "o",
-        color=VIOLET,
-        markersize=7,
-        label="vertices, moved until the pen leaves this ink",
-    )
+    for places, mark, colour, size, said in marks:
+        see_through = 0.5 if mark == "." else 1.0
+        axes.plot(*places.T, mark, color=colour, markersize=size, alpha=see_through, label=said)
     axes.plot(*done.positions_mm.T, color=RED, lw=1.2, label="motion of the axis")
     axes.plot(*(own + by).T, ":", color="black", lw=0.9, label="the line as drawn")
     axes.set_title(

@@ -34,11 +34,11 @@ from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
 from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
+from morfax.player.gcode.pulses import STANDSTILL_S
 from morfax.player.monitor.following_limit import FollowingLimit
 from morfax.player.monitor.monitor import Supervised
 from morfax.player.monitor.position_servo import PositionServo, PositionServos, Way
 
-STANDSTILL_S = 0.25  # before the first move and behind the last, as in the pulse control
 TOLERANCE_MM = 0.02  # of following, at rest: twenty increments
 
 

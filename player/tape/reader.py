@@ -39,9 +39,8 @@ from morfax.player.tape.steadiest import Steadiest
 from morfax.player.tape.vouching import Vouching
 from morfax.player.tape.warrant import Certain, Warrant
 from morfax.player.tape.watch import Watch, demand_apart
+from morfax.recorder.sound.source import BLOCK_FRAMES
 from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
-
-BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
 
 
 class Read(NamedTuple):

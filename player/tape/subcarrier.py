@@ -245,11 +245,10 @@ def _turn_back(halves, clock, state, theta, points):  # type: ignore[no-untyped-
         turns[k] = (nominal + place) / CYCLES_PER_SUBCARRIER
     # 3. the subcarriers, turned back by a sixth of it
     for k in range(count):
-        re[k], im[k] = _sine(0.25 + turns[k]), -_sine(turns[k])
-    for track in range(tracks):
-        for k in range(count):
+        back = complex(_sine(0.25 + turns[k]), -_sine(turns[k]))
+        for track in range(tracks):
             along = float(halves[track, 0, k]) + halves[track, 2, k + 1]
             across = float(halves[track, 1, k]) + halves[track, 3, k + 1]
-            points[k, track] = complex(along, across) * complex(re[k], im[k])
+            points[k, track] = complex(along, across) * back
     state[0], state[1], state[2] = place, rate, level
     state[3], state[4] = first_lost, last_lost

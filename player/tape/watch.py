@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
+from morfax.player.monitor.monitor import NEARLY
 from morfax.player.tape.phases import Phases
 from morfax.player.tape.standstill import ALLOWED_CYCLES, Bearings, track_name
 from morfax.player.tape.warrant import StandsMm
@@ -34,7 +35,6 @@ SHAKE_STRIDE = 4  # rows: the filter spans eight, so the rows between say little
 SHAKE_CYCLES = 0.0047
 # of full scale and of the carrier: below it noise may be the rounding of the samples
 STUCK_NOISE = 1e-4
-NEARLY = 1 - 1e-9  # of a limit: beyond it the exact sum is made; rounding is 1e-15
 
 Float32s = NDArray[np.float32]
 

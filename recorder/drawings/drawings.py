@@ -24,11 +24,11 @@ from morfax.motion.segments import Source
 from morfax.recorder.drawings.chords import box
 from morfax.recorder.drawings.cut_lines import CutLine, Piece, Place, cut_lines_of, radius_mm
 from morfax.recorder.drawings.drawn_units import ZERO
+from morfax.recorder.gcode.blocks import TOLERANCE_MM
 from morfax.recorder.gcode.plan import Writing
 from morfax.recorder.gcode.program_text import digits
 from morfax.recorder.report import Written
 
-TOLERANCE_MM = 0.01
 MARGIN_MM = 1.0  # round an SVG, so that its lines are not cut off by half
 LINE_MM = 0.1  # width of an SVG's lines
 WIDEST_ARC_RAD = (
@@ -133,23 +133,7 @@ def _svg(lines: list[CutLine]) -> str:
     def place(x_mm: float, y_mm: float) -> str:
         return f"{digits(x_mm - left, 4)} {digits(high - y_mm, 4)}"
 
-    paths = []
-    for line in lines:
-        words = ["M " + place(*line.begin_mm)]
-        begin = line.begin_mm
-        for piece in _narrow(line):
-            if piece.turned_rad:
-                radius = digits(radius_mm(begin, piece), 4)
-                large = int(abs(piece.turned_rad) > math.pi)
-                turns_left = int(piece.turned_rad < 0)  # Y down: the other way round
-                words.append(
-                    f"A {radius} {radius} 0 {large} {turns_left} {place(*piece.end_mm)}"
-                )
-            else:
-                words.append("L " + place(*piece.end_mm))
-            begin = piece.end_mm
-        words.append("Z" if line.closed else "" if line.pieces else "h 0")
-        paths.append(f'  <path d="{" ".join(words).rstrip()}"/>')
+    paths = [f'  <path d="{_path(line, place)}"/>' for line in lines]
     width = digits(right - left, 4)
     height = digits(high - low, 4)
     return "\n".join(
@@ -163,6 +147,23 @@ def _svg(lines: list[CutLine]) -> str:
             "",
         ]
     )
+
+
+def _path(line: CutLine, place: Callable[[float, float], str]) -> str:
+    """The words of a line's path; `place` writes a place on the SVG's sheet."""
+    words = ["M " + place(*line.begin_mm)]
+    begin = line.begin_mm
+    for piece in _narrow(line):
+        if piece.turned_rad:
+            radius = digits(radius_mm(begin, piece), 4)
+            large = int(abs(piece.turned_rad) > math.pi)
+            turns_left = int(piece.turned_rad < 0)  # Y down: the other way round
+            words.append(f"A {radius} {radius} 0 {large} {turns_left} {place(*piece.end_mm)}")
+        else:
+            words.append("L " + place(*piece.end_mm))
+        begin = piece.end_mm
+    words.append("Z" if line.closed else "" if line.pieces else "h 0")
+    return " ".join(words).rstrip()
 
 
 def _narrow(line: CutLine) -> list[Piece]:

@@ -128,6 +128,8 @@ def programme_within(blocks: Iterator[Stored], rate_hz: int) -> tuple[int, int] 
         left = frames[count * window :]
         levels.append(_levels(frames[: count * window], window))
     level = np.concatenate(levels) if levels else np.zeros((0, 1))
+    if len(level) < SETTLING:
+        return None
     up = np.asarray((level > LEAST_LEVEL).all(axis=1))
     runs = np.flatnonzero(np.convolve(up, np.ones(SETTLING), "valid") == SETTLING)
     if not len(runs):

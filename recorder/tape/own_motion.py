@@ -19,10 +19,10 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.recorder.tape.carrier import ROWS_AT_ONCE
 
 STATED_CYCLES = 1.0  # an axis that moves by less is stated
 OWN_CYCLES = 0.5  # an axis that moves by less has no motion of its own
-ROWS_AT_ONCE = 8
 MAKES_CONTOUR = ("x", "y")  # a tool's depth and further axes stand in many programs
 
 

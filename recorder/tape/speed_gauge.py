@@ -15,9 +15,9 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import MotionFault
+from morfax.recorder.tape.carrier import ROWS_AT_ONCE
 from morfax.recorder.tape.format import TapeFormat
 
-ROWS_AT_ONCE = 8
 ROUNDED = 1e-9  # of the limit: a motion at the very limit is let through
 
 

@@ -43,7 +43,7 @@ CODECS: dict[str, tuple[str, str, dict[str, Any]]] = {
     "opus-64": ("OGG", "OPUS", {"compression_level": 0.9}),
 }
 STEREO = 2  # tracks of a file
-BLOCK_FRAMES = 32768
+BLOCK_FRAMES = 32768  # 0.7 s at 48 kHz
 
 
 def coded(blocks: Iterable[Frames], rate_hz: int, tracks: int, codec: str) -> Iterator[Frames]:

@@ -34,7 +34,7 @@ from morfax.motion.files import disk_full_fault, written_beside
 from morfax.recorder.sound.riff import make_plain
 from morfax.recorder.sound.source import open_sound, sidecar, text_of
 from morfax.recorder.sound.spool import Spool, medium
-from morfax.recorder.wear.codec import coded
+from morfax.recorder.wear.codec import BLOCK_FRAMES, coded
 from morfax.recorder.wear.settings import Wear, check
 from morfax.recorder.wear.signal import (
     Bandwidth,
@@ -58,7 +58,6 @@ from morfax.recorder.wear.timebase import (
     Tones,
 )
 
-BLOCK_FRAMES = 32768  # 0.7 s at 48 kHz
 END_FRAMES = 1e-3  # rounding of a place at the very end
 
 Frames = NDArray[np.float32]

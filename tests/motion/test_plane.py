@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from morfax.motion.plane import cross, direction, heading_of, left_of, meeting
+from morfax.motion.plane import cross, direction, heading_of, left_of, meeting, unit
 
 HEADINGS = st.floats(-3.14, 3.14)
 LENGTHS = st.floats(0.01, 100.0)
@@ -46,3 +46,8 @@ def test_lines_meet_where_both_come_by(
     met, way, its_way = np.array([3.0, -4.0]), direction(heading), 2 * direction(heading + turn)
     found = meeting(met - along * way, way, met + its * its_way, its_way)
     assert found == pytest.approx(met, abs=1e-9)
+
+
+def test_directions_of_length_1_and_one_of_none_stays() -> None:
+    assert unit(np.array([3.0, -4.0])) == pytest.approx([0.6, -0.8])
+    assert unit(np.array([[0.0, 0.0], [0.0, 2e-6]])).tolist() == [[0.0, 0.0], [0.0, 1.0]]

@@ -55,10 +55,8 @@ def with_a_result(page: Any) -> None:
     ran(page)
 
 
-def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
-    server: Server, page: Any, tmp_path: Path
-) -> None:
-    # 1. scale, lines, machine, cutter
+def set_a_cutter(page: Any) -> None:
+    """Set scale, lines, machine and cutter on the page; a cutter that is none is refused."""
     page.fill("#field--width", "80mm")
     page.press("#field--width", "Enter")
     page.wait_for_selector("text=80.0 ×")
@@ -70,7 +68,13 @@ def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
     page.fill("#field--cutter", "2mm")
     page.press("#field--cutter", "Enter")
     page.wait_for_selector("#command:has-text('--cutter 2mm')")
-    # 2. run and save
+
+
+def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
+    server: Server, page: Any, tmp_path: Path
+) -> None:
+    # 1. run and save
+    set_a_cutter(page)
     page.select_option("#pace", "0.1")  # so slow that the run is seen
     page.click("#run-button")
     page.wait_for_selector("#stop:not([disabled])")
@@ -85,7 +89,7 @@ def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
     for kind in ("run", ".dxf"):
         page.select_option("#command-kind", kind)
         typed.append(page.inner_text("#command"))
-    # 3. the same commands, typed
+    # 2. the same commands, typed
     shutil.copy(server.folder / "bracket.png", tmp_path)
     for command in typed:
         morfax(tmp_path, command)

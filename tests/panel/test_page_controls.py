@@ -82,6 +82,20 @@ def rows(page: Any) -> list[str]:
     return found
 
 
+def runs_as_the_page_did(server: Server, page: Any, folder: Path) -> list[np.ndarray]:
+    """Run the page and its command; both write the same. The lines that were cut, (n, 2) mm each."""
+    typed = command(page)
+    assert typed.count("--arrow") == 2
+    run_through(page)
+    shutil.copy(server.folder / "plate.png", folder)
+    morfax(folder, typed)
+    for name in ("plate.wav", "plate.traced.csv", "plate.json"):
+        made = (server.folder / "plate.panel" / name).read_bytes()
+        assert made == (folder / "plate.panel" / name).read_bytes(), name
+    runs = read_path(folder / "plate.panel" / "plate.traced.csv").runs()
+    return [run[:, :2] for run in runs]
+
+
 def test_order_and_arrows_are_dragged_and_the_command_does_the_same(
     server: Server, page: Any, tmp_path: Path
 ) -> None:
@@ -114,17 +128,7 @@ def test_order_and_arrows_are_dragged_and_the_command_does_the_same(
     page.keyboard.press("Enter")
     page.wait_for_selector("#arrows li:nth-child(2)", timeout=WAIT_MS)
     # 3. what the command does is what the page did
-    typed = command(page)
-    assert typed.count("--arrow") == 2
-    run_through(page)
-    shutil.copy(server.folder / "plate.png", tmp_path)
-    morfax(tmp_path, typed)
-    for name in ("plate.wav", "plate.traced.csv", "plate.json"):
-        made = (server.folder / "plate.panel" / name).read_bytes()
-        assert made == (tmp_path / "plate.panel" / name).read_bytes(), name
-    cut = [
-        run[:, :2] for run in read_path(tmp_path / "plate.panel" / "plate.traced.csv").runs()
-    ]
+    cut = runs_as_the_page_did(server, page, tmp_path)
     assert [round(float(np.ptp(run[:, 0]))) for run in cut] == [8, 10, 40]  # 3, 2, 1
     # the head is put down at the plainest place within two widths of the line, 1 mm
     assert np.hypot(*(cut[2][0] - (26, 30))) < 1.1

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
-from morfax.motion.plane import heading_of, left_of
+from morfax.motion.plane import heading_of, left_of, unit
 from morfax.motion.polyline import evenly
 from morfax.tracer.corrections.on_sheet import Stroke
 
@@ -165,7 +165,7 @@ class Easel:
         way = next_mm - end_mm
         if not np.hypot(*way) > 0:
             return None
-        ahead = way / np.hypot(*way)
+        ahead = unit(way)
         left = left_of(ahead)
         reach_mm = ASIDE_WIDTHS * self.pen.width_mm
         aside_mm = np.arange(-reach_mm, reach_mm, STEP_PX * self.pitch_mm)

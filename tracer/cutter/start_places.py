@@ -22,7 +22,7 @@ import numpy as np
 
 from morfax.motion import segments
 from morfax.motion.arrays import Array
-from morfax.motion.plane import cross, left_of
+from morfax.motion.plane import cross, left_of, unit
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
@@ -147,7 +147,7 @@ class _Path:
             return place, way, way
         before = self._at_mm(mm - BESIDE_MM)
         after = self._at_mm(mm + BESIDE_MM)
-        return place, _unit(place - before), _unit(after - place)
+        return place, unit(place - before), unit(after - place)
 
     def places(self, start_at: str | None, tool_mm: Array | None) -> Iterator[float]:
         """Places to begin at, the best first."""
@@ -188,10 +188,10 @@ class _Path:
         reach = round(1.0 / EVERY_MM)
         found = list[tuple[bool, float, float]]()
         for corner in segments.corners(line, CORNERS):
-            arrives = _unit(line[corner] - line[max(0, corner - reach)])
-            leaves = _unit(line[min(corner + reach, len(line) - 1)] - line[corner])
+            arrives = unit(line[corner] - line[max(0, corner - reach)])
+            leaves = unit(line[min(corner + reach, len(line) - 1)] - line[corner])
             turned = float(np.arctan2(cross(arrives, leaves), arrives @ leaves))
-            across = _unit(left_of(arrives + leaves))
+            across = unit(left_of(arrives + leaves))
             out = across if self._beside.left else -across
             foot = line[corner] + self._beside.radius_mm * out
             goes_round = (turned > 0) != self._beside.left
@@ -220,8 +220,3 @@ class _Path:
     def _at_mm(self, mm: float) -> Array:
         """Where the path is so far along, (2,) mm."""
         return at_places(self.points_mm, np.array([self._place(mm)]))[0]
-
-
-def _unit(way: Array) -> Array:
-    """A direction, of length 1."""
-    return np.asarray(way / max(float(np.hypot(*way)), 1e-12))

@@ -35,12 +35,12 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.cutter.contour import Beside, PathPlace
+from morfax.tracer.cutter.leads import CLEAR_MM
 from morfax.tracer.cutter.runs import Detour, FeedRate, LeadRun, PathRun
 from morfax.tracer.cutter.start_places import StartPlaces
 from morfax.tracer.following.line import Line
 from morfax.tracer.junctions.guides import GuideLine
 
-CLEAR_MM = 0.001  # a place is clear if it is no nearer to a contour than the radius less this
 # radii along a guide line: where it crosses a path later, it has come to another part; by trial
 OBLIQUE = 2.0
 

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import unit
 from morfax.tracer.drawing.spacing import CLEAR, Pairs
 
 Grey = NDArray[np.float32]
@@ -164,8 +165,7 @@ def _are_slits(share: Grey, pairs: Pairs) -> NDArray[np.bool_]:
 
 def _strokes(places: Array, shape: tuple[int, ...], beyond_px: float) -> Grey:
     """Strokes from place to place of each pair (n, 2, 2), and so far beyond."""
-    across = places[:, 1] - places[:, 0]
-    ways = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
+    ways = unit(places[:, 1] - places[:, 0])
     begins = places[:, 0] - beyond_px * ways
     stops = places[:, 1] + beyond_px * ways
     ends = np.stack([begins, stops], axis=1)

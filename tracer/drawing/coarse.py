@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.components import INK
+from morfax.tracer.drawing.contrast import DARKER
 
 Darkness = NDArray[np.float32]
 
@@ -40,7 +41,6 @@ FULL, BETWEEN = (
     0.75,
     0.03,
 )  # darkness; share of pixels that are neither paper nor ink, on a hard picture
-DARKER = 80.0  # percentile of the ink's pixels, as of the strokes whose contrast is 1 (see `contrast`)
 MOST_PX = 1 << 22  # of a sheet, before: large sheets are no coarse scans, and need the memory
 # pixels, as `noise.Within` says: a line of 1.5 looks 1.8 to 2.12 wide, one of 2 looks 2.16 or more; by trial
 SEEN_PX = 2.14

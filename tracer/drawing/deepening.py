@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.median import percentile
 from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
+from morfax.tracer.drawing.contrast import DARKER
 from morfax.tracer.drawing.noise import measured
 
 Darkness = NDArray[np.float32]
@@ -54,7 +55,6 @@ LEAST_MM, LEAST_PX = 2.0, 8  # as for ink: what is shorter is a speck; by trial
 LETTER_MM, TWICE = 1.0, 2.0
 SLENDER = 3.0  # times its breadth: a shorter patch is a blot
 BROAD, BROAD_PX = 2.0, 2.0  # usual widths and pixels: a broader patch is shade
-DARKER = 80.0  # percentile of a line's pixels: those that no edge makes lighter, as of ink
 FULL = 0.9  # a thin line may be as dark as ink and be seen pale behind the spot: it stays
 ROUNDS = 3  # each reaches what is half as dark: three reach an eighth
 

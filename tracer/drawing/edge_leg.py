@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.plane import cross, left_of, meeting
+from morfax.motion.plane import cross, left_of, meeting, unit
 
 BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
 NEARLY_PARALLEL = 0.1  # sine of the angle between legs that do not meet
@@ -33,7 +33,7 @@ class EdgeLeg(NamedTuple):
         rows = np.arange(first, last + 1) + at
         leg = places[rows % len(places)]
         origin, end = (leg[-1], leg[0]) if near < 0 else (leg[0], leg[-1])
-        along = (origin - end) / np.hypot(*(origin - end))
+        along = unit(origin - end)
         out = leg - origin
         u, v = out @ along, out @ left_of(along)
         from numpy.polynomial import polynomial
@@ -50,7 +50,7 @@ class EdgeLeg(NamedTuple):
         slope = float(np.sum(powers[1:] * self.across[1:] * u ** powers[:-1]))
         direction = self.along + slope * left
         beside = self.origin + u * self.along + float(np.sum(self.across * u**powers)) * left
-        return beside, direction / np.hypot(*direction)
+        return beside, unit(direction)
 
     def met(self, other: EdgeLeg) -> tuple[Array, Array, Array] | None:
         """Where two legs meet, and their directions there, towards the corner; None if they do not."""

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
+from morfax.motion.median import ONE_ABOVE
 from morfax.tracer.drawing.components import Patches, runs_of
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
@@ -39,7 +40,6 @@ from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
 
 # pixels: A3 at 600 dpi is the first; smaller sheets are kept as a whole, in floats
 LARGE_PX = 1 << 26
-NOISY = 84.13  # percentile one standard deviation above the median
 SAMPLE_PX = 1 << 20  # pixels that tell the noise of the paper
 SOFTENED = 1 / (2 * math.sqrt(math.pi) * SOFT_PX)  # of white noise, behind that spot
 HALO_PX = 8  # rows about a band that a spot sees
@@ -73,7 +73,7 @@ def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes, float]:
     look = _look(grey, by)
     paper = Paper.of_reduced(look.reduced, by, grey.shape[1], pitch_mm)
     sample = _sample(look, paper)
-    centre, darker = (float(v) for v in np.percentile(sample, [50.0, NOISY]))
+    centre, darker = (float(v) for v in np.percentile(sample, [50.0, ONE_ABOVE]))
     noise = darker - centre  # by the darker ones: scanners clip the white
     marked = _inked(grey, look, paper, max(LEAST_CONTRAST, centre + ABOVE_NOISE * noise))
     inked_px = TILE_PX**2 * int(np.count_nonzero(marked != PAPER))

@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import ROBUST, median, percentile
+from morfax.motion.median import OUTLIERS, ROBUST, median, percentile
 from morfax.tracer.drawing.paper_noise import PAPER, of_sheet
 from morfax.tracer.drawing.profiles import (
     FEWEST_PROFILES,
@@ -47,7 +47,6 @@ RIGHT_ON_IT = 25.0  # percentile of how wide lines look: there a pixel lies righ
 LEFT_OF_GRAIN = 0.5
 ASIDE_PX = 1.5  # to both sides profiles are put, as a line bends and its pixels lie
 LEAST_AHEAD_PX = 4.0  # a lens leaves nothing alike of two places so far apart
-OUTLIERS = 3.0  # robust standard deviations
 # darkness, softness and width settle to 1 % where a line is three times as wide as soft
 ROUNDS = 20
 # linear interpolation, over all places between pixels: variance of its kernel, share of white noise left

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import percentile
+from morfax.motion.median import ONE_ABOVE, percentile
 
 PAPER_SAMPLES = 1 << 16  # pixels of paper: they give its standard deviation to 1/360
 PAPER = 0.25  # lighter is paper, and nothing else is drawn there
-DARKER = 84.13  # percentile one standard deviation above the median
 
 
 def of_sheet(darkness: Any) -> float:
@@ -30,7 +29,7 @@ def paper_noise(sample: NDArray[np.float32]) -> float:
     paper = sample[sample < PAPER]
     if not len(paper):
         return math.nan
-    usual, darker = (percentile(paper, percent, np.float64) for percent in (50.0, DARKER))
+    usual, darker = (percentile(paper, percent, np.float64) for percent in (50.0, ONE_ABOVE))
     return darker - usual
 
 

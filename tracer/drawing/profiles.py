@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.motion.plane import unit
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.components import INK
@@ -71,8 +72,7 @@ def profiles_of(darkness: Kept) -> Profiles | None:
     if np.mean(thin) > HARD_SHARE:
         for k in (0, 1):
             ends[k][thin] = _slope(darkness, places[thin, :, k], THIN_PX)
-    across = ends[0] - ends[1]
-    across /= np.maximum(np.hypot(*across.T), 1e-9)[:, None]
+    across = unit(ends[0] - ends[1])
     met = places[:, :, 1] - places[:, :, 0]
     length_px = np.hypot(*met.T)
     facing = np.abs(np.sum(met * across, axis=1)) / length_px

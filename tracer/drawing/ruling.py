@@ -32,6 +32,7 @@ from morfax.motion.faults import DrawingFault
 from morfax.motion.plane import left_of
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
+from morfax.tracer.drawing.contrast import DARKER
 from morfax.tracer.drawing.tiles import Kept, Tiles
 
 Darkness = NDArray[np.float32]
@@ -53,7 +54,6 @@ EDGE = 0.03  # of the sheet's length: printed lines are there at both ends
 EDGE_LOST = 0.25  # of them may leave the sheet at a side, or lie under a shadow
 # printed paper has ink in so many of 8 x 8 tiles, 1 % of the pixels
 TILES, INK_OVER, INK_IN = 8, 0.9, 0.01
-DARKER = 80.0  # percentile of the darkness of printed lines: drawn ink covers the smaller part
 EXCESS = 0.35  # of ink's darkness: noise is no ink on a printed line
 SAMPLES = 50_000  # pixels of ink that tell the tilt
 FILL_DEG = (

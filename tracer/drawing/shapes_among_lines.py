@@ -28,7 +28,7 @@ from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
 from morfax.tracer.drawing.shapes import SOFT_PX, outlined, shade_of
-from morfax.tracer.drawing.solids import FINEST_PX, usual_width_px
+from morfax.tracer.drawing.solids import usual_width_px
 
 BLACK = 255.0  # grey levels between paper and shape
 BROADEST_MM = 2.0  # of a line: the broadest of ISO 128-2
@@ -86,7 +86,7 @@ def has_lines(drawing: Drawing) -> bool:
     if usual_px * drawing.pitch_mm > BROADEST_MM:
         return False
     ridge = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)))
-    widths_px = np.maximum(2 * depth[ridge] - 1, FINEST_PX)
+    widths_px = 2 * depth[ridge] - 1
     return bool(np.mean(np.abs(widths_px - usual_px) < ALIKE * usual_px + 1) > MOST)
 
 

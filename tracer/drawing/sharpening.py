@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import unit
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing.edge_leg import EdgeLeg
@@ -257,7 +258,7 @@ def _rounded(fit: _Fit, softness_px: float) -> Array:
         return fit.vertex[None]
     t, w = fit.t, fit.w
     between = t + w
-    inward = -between / np.hypot(*between)
+    inward = -unit(between)
     turns = math.copysign(math.pi - fit.angle, t[1] * w[0] - t[0] * w[1])
     shares = np.linspace(-0.5, 0.5, 3 + math.ceil(abs(turns) * radius_px))
     outward = math.atan2(-inward[1], -inward[0]) + turns * shares

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import unit
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
@@ -71,8 +72,7 @@ def _ends(stroke: Stroke, drawing: Drawing) -> list[End]:
     for place in places[:2]:  # the likeliest are first
         away = stroke.middles_mm - place
         near = np.hypot(*away.T) < INWARD_WIDTHS * stroke.width_mm
-        inward = away[near].mean(axis=0)
-        outward = -inward / max(float(np.hypot(*inward)), 1e-9)
+        outward = -unit(away[near].mean(axis=0))
         ends.append(End(_tip_mm(place, outward, stroke.width_mm, drawing), outward))
     return ends
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.tracer.drawing.png_rows import AT_ONCE
 from morfax.tracer.drawing.scan import darkest
 
 if TYPE_CHECKING:
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
 Bytes = NDArray[np.uint8]
 
-AT_ONCE = 1 << 22  # bytes that are unpacked at a time
 TIFF_PACKED = {1, 2, 3, 4, 5, 8, 32773, 32946}  # Pillow unpacks a part of such a file alone
 COMPRESSION, STRIPS, STRIP_BYTES, STRIP_ROWS = 259, 273, 279, 278
 TILE_WIDTH, TILE_HEIGHT, TILES, TILE_BYTES = 322, 323, 324, 325

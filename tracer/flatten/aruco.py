@@ -16,6 +16,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
+from morfax.motion.plane import unit
 from morfax.tracer.flatten.edges import Picture, crossings
 from morfax.tracer.flatten.fit import Fit, Sightings, fitted, homography_of
 from morfax.tracer.flatten.layout import (
@@ -125,7 +126,7 @@ def _bar_end(
         )
         across = beyond - at
         reach_px = float(np.median(np.hypot(*across.T)))
-        outward = across / np.hypot(*across.T)[:, None]
+        outward = unit(across)
         seen = crossings(picture, at, outward, reach_px).places_px
         if len(seen) < len(ups) / 2:
             return None
@@ -170,7 +171,7 @@ def _edges(picture: Picture, corners_mm: Array, corners_px: Array) -> Sightings 
 
 def _normal(a: Array, b: Array, inside: Array) -> Array:
     """Unit vector square to the way from a to b, away from a place inside."""
-    x, y = (b - a) / np.hypot(*(b - a))
+    x, y = unit(b - a)
     normal = np.array([y, -x])
     return normal if normal @ (a - inside) > 0 else -normal
 

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST
+from morfax.motion.plane import unit
 from morfax.tracer.flatten.edges import Picture, crossings, light_at
 from morfax.tracer.flatten.fit import Sightings
 
@@ -73,7 +74,7 @@ def sides(picture: Picture, corners_px: Array) -> list[tuple[Array, Array]] | No
     for k in range(4):
         a = corners_px[k]
         b = corners_px[(k + 1) % 4]
-        way = (b - a) / np.hypot(*(b - a))
+        way = unit(b - a)
         outward = np.array([way[1], -way[0]])
         outward = outward if outward @ (a - middle) > 0 else -outward
         long = float(np.hypot(*(b - a)))
@@ -162,8 +163,7 @@ def _four_sides(polygon: Array) -> Array | None:
     if not np.isfinite(corners).all():
         return None
     corners_px = np.array(corners)
-    ways = np.roll(corners_px, -1, axis=0) - corners_px
-    ways /= np.maximum(np.hypot(*ways.T), 1e-9)[:, None]
+    ways = unit(np.roll(corners_px, -1, axis=0) - corners_px)
     if (np.abs((ways * np.roll(ways, 1, axis=0)).sum(axis=1)) > SQUARE_COS).any():
         return None
     return clockwise(corners_px)
@@ -188,7 +188,7 @@ def _clearness(small: Picture, corners_px: Array) -> float:
     for k in range(4):
         a = corners_px[k]
         b = corners_px[(k + 1) % 4]
-        way = (b - a) / np.hypot(*(b - a))
+        way = unit(b - a)
         outward = np.array([way[1], -way[0]])
         outward = outward if outward @ (a - middle) > 0 else -outward
         on = a + np.linspace(0.04, 0.96, 40)[:, None] * (b - a)

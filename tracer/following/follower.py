@@ -57,7 +57,7 @@ from morfax.tracer.tangles.memory import Tangles
 
 # the share of a change of a clean line's width that the head takes over at once; by trial
 SWELLS = 0.5
-AWAY_LEADS, AWAY_WIDTHS = 4.0, 3.0  # the head is away from home after this travel
+AWAY_LEADS = 4.0  # the head is away from home after this travel
 
 Before = Callable[["Follower"], Followed | None]
 
@@ -76,8 +76,7 @@ class Follower(RunEnds):
         self.carriage = Carriage(stance, settings, rate_hz)
         self._tangles = Tangles()
         self._agreement = Agreement(by_stations=turns.by_stations)
-        by_lead_mm = AWAY_LEADS * self.carriage.tuning.lead_mm
-        self._home = WayHome(stance, max(by_lead_mm, AWAY_WIDTHS * self.view.width_mm))
+        self._home = WayHome(stance, AWAY_LEADS * self.carriage.tuning.lead_mm)
         self._aim(stance.leg_ahead())
 
     @property

@@ -14,8 +14,9 @@ from __future__ import annotations
 import numpy as np
 
 from morfax.tracer.head.slow_cell import rough_mm
-from morfax.tracer.junctions.corner import SLIGHT, Corner
+from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.junctions.felt_corner import FeltCorner
+from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import View
 
 REACH_WIDTHS = 1.5  # of the line's width about a place: there a pen that turns leaves other ink
@@ -45,6 +46,6 @@ def hides_corner(view: View, felt: FeltCorner) -> bool:
     near, *usual = (Patch.about(view, at, reach_mm, pen).misfit(places) for at in around)
     # 2. less will do where the legs meet at a clear angle
     corner = Corner.of(incoming, outgoing)
-    if corner is None or corner.nearest_mm <= view.step_mm or corner.deflection_rad <= SLIGHT:
+    if corner is None or corner.nearest_mm <= view.step_mm or corner.deflection_rad <= STRAIGHT:
         return near > WORSE * min(usual)
     return near > WORSE_AT_ANGLE * min(usual)

@@ -21,7 +21,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.motion.plane import heading_of
+from morfax.motion.plane import heading_of, unit
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
@@ -81,7 +81,7 @@ def _deviations_mm(view: View, place_mm: Array, heading: float) -> tuple[float, 
     if len(seen) * view.step_mm < FELT * PIECE_MM:
         return None
     chord = seen[-1, :2] - seen[0, :2]
-    along = chord / np.hypot(*chord)
+    along = unit(chord)
     left = np.array([-along[1], along[0]])
     x, y = seen[:, :2] @ along, seen[:, :2] @ left
     x, y = x - x.mean(), y - y.mean()

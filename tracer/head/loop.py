@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings
+from morfax.motion.plane import unit
 from morfax.motion.polyline import lengths_by_blocks
 
 # Chosen by trial on the test drawings.
@@ -124,5 +125,4 @@ def _headings(places: Array) -> Array:
     """Unit vectors along a way, from the places about each."""
     if len(places) < 2:
         return np.zeros((len(places), 2))
-    steps = np.gradient(places, axis=0)
-    return np.asarray(steps / np.maximum(np.hypot(*steps.T), 1e-12)[:, None])
+    return unit(np.gradient(places, axis=0))

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,35 +31,42 @@ from morfax.tracer.sensing.view import View
 OF_DRIVE = "drive_"  # the names of the drives' settings begin so
 
 # The head's own sizes: so many mm, widths of the line and pixels. Chosen by trial on the test drawings.
-WINDOW_MM, WINDOW_WIDTHS, WINDOW_PX = 0.35, 0.6, 7  # half the window of the parabola
-POINT_MM, POINT_PX = 0.12, 1.2  # from the axis to the point that it steers for
+WINDOW_MM, WINDOW_WIDTHS = 0.35, 0.6  # half the window of the parabola
+POINT_MM = 0.12  # from the axis to the point that it steers for
 LEAD_SWEEPS = 2  # beyond window and point: a place is on the drum before the window needs it
-SWING_WIDTHS, SWING_PX = 0.6, 1.5  # amplitude of the sweep
-EDGE_SWING_WIDTHS, EDGE_SWING_PX = (
-    0.25,
-    1.2,
-)  # on an edge: a shorter swing hears less noise for its slope
-EDGE_WINDOW_PX, EDGE_POINT_PX = (
-    2,
-    0.6,
-)  # an edge is as sharp as the lens: fewer pixels than a line's two edges need
-EDGE_NARROWEST_RAD = 0.45
-EDGE_GUARD_PX, EDGE_GUARD_AHEAD_PX = 1.6, 0.6
-EDGE_STATIONS = 3  # along which an edge is measured: it may bend more than a line
 SWING_ALONG = 0.1  # of the amplitude: lengthwise half-axis of the eccentric pin's ellipse
-GUARD_MM, GUARD_PX = 0.17, 2  # from the line's edge to a guard cell beside it
-GUARD_AHEAD_MM, GUARD_AHEAD_PX = 0.15, 1.5  # from the swinging cell to the guard cells
+GUARD_MM = 0.17  # from the line's edge to a guard cell beside it
+GUARD_AHEAD_MM = 0.15  # from the swinging cell to the guard cells
 LOOK_AHEAD_MM = 1.0  # from the swinging cell to cell 102
 # that a line may turn within half the window: a parabola still follows that
 TIGHTEST_RAD = 0.23
-NARROWEST_RAD = 0.36
-NARROW_LEGS = (
-    0.3  # of a leg's length: half of the narrowest window, which averages as stations do
-)
+NARROW_LEGS = 0.3  # of a leg: half of the narrowest window, which averages as stations do
 LEAST_SWEEP_PERIODS = 8  # fewer tell no fundamental
 
+
+class HeadSizes(NamedTuple):
+    """What differs between the head on a line and the head on an edge; pixels where the scan is coarse."""
+
+    window_px: float  # half the window of the parabola, at least
+    point_px: float  # from the axis to the point that it steers for, at least
+    swing_widths: float  # amplitude of the sweep, widths of the line
+    swing_px: float  # and at least
+    guard_widths: float  # from the middle to the line's edge, beyond which the guard cells are
+    guard_px: float  # from there to a guard cell, at least
+    guard_ahead_px: float  # from the swinging cell to the guard cells, at least
+    narrowest_rad: float  # that a line turns within the narrowest window
+    stations: (
+        int  # along which the characteristic is measured: an edge may bend more than a line
+    )
+
+
+LINE = HeadSizes(7, 1.2, 0.6, 1.5, 0.5, 2, 1.5, 0.36, 8)
+# an edge is as sharp as the lens: fewer pixels than a line's two edges need, and a shorter swing hears less
+# noise for its slope
+EDGE = HeadSizes(2, 0.6, 0.25, 1.2, 0.0, 1.6, 0.6, 0.45, 3)
+
 CALIBRATED_ASIDE = 0.1  # of the line's width: the fundamental's slope is measured between these
-CALIBRATED_SAMPLES, CALIBRATED_STATIONS = 24, 8
+CALIBRATED_SAMPLES = 24
 LEAST_SLOPE_PER_MM = 0.2  # so that a pale line does not make the head wild
 
 
@@ -198,19 +205,15 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     """What the kernels need to follow the line under a stance."""
     width, pitch = stance.view.width_mm, stance.view.pitch_mm
     # 1. sizes, where the settings leave them to the line
-    on_edge = stance.view.on_edge
-    window_px, point_px = (EDGE_WINDOW_PX, EDGE_POINT_PX) if on_edge else (WINDOW_PX, POINT_PX)
-    half_window = max(WINDOW_MM + WINDOW_WIDTHS * width, window_px * pitch)
-    point = max(POINT_MM, point_px * pitch)
+    sizes = EDGE if stance.view.on_edge else LINE
+    half_window = max(WINDOW_MM + WINDOW_WIDTHS * width, sizes.window_px * pitch)
+    point = max(POINT_MM, sizes.point_px * pitch)
     sweeps_mm = LEAD_SWEEPS * settings.speed_mm_s / settings.sweep_hz
     lead = settings.lead_mm or half_window + point + sweeps_mm
-    widths, pixels = (EDGE_SWING_WIDTHS, EDGE_SWING_PX) if on_edge else (SWING_WIDTHS, SWING_PX)
-    amplitude = settings.amplitude_mm or max(widths * width, pixels * pitch)
-    guard = 0.5 * width + max(GUARD_MM, GUARD_PX * pitch)
-    ahead_px, narrowest_rad = GUARD_AHEAD_PX, NARROWEST_RAD
-    if on_edge:
-        narrowest_rad = EDGE_NARROWEST_RAD
-        guard, ahead_px = max(GUARD_MM, EDGE_GUARD_PX * pitch), EDGE_GUARD_AHEAD_PX
+    swing = max(sizes.swing_widths * width, sizes.swing_px * pitch)
+    amplitude = settings.amplitude_mm or swing
+    guard = sizes.guard_widths * width + max(GUARD_MM, sizes.guard_px * pitch)
+    guard_ahead = max(GUARD_AHEAD_MM, sizes.guard_ahead_px * pitch)
     # 2. the detector's characteristic, as measured on the line
     slope, mean, balance = _calibrate(stance, amplitude)
     # 3. gains per period
@@ -230,12 +233,12 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         point_mm=point,
         half_window_mm=half_window,
         narrow_mm=min(half_window, NARROW_LEGS * stance.view.leg_mm),
-        narrowest_per_mm=narrowest_rad / (NARROW_LEGS * stance.view.leg_mm),
+        narrowest_per_mm=sizes.narrowest_rad / (NARROW_LEGS * stance.view.leg_mm),
         tightest_per_mm=TIGHTEST_RAD / half_window,
         amplitude_mm=amplitude,
         along_mm=SWING_ALONG * amplitude,
         guard_mm=guard,
-        guard_lead_mm=lead + max(GUARD_AHEAD_MM, ahead_px * pitch),
+        guard_lead_mm=lead + guard_ahead,
         look_ahead_mm=settings.look_ahead_mm or lead + LOOK_AHEAD_MM,
         slope_per_mm=slope,
         mean=mean,
@@ -259,7 +262,7 @@ def _pin(periods: int) -> Array:
 
 def tuned_along(view: View) -> int:
     """The number of stations along which a line or an edge is measured."""
-    return EDGE_STATIONS if view.on_edge else CALIBRATED_STATIONS
+    return (EDGE if view.on_edge else LINE).stations
 
 
 def _calibrate(stance: Stance, amplitude_mm: float) -> tuple[float, float, float]:

@@ -44,8 +44,9 @@ from morfax.tracer.sensing.view import View
 # Chosen by trial on the test drawings.
 # so far beside what was felt the cell has kept to the way: the largest of these, ...
 KEEPS_WIDTHS, KEEPS_PX = 0.02, 0.2
-# ... but a line of few pixels, whose pixels were parted, may be seen so far off: the smaller of these
-KEEPS_FINE_WIDTHS, KEEPS_FINE_MM = 0.12, 0.017
+KEEPS_FINE_MM = (
+    0.017  # ... or this: so far off a line of few pixels may be seen, whose pixels were parted
+)
 # grain moves the middle of a pencil's or dry pen's ink by 3 to 5 % of its width (standard deviation), over
 # more of the line than its stations show: twice that
 KEEPS_GRAINY_WIDTHS = 0.08
@@ -109,9 +110,8 @@ def keeps_mm(view: View, seen: Array) -> float:
 
     Both edges are as rough as each other, so that the middle is half as rough as the width.
     """
-    fine_mm = min(KEEPS_FINE_WIDTHS * view.width_mm, KEEPS_FINE_MM)
     widths = KEEPS_GRAINY_WIDTHS if view.grainy else KEEPS_WIDTHS
-    by_view_mm = max(widths * view.width_mm, KEEPS_PX * view.pitch_mm, fine_mm)
+    by_view_mm = max(widths * view.width_mm, KEEPS_PX * view.pitch_mm, KEEPS_FINE_MM)
     return max(by_view_mm, KEEPS_ROUGH * rough_mm(seen))
 
 

@@ -26,7 +26,7 @@ from morfax.tracer.ink.lifted import FARTHEST_WIDTHS
 from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed, without_waist
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
 from morfax.tracer.sensing.view import View
 
@@ -34,7 +34,7 @@ from morfax.tracer.sensing.view import View
 # widths: legs of a wider junction are taken from further off, by a share of its size, and longer
 WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
 # of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it
-NARROWER, TOGETHER = 0.8, math.radians(25)
+NARROWER = 0.8
 SOLVED_AGAIN = 5  # times at most, with more lines
 
 
@@ -255,7 +255,7 @@ class Junctions:
                 other.width_mm
                 for other in there.legs
                 if other.width_mm < wide_mm
-                and abs(turn(leg.heading_rad, other.heading_rad + math.pi)) < TOGETHER
+                and abs(turn(leg.heading_rad, other.heading_rad + math.pi)) < TURNS_OFF
             ]
             if len(onward) != 2:
                 return None

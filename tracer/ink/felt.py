@@ -25,7 +25,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.median import ROBUST, median
 from morfax.motion.polyline import lengths_mm
+from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.ink.run import Run, smooth
+from morfax.tracer.junctions.rings import CHORD, SKIPPED
+from morfax.tracer.sensing.leg import TURNS_OFF
 from morfax.tracer.sensing.ray import edges
 from morfax.tracer.sensing.scout import CLEAN, CLEAN_PX, LEAP, LEAP_PX, SPECK_MM, SPECK_PX
 from morfax.tracer.sensing.view import View
@@ -38,9 +41,6 @@ GUIDED_WIDTHS = 0.75  # to either side of a place: what its heading is taken ove
 ROUGHER = 2.5  # standard deviations of a rough line's own width: so far a station may differ
 FEWEST_STATIONS, LEAST_WIDTHS = 5, 0.8  # of a clean run
 MARGIN = 2  # stations at the ends of a run that may have felt what ends it
-CORNER = math.radians(20)  # turned between the chords before and after a corner, and ...
-SUDDEN = math.radians(14)  # ... by so much more than before and behind it
-CHORD, SKIPPED = 7, 3  # stations of a chord, and between the chords and the corner
 MEANT = 2.0  # lengths of a leg: a longer line's own width counts, and not its neighbours'
 # a part at an end of the ink that is as long is line, however it tapers, if so much of it has two edges
 TAPERED_WIDTHS, FELT_SHARE = 1.0, 0.7
@@ -215,9 +215,9 @@ def _corners(places: Array) -> list[int]:
     found = []
     while len(sudden):
         k = int(np.argmax(sudden))
-        if sudden[k] < SUDDEN:
+        if sudden[k] < SMOOTH:
             break
-        if abs(turned[k]) > CORNER:
+        if abs(turned[k]) > TURNS_OFF:
             found.append(int(middle[k]))
         sudden[max(0, k - 2 * reach) : k + 2 * reach] = 0.0
     return sorted(found)

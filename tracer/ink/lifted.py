@@ -32,6 +32,7 @@ from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.pen import INKED, ink_at
 from morfax.tracer.tangles.sketch import softness_of
+from morfax.tracer.tangles.tangle import DARKEST
 
 # All limits below were chosen by trial on drawings of two lines and of nets.
 FOOT_WIDTHS, FOOT_MM = 4.0, 1.0  # as far ahead a line that bends ends on others; both together
@@ -49,7 +50,6 @@ ROUNDS = 3  # in which lines that end in each other's ink have their ends found
 WAY_MM = 0.05  # between places of a line that may be the others' ink
 FEWEST = 8  # stations of a leg tell how soft its edges are
 EVERY_PX = 0.7  # a place is looked at
-DARKEST = 1.05  # of the line's darkness: a place counts for no more
 # of the line's darkness: no pen leaves its ink more exactly; and deviations, for places share what they see
 INEXACT, DEVIATIONS = 0.05, 5.0
 PAPER = 1.0  # place that is paper, and inked by the line: it does not go on

@@ -26,7 +26,7 @@ from morfax.tracer.ink.felt import FEWEST_STATIONS, Parted, whole
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
 
@@ -41,7 +41,7 @@ COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
 # the middle of a line that hangs together with nothing: a shorter one is a speck or a dot; the larger
 LEAST_MM, SPECK_WIDTHS = 0.7, 1.0
 TRIMMED_SHARE = 0.3  # of a run is left out at an end at most
-WAIST_WIDTHS, WAIST_RAD = 8.0, math.radians(20)  # a longer one, or one that turns more, is line
+WAIST_WIDTHS = 8.0  # a longer one, or one that turns more, is line
 FACING = math.radians(35)  # ends whose headings are so near to one line face each other
 ASIDE = 0.6  # widths: and miss each other by no more
 
@@ -264,7 +264,7 @@ def without_waist(line: FeltLine, last: bool) -> None:
         legs = (
             (run.leg_in(), onward.leg_out()) if not last else (onward.leg_in(), run.leg_out())
         )
-        is_straight = abs(turn(legs[0].heading_rad, legs[1].heading_rad)) < WAIST_RAD
+        is_straight = abs(turn(legs[0].heading_rad, legs[1].heading_rad)) < TURNS_OFF
         is_short = run.length_mm < WAIST_WIDTHS * line.width_mm
         is_broad = median(run.widths_mm) > BROADER * median(onward.widths_mm)
         if not (is_straight and is_short and is_broad and len(onward) > len(run)):

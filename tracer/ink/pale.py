@@ -22,14 +22,13 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
-from morfax.tracer.drawing.deepening import SPARSE, SPOT_PX, STRIPS, shaded
+from morfax.tracer.drawing.contrast import ABOVE_NOISE
+from morfax.tracer.drawing.deepening import LEAST, SPARSE, SPOT_PX, STRIPS, shaded
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
-ABOVE_NOISE = 6.0  # standard deviations of the paper, as for ink (see `drawing.drawing`)
 # of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
-LEAST = 0.15
 STRIP_PX = 24  # high: strips of the sheet that tell its noise
 # percentiles one standard deviation apart; ink and its rims are above the middle
 LOW_AND_MIDDLE = 15.87, 50.0

@@ -25,8 +25,11 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
+from morfax.motion.plane import unit
 from morfax.motion.polyline import at_lengths, lengths_mm
+from morfax.motion.segments import SAME_PLACE_MM
 from morfax.tracer.ink.run import Run
+from morfax.tracer.sensing.parabola import FEWEST
 
 # All limits below were chosen by trial on drawings of nets.
 ALONG_COS = 0.94  # 20 degrees: a stretch that goes another way is not this line's
@@ -40,13 +43,11 @@ AVERAGED, FADES = 2.0, 1.0  # widths of the line
 SLACK = 0.12  # of the line's width: where two lines cross, the rims of their ink are felt so much too near
 # widths: nearer to the middle of its ink a line crosses another, and its rim is none
 NOTCH = 0.1
-FEWEST = 8  # places that tell a bend
 EXACT_MM = 0.03  # a rim, felt every `EVERY_MM`: neighbours err alike
 # deviations: of the heading of a leg at its end, rad; 16 times of how far a way bulges
 TURNED, HUMP_MM = 0.01, 1.0
 FITS = 0.8  # of the places are as near to their rims as these are exact
 AGAIN = 6  # times weights are found anew
-SAME_MM = 1e-6  # ends of one way
 EVERY_MM = 0.05  # a way is looked at
 
 
@@ -72,7 +73,7 @@ class SharedInk(NamedTuple):
             other
             for other in self.ways
             if min(np.abs(other[[0, -1]] - ends).max(), np.abs(other[[-1, 0]] - ends).max())
-            > SAME_MM
+            > SAME_PLACE_MM
         ]
 
 
@@ -174,7 +175,7 @@ def _bent(some: Array, share: Array, off: _Off) -> Array:
     Least squares, to which the headings at its ends belong; a place that is far off counts less.
     """
     ways = np.gradient(some, axis=0)
-    to_left = np.column_stack([-ways[:, 1], ways[:, 0]]) / np.hypot(*ways.T)[:, None]
+    to_left = unit(np.column_stack([-ways[:, 1], ways[:, 0]]))
     wanted = off.aside * np.sum(off.normals * to_left, axis=1)
     if off.sure.sum() < FEWEST:
         return np.zeros_like(some)

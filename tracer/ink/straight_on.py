@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import unit
 from morfax.motion.polyline import length_mm
 from morfax.tracer.ink.doubled import SHARED, TWO
 from morfax.tracer.ink.felt import usual_width_mm
@@ -86,8 +87,7 @@ class StraightOn:
         run = self.felt[number]
         places = run.places_mm[::-1] if last else run.places_mm
         far = min(len(places) - 1, round(AWAY_WIDTHS * run.view.width_mm / run.view.step_mm))
-        chord = places[far] - places[0]
-        return np.asarray(chord / max(float(np.hypot(*chord)), 1e-9))
+        return unit(places[far] - places[0])
 
 
 def of_two_lines(

@@ -22,6 +22,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median, weighted_median
+from morfax.motion.plane import unit
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
@@ -254,7 +255,7 @@ def _beside(places: Array, aside_mm: float) -> tuple[Array, Array]:
         return places, places
     ways = np.gradient(places, axis=0)
     normals = np.column_stack([-ways[:, 1], ways[:, 0]])
-    aside = aside_mm * normals / np.maximum(np.hypot(*normals.T), 1e-9)[:, None]
+    aside = aside_mm * unit(normals)
     return places + aside, places - aside
 
 

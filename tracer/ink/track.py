@@ -27,6 +27,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.following.felt_line import bare_from_mm, bare_stretch
+from morfax.tracer.following.follower import SWELLS
 from morfax.tracer.head import course
 from morfax.tracer.head.carriage import CHUNK, Carriage
 from morfax.tracer.head.leaders import STATIONS, Led
@@ -53,7 +54,6 @@ NEAR_MM = 2.0  # a head further from a leg's end is before it, however the line 
 BEYOND_LEADS = 0.5  # leads: a piece that is no longer beyond its lead is run from memory
 STRAYED = 0.3  # widths: a head so far beside what was felt has left the line
 LOOKED_AT = 60  # one position in so many is held against what was felt
-SWELLS = 0.5  # the share of a change of a line's width that the head takes over at once
 SLOWLY_LEGS = 3.0  # the cell goes on by itself for so many legs, then fast again
 PAST_MM = 0.3  # stations lead beyond a stub, until its ink no longer draws the cell
 NEVER_HOME = Home(0.0, 0.0, 0.0, math.inf)

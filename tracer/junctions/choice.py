@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.junctions.rings import legs_around
@@ -34,7 +35,6 @@ from morfax.tracer.sensing.view import View
 SQUARE = math.radians(
     20
 )  # two legs within this of one line are the line that the head comes to
-PASSES = math.radians(12)  # two legs within this of one line are a line that passes
 BESIDE = 0.35  # of the width: they lie on one line
 # widths ahead where a line is sought that turns back to a side: at first its ink runs along with the way in
 SIDEWAYS_WIDTHS = (0.0, 1.0, 2.0)
@@ -243,7 +243,7 @@ class _Survey:
             gap = b.end_mm - a.end_mm
             aside = abs(gap[0] * math.sin(a.heading_rad) - gap[1] * math.cos(a.heading_rad))
             own = min(abs(self._turn(leg)) for leg in (a, b))
-            if bent < PASSES and aside < BESIDE * self.view.width_mm and own > bent + PASSES:
+            if bent < SMOOTH and aside < BESIDE * self.view.width_mm and own > bent + SMOOTH:
                 taken += [a, b]
         return [leg for leg in legs if not _is_among(leg, taken)]
 

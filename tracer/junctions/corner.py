@@ -25,12 +25,11 @@ from morfax.motion.arrays import median as median_of
 from morfax.motion.compiled import njit
 from morfax.motion.curves import hermite
 from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto, through_nodes
-from morfax.tracer.sensing.leg import Leg, meet, turn
+from morfax.tracer.sensing.leg import STRAIGHT, Leg, meet, turn
 from morfax.tracer.sensing.ray import edge_along, edges
 from morfax.tracer.sensing.view import View
 
 HIDDEN = 8  # stations at a corner between those that its legs are felt by
-SLIGHT = math.radians(40)  # a turn up to this goes straight on at a junction
 HIDES = 0.7  # of the width: a pen that turned on the vertex inks half of it on the outside
 SHARP = 0.08  # of the line's width: a corner that misses less ink on the outside is sharp
 ACROSS = 0.15  # of the width: the edge is found on rays so far to either side of the bisector
@@ -203,7 +202,7 @@ def missing_ink_mm(view: View, corner: Corner) -> float:
 
 def hides_outside(view: View, corner: Corner) -> bool:
     """Whether another line leaves on the outside of a slight turn: there is more ink than a corner's."""
-    if corner.deflection_rad >= SLIGHT:
+    if corner.deflection_rad >= STRAIGHT:
         return False
     return not _edge_mm(view, corner, 1) < HIDES * corner.incoming.width_mm
 

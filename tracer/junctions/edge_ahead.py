@@ -29,11 +29,11 @@ from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.sharpening import APART_PX, PutBack, corners_of
-from morfax.tracer.head.course import FELT_LEGS, SMOOTH
+from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.leaders import MEMORY, STATIONS
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.sensing.edge_scout import CIRCLE_PX
-from morfax.tracer.sensing.leg import Leg, centre_at, turn
+from morfax.tracer.sensing.leg import Leg, centre_at
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on filled shapes.
@@ -42,7 +42,6 @@ AVERAGED_RAD = (
 )
 LEAST_AVERAGED_PX = 1.6  # half of that length at least
 NODES = 3  # within that half
-LEAST_NODES = 4  # stations to either side
 TIP_STATIONS, TIP_RAD = (
     4,
     math.radians(100),
@@ -137,7 +136,7 @@ class EdgeAhead:
     def _between(self, first: int, last: int) -> list[Node]:
         """Places from one station to another, averaged over the stations between these."""
         nodes, at = list[Node](), first
-        while last - first >= LEAST_NODES:
+        while last > first:
             leg, half_mm = self._averaged(at, first, last)
             nodes.append(Node(at, leg))
             if at == last:
@@ -149,7 +148,7 @@ class EdgeAhead:
         """The edge at a station, and half of the length that it is averaged over, mm."""
         half_mm = FELT_LEGS * self.view.leg_mm
         for _ in range(2):
-            reach = max(LEAST_NODES, math.ceil(half_mm / self.view.step_mm))
+            reach = math.ceil(half_mm / self.view.step_mm)
             begin = max(first, at - reach)
             end = min(last, at + reach) + 1
             seen = self.felt[begin:end].copy()
@@ -224,7 +223,7 @@ class EdgeAhead:
                 into, out = (heading_of(v) for v in (mark.into, mark.out))
                 way += [hermite(place, heading, mark.places[0], into), mark.places]
                 place, heading, turned = mark.places[-1], out, True
-                if len(mark.places) == 1 and abs(turn(into, out)) > SMOOTH:
+                if len(mark.places) == 1:
                     stretches.append(np.vstack(way))
                     way = [mark.places]
         stretches.append(np.vstack(way))

@@ -27,7 +27,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.median import median
-from morfax.motion.plane import heading_of, left_of
+from morfax.motion.plane import heading_of, left_of, unit
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
@@ -40,8 +40,7 @@ FARTHEST_MM = 40.0
 WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there
 CHORD = 5  # stations that a heading is taken over
 TIP = math.radians(150)  # a corner that turns by more is a tip
-# after this much of both edges, or as many stations, the line is by itself again
-REGAINED_MM, REGAINED = 1.5, 6
+REGAINED_MM = 1.5  # after this much of both edges the line is by itself again
 BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
 JUMP = 0.25  # of the width, from station to station: the far edge is no longer the same
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
@@ -187,7 +186,7 @@ def _run_on(view: View, incoming: Leg, side: float) -> EdgeRun | None:
     """Feel on along the edge on one side (1 left, -1 right)."""
     # 1. stations along the edge, but for the last two, which may stand on the round of a tip
     step, width = view.step_mm, incoming.width_mm
-    walk = Walk(step, round(FARTHEST_MM / step), max(REGAINED, round(REGAINED_MM / step)))
+    walk = Walk(step, round(FARTHEST_MM / step), round(REGAINED_MM / step))
     x, y = incoming.end_mm
     pose = float(x), float(y), float(incoming.heading_rad)
     felt = _along_edge(view.cells, pose, side, width, walk)
@@ -208,7 +207,7 @@ def _run_on(view: View, incoming: Leg, side: float) -> EdgeRun | None:
 def _ends_ahead(view: View, seen: Array, width_mm: float) -> bool:
     """Whether the ink ends within a width ahead of the last of some stations."""
     way = seen[-1, :2] - seen[max(0, len(seen) - 1 - CHORD), :2]
-    t = way / np.hypot(*way)
+    t = unit(way)
     ray = Ray(seen[-1, 0], seen[-1, 1], t[0], t[1])
     return math.isfinite(end_of_ink(view.cells, ray, 0.0, width_mm))
 
@@ -235,7 +234,7 @@ def _turned_back(
     for k, i in enumerate(measured):
         a = seen[max(0, i - 3), :2]
         b = seen[min(len(seen) - 1, i + 3), :2]
-        t = (b - a) / np.hypot(*(b - a))
+        t = unit(b - a)
         across = side * left_of(t)
         back[k, :2] = seen[i, :2] - max(excess[i], 0.0) * across
         back[k, 2] = width_mm

@@ -23,7 +23,6 @@ from morfax.motion.polyline import with_places
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.corner import (
-    SLIGHT,
     Corner,
     bends_on,
     is_sharp,
@@ -32,7 +31,7 @@ from morfax.tracer.junctions.corner import (
 )
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.junctions.rings import corner_in
-from morfax.tracer.sensing.leg import Leg, leg_of, turn
+from morfax.tracer.sensing.leg import STRAIGHT, Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
@@ -141,7 +140,7 @@ def _by_arc(planner: Planner, corner: Corner, touch_mm: float) -> Plan | None:
     """
     widest_mm = TIGHT_LEGS * planner.view.leg_mm * math.tan(corner.deflection_rad / 2)
     room_mm = corner.beyond_mm + ahead_mm(planner.stands[0], corner.incoming)
-    if corner.deflection_rad < SLIGHT or not 0 < touch_mm < min(widest_mm, room_mm):
+    if corner.deflection_rad < STRAIGHT or not 0 < touch_mm < min(widest_mm, room_mm):
         return None
     end_mm = max(BEYOND_MM - corner.before_mm, 0.0)
     way = rounded_corner(planner.stands, corner, touch_mm, end_mm)

@@ -31,12 +31,11 @@ from morfax.motion.compiled import njit
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.junctions.arcs import ARC, outward
-from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, TURNS_OFF, Leg, leg_of
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings; stations are a view's step apart.
-CORNER = math.radians(20)  # a line that turns less within a few stations is smooth
 CHORD, SKIPPED = 7, 3  # stations of a chord, and between the chords and the corner
 LEANS = 3  # the last stations of a line lean towards what ended it
 # stations: of a chord, between places, and after the last of them
@@ -54,8 +53,8 @@ MORE_LEGS = 0.5  # of a leg's length: rings grow on by this after a leg was foun
 def corner_in(seen: Array, first: int) -> int | None:
     """The station, from `first` on, at which a line that was felt clean turns sharply; None if it does not.
 
-    Chords before and after it differ more there than anywhere within a chord's length, by more than `CORNER`.
-    It is found before there are legs; how sharp it is, its ink says (see `corner`).
+    Chords before and after it differ more there than anywhere within a chord's length, by more than
+    `TURNS_OFF`. It is found before there are legs; how sharp it is, its ink says (see `corner`).
     """
     station = corner_at(seen, first)
     return None if station < 0 else int(station)
@@ -79,7 +78,7 @@ def corner_at(seen, first):  # type: ignore[no-untyped-def]
         )
         turned[k] = abs(math.atan2(bx * ay - by * ax, bx * ax + by * ay))
     for k in range(len(turned)):
-        if turned[k] > CORNER:
+        if turned[k] > TURNS_OFF:
             about = turned[max(0, k - CHORD) : k + CHORD + 1]
             if turned[k] == about.max():
                 return begin + k

@@ -26,9 +26,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.tracer.head.course import ahead_mm
+from morfax.tracer.head.course import SMOOTH, ahead_mm
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.choice import PASSES, WayIn, survey
+from morfax.tracer.junctions.choice import WayIn, survey
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.sensing.leg import Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
@@ -114,4 +114,4 @@ def _in_line(incoming: Leg, leg: Leg) -> bool:
     aside = float(np.hypot(*(leg.end_mm - incoming.at(along))))
     allowed = max(ASIDE * 0.5 * abs(leg.width_mm - incoming.width_mm), LEAST_ASIDE_MM)
     turned = abs(turn(incoming.heading_at(along), leg.heading_rad))
-    return aside < allowed and turned < PASSES
+    return aside < allowed and turned < SMOOTH

@@ -15,6 +15,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import LongArray, blocks
+from morfax.motion.plane import unit
 
 
 class HeadPath:
@@ -96,8 +97,7 @@ def _along(places: Array) -> Array:
         return np.full((len(places), 2), 0.5**0.5)
     along, done = LongArray(), 0
     for block in blocks(places, before=2):
-        steps = np.gradient(block, axis=0)
-        steps = steps / np.maximum(np.hypot(*steps.T), 1e-12)[:, None]
+        steps = unit(np.gradient(block, axis=0))
         # the outermost are known where the way begins and ends; else they are the next block's
         first = 1 if done else 0
         done += len(block) - 1 - first

@@ -29,6 +29,7 @@ from morfax.tracer.sensing.parabola import LEAST_OFF_MM, OUTLIERS
 from morfax.tracer.sensing.photocell import LEVEL, STEP_PX
 from morfax.tracer.sensing.probe import is_tip
 from morfax.tracer.sensing.ray import Ray, end_of_ink, seen_on
+from morfax.tracer.sensing.scout import SPECK_MM, SPECK_PX
 from morfax.tracer.sensing.view import View
 
 TURNS = 3  # the cells are turned this often: by then they stand square to a stroke
@@ -36,8 +37,8 @@ ACROSS = 1.2  # widths, along the path from a stroke's middle: its edges are nea
 # widths: a dash is no wider, and its middle no further from the stroke's own line
 WIDE, STRAY = 1.6, 0.25
 DASH = 1.5  # widths: ink in line with a stroke that goes on for longer is a dash
-# of paper on a stroke: two pixels through the aperture
-SPECK_MM, SPECK_PX, SPECK_WIDTHS = 0.16, 2.5, 0.6
+# of paper on a stroke, at most as long as a speck
+SPECK_WIDTHS = 0.6
 NEAREST = 0.4  # widths from the path: the line's own ink is not felt
 
 

@@ -29,7 +29,7 @@ from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
 from morfax.tracer.program.best_run import SHORT
-from morfax.tracer.program.net_outline import may_solve, outline_of
+from morfax.tracer.program.net_outline import ABOUT_WIDTHS, may_solve, outline_of
 from morfax.tracer.program.open_ink import is_of_several, is_open, strokes_of
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
@@ -38,7 +38,7 @@ from morfax.tracer.program.trace import followed, followed_from_an_end
 
 # from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of
 # `following.open_ends`, and as much again
-ABOUT_MM, ABOUT_WIDTHS = 40.0, 20.0
+ABOUT_MM = 40.0
 # the same for a patch without ends: only a reference point whose lead line touches it can matter
 ENDLESS_ABOUT_MM = 1.5 * LARGEST_MM
 

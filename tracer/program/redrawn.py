@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.tangles.tangle import DARKEST
 
 Darkness = NDArray[np.float64]
 
@@ -35,9 +36,6 @@ SPOTS_PX = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1)  # standard deviations that are tried
 AVERAGED_PX = 0.8  # standard deviation of the average of what differs
 BESIDE_PX = 1.5  # further from the way other lines may lie
 AROUND_PX = 4  # of the sheet about the way is looked at
-DARKEST = (
-    1.05  # times the darkest ink on the way: where a way lies over itself ink becomes no darker
-)
 DARK = 98.0  # percent of the places are less dark than the darkest ink
 
 

@@ -35,6 +35,7 @@ from morfax.tracer.following.plain_places import aperture_for, stance_near, view
 from morfax.tracer.following.start import put_down
 from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.program import selection
+from morfax.tracer.program.net_outline import AREA_WIDTHS
 from morfax.tracer.program.selection import Contour
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_from_an_end
@@ -44,7 +45,6 @@ from morfax.tracer.sensing.view import View
 Kind = Literal["closed", "open", "several", "dot", "joined", "lost"]
 Place = tuple[float, float]
 
-AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
 # cells whose apertures differ by less find the same ends and places; by trial
 APERTURE_MM = 0.02
 FIRST_LOOKS = 2  # places at which the head looks before it asks as a run asks; by trial

@@ -16,10 +16,9 @@ import numpy as np
 
 from morfax.motion.arrays import median as median_of
 from morfax.motion.compiled import njit
-from morfax.motion.median import ROBUST
+from morfax.motion.median import OUTLIERS, ROBUST
 
 BITTEN = 0.06  # of the width: more than a scan's noise
-OUTLIERS = 3.0  # standard deviations: what is further off is left out
 LEAST_OFF_MM = 0.001  # of a station: nearer ones stay in
 FEWEST = 8  # stations: a parabola through fewer follows their noise
 # standard errors: neighbouring stations share their ink, so that a bend has to stand out further than three

@@ -24,6 +24,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median, medians
+from morfax.motion.plane import unit
 from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.photocell import darkness_along
 from morfax.tracer.sensing.probe import end_of
@@ -176,7 +177,7 @@ class Sketch:
         feet = lines[:, :2] + np.clip(t, 0, 1)[:, None] * along
         piece = int(np.argmin(np.hypot(*(feet - place).T)))
         foot = feet[piece]
-        within = (foot - place) * half_mm / max(float(np.hypot(*(foot - place))), 1e-9)
+        within = half_mm * unit(foot - place)
         return place + within, foot, piece
 
     def improved(self, way: Redrawing, *, marks_only: bool = False) -> Redrawing:
@@ -229,11 +230,10 @@ def softness_of(view: View, leg: Leg) -> float:
     """Softness of the line's edges, mm: that with which the pen's ink is most like the leg's."""
     # 1. the leg's darkness across it
     stations = leg.seen[::STATIONS_EVERY, :2]
-    unit = np.array([[math.cos(leg.heading_rad), math.sin(leg.heading_rad)]])
+    along = np.array([[math.cos(leg.heading_rad), math.sin(leg.heading_rad)]])
     if len(stations) > 1:  # a leg of few stations has one
-        way = np.gradient(stations, axis=0)
-        unit = way / np.hypot(*way.T)[:, None]
-    left = np.column_stack([-unit[:, 1], unit[:, 0]])
+        along = unit(np.gradient(stations, axis=0))
+    left = np.column_stack([-along[:, 1], along[:, 0]])
     u = ACROSS * (leg.width_mm + PAPER_MM)
     places = stations[:, None] + u[:, None] * left[:, None]
     across = darkness_along(view.cells, places.reshape(-1, 2)).reshape(len(left), len(u))

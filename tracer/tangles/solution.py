@@ -24,7 +24,7 @@ from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.sensing.leg import Leg, goes_straight, turn
+from morfax.tracer.sensing.leg import TURNS_OFF, Leg, goes_straight, turn
 from morfax.tracer.tangles.likeness import Patch, Pen
 from morfax.tracer.tangles.redrawing import NONE, VERTEX, Redrawing
 from morfax.tracer.tangles.sketch import Sketch, redrawings
@@ -50,7 +50,6 @@ ROUGH_WIDTHS = 0.6  # to and fro within the line's own ink: that is rough
 MARK_AS_GOOD = 1.3
 GENTLE_RAD = math.radians(120)  # a strand that turns less at each vertex is a corner or a step
 BACK_RAD = math.radians(150)  # legs that turn by more lie beside each other
-CROSSES_RAD = math.radians(25)  # a line that bends less goes straight on
 
 
 class Approach(NamedTuple):
@@ -237,9 +236,7 @@ def _is_rough(sketch: Sketch, way: Redrawing, line: Plan | None) -> bool:
 def _bends(sketch: Sketch, way: Redrawing) -> bool:
     """Whether no strand goes straight on: lines that do are lines that cross, or that another touches."""
     headings = sketch.poses[:, 2]
-    return all(
-        abs(turn(headings[a], headings[b] + math.pi)) > CROSSES_RAD for a, b in way.pairs
-    )
+    return all(abs(turn(headings[a], headings[b] + math.pi)) > TURNS_OFF for a, b in way.pairs)
 
 
 def _is_as_good(way: Redrawing, other: Redrawing) -> bool:

@@ -17,12 +17,11 @@ from morfax.motion.arrays import Array
 from morfax.motion.curves import SPACING_MM, hermite
 from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto
 from morfax.tracer.head.plan import Plan
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import Tangle
 
 # Chosen by trial on the test drawings: two legs are on one line if they are
-SAME_RAD = math.radians(20)  # turned by no more
 ASIDE = 0.5  # of the width: no further off each other's line
 NEAR_MM, NEAR_WIDTHS = 3.0, 4.0  # no further apart along it
 
@@ -78,7 +77,7 @@ def same_line(leg: Leg, other: Leg, width_mm: float) -> bool:
     gap = other.end_mm - leg.at(along)
     turned = abs(turn(leg.heading_at(along), other.heading_rad))
     near = abs(along) < max(NEAR_WIDTHS * width_mm, NEAR_MM)
-    return turned < SAME_RAD and near and float(np.hypot(*gap)) < ASIDE * width_mm
+    return turned < TURNS_OFF and near and float(np.hypot(*gap)) < ASIDE * width_mm
 
 
 def aside_mm(vertices: Array, stretches: list[Array]) -> float:

@@ -65,12 +65,17 @@ class Cable:
             for name in ("Cable one", "Cable two")
         ]
 
-    def check_output_settings(self, *, samplerate: int, **_: Any) -> None:
-        """Refuse a rate that the device does not have."""
-        if samplerate not in self.rates:
-            raise PortAudioError("Invalid sample rate")
+    def check_output_settings(self, *, samplerate: int, channels: int, **_: Any) -> None:
+        """Refuse a rate, or tracks, that the device does not have."""
+        self._check(samplerate, channels <= self.outputs)
 
-    check_input_settings = check_output_settings
+    def check_input_settings(self, *, samplerate: int, channels: int, **_: Any) -> None:
+        """The same for what comes in."""
+        self._check(samplerate, channels <= self.inputs)
+
+    def _check(self, samplerate: int, has_tracks: bool) -> None:
+        if samplerate not in self.rates or not has_tracks:
+            raise PortAudioError("Invalid sample rate")
 
     def OutputStream(  # noqa: N802
         self,

@@ -151,6 +151,10 @@ def test_a_rate_that_the_device_does_not_have_is_its_own(cable: Cable) -> None:
     one = found("0", tracks=4, is_input=True)
     assert rate_for(one, 48000, tracks=4, is_input=True) == 44100
     assert rate_for(one, 44100, tracks=4, is_input=False) == 44100
+    # what goes out is asked of the outputs, and what comes in of the inputs
+    cable.rates, cable.inputs = (44100, 48000), 2
+    assert rate_for(one, 48000, tracks=4, is_input=False) == 48000
+    assert rate_for(one, 48000, tracks=4, is_input=True) == 44100
 
 
 def test_without_sounddevice_a_line_says_what_to_install(

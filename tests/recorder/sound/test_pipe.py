@@ -13,7 +13,7 @@ import soundfile
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import Motion, join
 from morfax.player.tape.playback import play, play_pipe
-from morfax.recorder.sound.pipe import PipeSource, Samples
+from morfax.recorder.sound.pipe import PipeSink, PipeSource, Samples
 from morfax.recorder.tape.tape import Tape, record
 from tests.player.worn import program
 
@@ -78,3 +78,20 @@ def test_samples_of_a_frame() -> None:
     assert Samples(3, bits=24).frames(b"\xff\xff\x7f\0\0\0\0\0\x80").tolist() == [
         [pytest.approx(1, abs=1e-6), 0, -1]
     ]
+
+
+@pytest.mark.parametrize("text", ["ab", "abc"])
+def test_the_text_in_front_of_a_pipe_is_read_by_libsndfile(tmp_path: Path, text: str) -> None:
+    stream = io.BytesIO()
+    sink = PipeSink(stream, 48_000, 2, text)
+    sink.put(np.zeros((100, 2), np.float32))
+    head = stream.getvalue()
+    at = head.index(b"ICMT")
+    size = int.from_bytes(head[at + 4 : at + 8], "little")
+    # a word ends in a zero, and chunks in even places; no zero more than that takes
+    assert head[at + 8 : at + 8 + size] == text.encode() + b"\0" * (size - len(text))
+    assert size == len(text) + (2 if len(text) % 2 == 0 else 1)
+    assert head.index(b"data") == at + 8 + size
+    (tmp_path / "a.wav").write_bytes(head)
+    with soundfile.SoundFile(tmp_path / "a.wav") as sound:
+        assert sound.comment == text

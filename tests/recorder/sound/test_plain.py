@@ -60,3 +60,15 @@ def test_a_file_cut_short_under_way_is_a_fault(tmp_path: Path) -> None:
     with pytest.raises(TapeFault, match="cut short"):
         next(blocks)
     source.close()
+
+
+def test_a_flac_that_ends_early_is_cut_short(tmp_path: Path) -> None:
+    noise = np.random.default_rng(1).uniform(-0.5, 0.5, (20_000, 2)).astype(np.float32)
+    soundfile.write(tmp_path / "a.flac", noise, 48_000, "PCM_16")
+    whole = FileSource(tmp_path / "a.flac")
+    assert whole.frames == len(noise)
+    whole.close()
+    data = (tmp_path / "a.flac").read_bytes()
+    (tmp_path / "a.flac").write_bytes(data[: len(data) // 2])
+    with pytest.raises(TapeFault, match="cut short"):
+        FileSource(tmp_path / "a.flac")

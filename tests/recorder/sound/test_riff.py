@@ -101,3 +101,29 @@ def test_a_text_without_a_place_is_misuse(tmp_path: Path) -> None:
     for old, new in (("other", "any"), ("before", "much longer")):
         with pytest.raises(ValueError, match="no place in the header"):
             riff.replace_text(file, old, new)
+
+
+@pytest.mark.parametrize("container", ["AIFF", "W64"])
+def test_the_whole_file_s_length_is_stated_at_its_head(tmp_path: Path, container: str) -> None:
+    file = written(tmp_path / "a", container)
+    sizes = riff.read_sizes(file)
+    assert sizes is not None
+    assert sizes.stated == sizes.held == file.stat().st_size
+    file.write_bytes(file.read_bytes()[:-1])
+    sizes = riff.read_sizes(file)
+    assert sizes is not None
+    assert sizes.cut_short
+    file.write_bytes(file.read_bytes()[:20])
+    assert riff.read_sizes(file) is None
+
+
+@pytest.mark.parametrize("size", [4, 5])
+def test_a_chunk_of_odd_size_ends_at_an_even_place(tmp_path: Path, size: int) -> None:
+    file = written(tmp_path / "a", "WAV")
+    whole = file.read_bytes()
+    at = whole.index(b"data")
+    chunk = b"junk" + size.to_bytes(4, "little") + b"x" * (size + size % 2)
+    file.write_bytes(whole[:at] + chunk + whole[at:])
+    sizes = riff.read_sizes(file)
+    assert sizes is not None
+    assert (sizes.data_at, sizes.stated) == (at + len(chunk) + 8, FRAMES.size * 2)
