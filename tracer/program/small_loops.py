@@ -35,8 +35,7 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.program.selection import lines_of
-from morfax.tracer.program.small_rings import paper_within_px
+from morfax.tracer.program.small_rings import MAYBE_BROAD, paper_within_px, pen_mm
 from morfax.tracer.tangles.compass import Core, explained, filled_misfit
 from morfax.tracer.tangles.seen_ink import SeenInk
 from morfax.tracer.tangles.tangle import DARKEST
@@ -53,7 +52,7 @@ LIKE = 0.035
 # fifth of that; a corner that is cut short by 40 um leaves as much
 GAIN = 0.001
 # two lines whose ink runs together: times as broad as a line, and how long at the least; so many are tried
-BROAD, SHORT_WIDTHS, MOST_BROAD = (1.15, 2.7), 2.0, 100
+BROAD, SHORT_WIDTHS, MOST_BROAD = (MAYBE_BROAD, 2.7), 2.0, 100
 SEAM = 0.002  # for each width of the length: so much more the same shape leaves if it is filled
 ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
@@ -94,12 +93,7 @@ class SmallLoops:
     @cached_property
     def pen_mm(self) -> float:
         """The width of the lines along half of the sheet's ink."""
-        lines = lines_of(self.sheet)
-        order = np.argsort(self.sheet.widths_mm[lines], kind="stable")
-        come_mm = np.cumsum(self.sheet.lengths_mm[lines][order])
-        return float(
-            self.sheet.widths_mm[lines][order][np.searchsorted(come_mm, 0.5 * come_mm[-1])]
-        )
+        return pen_mm(self.sheet)
 
     def mended(self, line: Line) -> Line:
         """A line as it is; a small one that should close and fails its own ink as the compass lays it."""

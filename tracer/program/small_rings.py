@@ -27,6 +27,8 @@ from morfax.tracer.program.selection import Contour, lines_of
 
 BROAD = 1.4  # of a line's width: two lines whose ink runs together
 FILLED = 0.65  # of the square about it: a dot fills 0.79
+# the same of what may be a slot, if its ink shows the seam between its sides
+MAYBE_BROAD, MAYBE_FILLED = 1.15, 0.75
 MOST_RINGS = 500  # patches that are looked at, the largest first: sheets of text have thousands
 
 
@@ -56,15 +58,24 @@ def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
     return tuple(SmallPatch.of(sheet, patch) for patch in rings)
 
 
-def filled_up(sheet: Sheet) -> list[int]:
+def pen_mm(sheet: Sheet) -> float:
+    """The width of the lines along half of a sheet's ink."""
+    lines = lines_of(sheet)
+    order = np.argsort(sheet.widths_mm[lines], kind="stable")
+    come_mm = np.cumsum(sheet.lengths_mm[lines][order])
+    return float(sheet.widths_mm[lines][order][np.searchsorted(come_mm, 0.5 * come_mm[-1])])
+
+
+def filled_up(sheet: Sheet, broad: float = BROAD, filled: float = FILLED) -> list[int]:
     """The patches of ink inside a line that are too short for one, broader than a line and longer than a dot:
     most likely slots whose sides run together. The largest first.
     """
     numbers, patches = lines_of(sheet), sheet.patches
-    across_px = patches.longer_sides
-    pen_mm = median(sheet.widths_mm[numbers])
-    small = (sheet.widths_mm > BROAD * pen_mm) & (patches.areas < FILLED * across_px**2)
-    small &= (across_px * sheet.drawing.pitch_mm > LEAST_WIDTHS * pen_mm) & ~sheet.are_solid
+    if not len(numbers):
+        return []
+    across_px, wide_mm = patches.longer_sides, pen_mm(sheet)
+    small = (sheet.widths_mm > broad * wide_mm) & (patches.areas < filled * across_px**2)
+    small &= (across_px * sheet.drawing.pitch_mm > LEAST_WIDTHS * wide_mm) & ~sheet.are_solid
     small[[*numbers, *lettering(sheet)]] = False
     if not small.any():
         return []

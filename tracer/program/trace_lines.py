@@ -46,6 +46,8 @@ from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.small_loops import SmallLoops
 from morfax.tracer.program.small_rings import (
+    MAYBE_BROAD,
+    MAYBE_FILLED,
     SmallPatch,
     filled_up,
     small_rings,
@@ -256,7 +258,7 @@ def small_lines(setup: Setup) -> list[tuple[int, Line]]:
     if sheet.bare_rings or sheet.drawing.edges_mm:
         return small
     loops, first = SmallLoops(sheet, setup.settings), len(selection.lines_of(sheet)) + 1
-    for patch in filled_up(sheet):
+    for patch in filled_up(sheet, MAYBE_BROAD, MAYBE_FILLED):
         loop = loops.filled_up.get(patch)
         if loop is not None:
             small.append((patch, loop.line(first + len(small))))
