@@ -47,9 +47,9 @@ MOST_PLACES = 1500  # of ink: enough to place a corner within 10 um
 # for each width of the rule's length: what it leaves of lines that it explains, at most (see `small_loops`),
 LIKE = 0.035
 GAIN = 0.001  # and by how much more the head's own way must leave
-FURTHER = (
-    0.01  # the same, of a width by which a way is longer: it runs out and back on one line
-)
+FURTHER = 0.01  # the same, of a width more of a way that runs out and back on one line
+# and of what a way leaves that does not come beside itself: less is a blot, or what a rubber left
+MOST_LEFT = 0.5
 DOUBTFUL = 0.3  # of the limit above which a way is beside its ink: it may be wrong
 ROUNDS = 3  # a bay may come to light when another is mended
 MOST = 40  # bays of one line that are tried
@@ -198,8 +198,10 @@ class _Bays:
             return None
         # 3. against the way
         widths = rule.length_mm / width_mm
-        gain = ink.misfit_along(own) - rule.misfit + FURTHER * (STEP * long - widths)
+        own_misfit = ink.misfit_along(own)
+        gain = own_misfit - rule.misfit + FURTHER * (STEP * long - widths)
         is_like = rule.misfit < LIKE * widths
+        is_like &= suspect.is_beside_itself or rule.misfit < MOST_LEFT * own_misfit
         if not is_like or gain < GAIN * widths:
             return None
         return Bay(first * step_mm, last * step_mm, rule, gain)
