@@ -35,6 +35,7 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.program.selection import lines_of
 from morfax.tracer.program.small_rings import MAYBE_BROAD, paper_within_px, pen_mm
 from morfax.tracer.tangles.compass import Core, explained, filled_misfit
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -141,7 +142,7 @@ class SmallLoops:
     @cached_property
     def filled_up(self) -> dict[int, Loop]:
         """The loops that patches are whose sides run together, by the patch; the largest are looked at."""
-        if not self.sheet.drawing.noise.softness_px > 0:
+        if not self.sheet.drawing.noise.softness_px > 0 or not len(lines_of(self.sheet)):
             return {}
         largest_first = np.argsort(-self.sheet.patches.areas, kind="stable").tolist()
         broad = [patch for patch in largest_first if self._is_broad(patch)][:MOST_BROAD]

@@ -57,7 +57,7 @@ def corner_by_numpy(seen: Array, first: int) -> int:
     turned = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
     padded = np.pad(turned, rings.CHORD, mode="symmetric")
     most = turned == sliding_window_view(padded, 2 * rings.CHORD + 1).max(axis=1)
-    sharp = np.flatnonzero((turned > rings.CORNER) & most)
+    sharp = np.flatnonzero((turned > rings.TURNS_OFF) & most)
     return int(middle[sharp[0]]) if len(sharp) else -1
 
 
