@@ -54,7 +54,8 @@ LIKE = 0.035
 GAIN = 0.001
 # two lines whose ink runs together: times as broad as a line, and how long at the least; so many are tried
 BROAD, SHORT_WIDTHS, MOST_BROAD = (MAYBE_BROAD, 2.7), 2.0, 100
-SEAM = 0.002  # for each width of the length: so much more the same shape leaves if it is filled
+# for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
+SEAM = 0.002
 ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
@@ -142,11 +143,15 @@ class SmallLoops:
     @cached_property
     def filled_up(self) -> dict[int, Loop]:
         """The loops that patches are whose sides run together, by the patch; the largest are looked at."""
-        if not self.sheet.drawing.noise.softness_px > 0 or not len(lines_of(self.sheet)):
+        drawing = self.sheet.drawing
+        # on large pixels letters look like slots
+        is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1
+        if not is_clear or not len(lines_of(self.sheet)):
             return {}
+        letters = lettering(self.sheet)
         largest_first = np.argsort(-self.sheet.patches.areas, kind="stable").tolist()
-        broad = [patch for patch in largest_first if self._is_broad(patch)][:MOST_BROAD]
-        loops = {patch: self._with_seam(patch) for patch in broad}
+        broad = [p for p in largest_first if self._is_broad(p) and p not in letters]
+        loops = {patch: self._with_seam(patch) for patch in broad[:MOST_BROAD]}
         return {patch: loop for patch, loop in loops.items() if loop is not None}
 
     def _is_broad(self, patch: int) -> bool:
@@ -163,9 +168,9 @@ class SmallLoops:
         core = explained(ink)
         if core is None:
             return None
-        widths = core.length_mm / ink.width_mm
-        has_seam = filled_misfit(ink, core) - core.misfit > SEAM * widths
-        return self._run(core) if has_seam and core.misfit < LIKE * widths else None
+        least = max(SEAM * core.length_mm / ink.width_mm, abs(core.misfit))
+        has_seam = filled_misfit(ink, core) - core.misfit > least
+        return self._run(core) if has_seam else None
 
     def _may_be(self, patch: int, width_mm: float) -> bool:
         """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""

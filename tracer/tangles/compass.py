@@ -72,6 +72,14 @@ class Core(NamedTuple):
         steps = self.points_mm - np.roll(self.points_mm, 1, axis=0)
         return round_mm + float(np.hypot(*steps.T).sum())
 
+    @property
+    def is_convex(self) -> bool:
+        """Whether the core turns one way only: the way keeps its distance from no other all along."""
+        sides = np.roll(self.points_mm, -1, axis=0) - self.points_mm
+        after = np.roll(sides, -1, axis=0)
+        turns = sides[:, 0] * after[:, 1] - sides[:, 1] * after[:, 0]
+        return len(sides) < 3 or bool(np.all(turns > 0) or np.all(turns < 0))
+
     def stretches(self) -> list[Array]:
         """The way, counter-clockwise from the middle of a side: stretches (n, 2) mm between sharp corners."""
         points = self.points_mm
@@ -126,7 +134,7 @@ def _drawn(ink: SeenInk, core: Core) -> Core:
 
 def _settled(ink: SeenInk, start: Core) -> Core | None:
     """A core moved to where the pen leaves the ink that is there; None if the pen becomes another, or the way
-    runs off that ink.
+    runs off that ink, or turns back and forth.
     """
     from scipy.optimize import least_squares
 
@@ -147,7 +155,8 @@ def _settled(ink: SeenInk, start: Core) -> Core | None:
     )
     core = core_of(fit.x)
     is_pen = 0.5 * ink.half_mm < core.half_mm < 2 * ink.half_mm
-    return _drawn(ink, core) if is_pen and ink.holds(np.vstack(core.stretches())) else None
+    is_loop = is_pen and core.is_convex and ink.holds(np.vstack(core.stretches()))
+    return _drawn(ink, core) if is_loop else None
 
 
 def _starts(ink: SeenInk) -> Iterator[Core]:

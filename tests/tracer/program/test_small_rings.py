@@ -73,3 +73,11 @@ def test_a_slot_whose_ink_shows_the_seam_between_its_sides_is_cut() -> None:
     (slot,) = (line for line in trace.lines if line.length_mm < 10 and not line.is_dot)
     low, high = slot.xy_mm.min(axis=0), slot.xy_mm.max(axis=0)
     assert [*low, *high] == pytest.approx([12, 20, 14.4, 21.1], abs=0.5 * PITCH_MM)
+
+
+def test_a_thick_dash_is_no_slot_and_is_told() -> None:
+    """As thick as the slot of 1.1 mm and its line, but of one stroke of a thick pen: it has no seam."""
+    rows = [polyline((12, y), (14.4, y)) for y in np.arange(20, 21.11, 0.22)]
+    trace = trace_lines(inked(PLATE, *rows, width_mm=1.0, dpi=150, seed=1))
+    assert len([line for line in trace.lines if not line.is_dot]) == 1
+    assert len(trace.unclear) == 1

@@ -145,3 +145,17 @@ def test_the_distance_from_a_polygon_is_negative_within() -> None:
     assert from_core(3.0, 3.0, square) == pytest.approx(math.sqrt(2))
     assert from_core(1.0, 0.5, square[:1]) == pytest.approx(math.hypot(1.0, 0.5))
     assert from_core(1.0, 0.5, square[:2]) == pytest.approx(0.5)
+
+
+def test_a_core_that_turns_back_and_forth_is_none() -> None:
+    square = np.array([(0.0, 0), (2, 0), (2, 2), (0, 2)])
+    dented = np.array([(0.0, 0), (2, 0), (0.5, 0.5), (0, 2)])
+    crossed = np.array([(0.0, 0), (2, 2), (2, 0), (0, 2)])
+    for points, is_convex in (
+        (square, True),
+        (square[::-1], True),
+        (dented, False),
+        (crossed, False),
+    ):
+        assert Core(points, 0.0, HALF_MM).is_convex == is_convex
+    assert Core(square[:1], 1.0, HALF_MM).is_convex and Core(square[:2], 1.0, HALF_MM).is_convex
