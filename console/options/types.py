@@ -20,10 +20,8 @@ from morfax.motion.units import (
 )
 
 ZEROS = ("sheet", "reference", "lower-left", "centre")
-LEAST_LEAD_MM, MOST_LEAD_MM = (
-    0.1,
-    100.0,
-)  # a shorter lead is none; a longer one is a slip of the pen
+# a shorter lead is none; a longer one is a slip of the pen
+LEAST_LEAD_MM, MOST_LEAD_MM = 0.1, 100.0
 
 
 class Quantity(click.ParamType):

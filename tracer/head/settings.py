@@ -55,9 +55,7 @@ class HeadSizes(NamedTuple):
     guard_px: float  # from there to a guard cell, at least
     guard_ahead_px: float  # from the swinging cell to the guard cells, at least
     narrowest_rad: float  # that a line turns within the narrowest window
-    stations: (
-        int  # along which the characteristic is measured: an edge may bend more than a line
-    )
+    stations: int  # along which the characteristic is measured: an edge may bend more
 
 
 LINE = HeadSizes(7, 1.2, 0.6, 1.5, 0.5, 2, 1.5, 0.36, 8)

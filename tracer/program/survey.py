@@ -38,8 +38,8 @@ from morfax.tracer.program import selection
 from morfax.tracer.program.net_outline import AREA_WIDTHS
 from morfax.tracer.program.selection import Contour
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.small_lines import small_lines
 from morfax.tracer.program.trace import followed_from_an_end
-from morfax.tracer.program.trace_lines import small_lines
 from morfax.tracer.sensing.view import View
 
 Kind = Literal["closed", "open", "several", "dot", "joined", "lost"]

@@ -26,9 +26,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.lettering import lettering, lower_than
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.marks import dots
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import order, selection
 from morfax.tracer.program.arrows import turned_round, with_arrows
@@ -44,10 +42,8 @@ from morfax.tracer.program.one_of_each import (
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
-from morfax.tracer.program.small_loops import SmallLoops
+from morfax.tracer.program.small_lines import small_lines
 from morfax.tracer.program.small_rings import (
-    MAYBE_BROAD,
-    MAYBE_FILLED,
     SmallPatch,
     filled_up,
     small_rings,
@@ -248,36 +244,6 @@ def _of_numbers(lines: list[Line], numbers: tuple[int, ...]) -> list[Line]:
         if number not in have:
             raise selection.no_line(int(number), sorted(have))
     return [line for line in lines if line.number in numbers]
-
-
-def small_lines(setup: Setup) -> list[tuple[int, Line]]:
-    """The dots that stand alone on the paper, and slots whose sides run together: patch, and line; numbered
-    on from the patches that are lines.
-    """
-    small, sheet = dots_alone(setup), setup.sheet
-    if sheet.bare_rings or sheet.drawing.edges_mm:
-        return small
-    loops, first = SmallLoops(sheet, setup.settings), len(selection.lines_of(sheet)) + 1
-    for patch in filled_up(sheet, MAYBE_BROAD, MAYBE_FILLED):
-        loop = loops.filled_up.get(patch)
-        if loop is not None:
-            small.append((patch, loop.line(first + len(small))))
-    return small
-
-
-def dots_alone(setup: Setup) -> list[tuple[int, Line]]:
-    """The dots that stand alone on the paper, numbered on from the patches that are lines: patch, and line.
-
-    None of them is found if neither a line nor a setting shows how wide the pen is.
-    """
-    patches = selection.lines_of(setup.sheet)
-    width_mm = setup.settings.line_width_mm
-    if width_mm is None and not len(patches):
-        return []
-    width_mm = width_mm or float(np.median(setup.sheet.widths_mm[patches]))
-    view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
-    found = enumerate(dots.alone(setup.sheet, view), len(patches) + 1)
-    return [(patch, Line.of_dot(centre, width_mm, n)) for n, (patch, centre) in found]
 
 
 def _refuse_none_begun(lines: list[Line]) -> None:

@@ -1,0 +1,48 @@
+"""Small lines: dots that stand alone, and slots whose sides run together.
+
+Signals: the set-up in; each with its patch of ink and numbered on from the patches that are lines, out.
+
+Source: the drill points of patent ES 361967 are dots on guide lines; a dot alone and a slot are our own.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from morfax.tracer.following.line import Line
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.marks import dots
+from morfax.tracer.program import selection
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.small_loops import SmallLoops
+from morfax.tracer.program.small_rings import MAYBE_BROAD, MAYBE_FILLED, filled_up
+
+
+def small_lines(setup: Setup) -> list[tuple[int, Line]]:
+    """The dots that stand alone on the paper, and slots whose sides run together: patch, and line; numbered
+    on from the patches that are lines.
+    """
+    small, sheet = dots_alone(setup), setup.sheet
+    if sheet.bare_rings or sheet.drawing.edges_mm:
+        return small
+    loops, first = SmallLoops(sheet, setup.settings), len(selection.lines_of(sheet)) + 1
+    for patch in filled_up(sheet, MAYBE_BROAD, MAYBE_FILLED):
+        loop = loops.filled_up.get(patch)
+        if loop is not None:
+            small.append((patch, loop.line(first + len(small))))
+    return small
+
+
+def dots_alone(setup: Setup) -> list[tuple[int, Line]]:
+    """The dots that stand alone on the paper, numbered on from the patches that are lines: patch, and line.
+
+    None of them is found if neither a line nor a setting shows how wide the pen is.
+    """
+    patches = selection.lines_of(setup.sheet)
+    width_mm = setup.settings.line_width_mm
+    if width_mm is None and not len(patches):
+        return []
+    width_mm = width_mm or float(np.median(setup.sheet.widths_mm[patches]))
+    view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
+    found = enumerate(dots.alone(setup.sheet, view), len(patches) + 1)
+    return [(patch, Line.of_dot(centre, width_mm, n)) for n, (patch, centre) in found]
