@@ -13,9 +13,11 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.unexplained import Unexplained
+from morfax.tracer.tangles.seen_ink import middles_mm
 
 OF_WIDTH = 1.3  # about a way ink is the line's own
 ABOUT = 2.0  # times as far as the ink reaches from the line, and ...
@@ -30,14 +32,15 @@ def bar_at(
     drawing: Drawing, lines: Sequence[Line], place: Unexplained, width_mm: float
 ) -> Array:
     """The places of the bar of ink at a place beside the lines; none of a single line's, or of one that
-    goes on further away."""
+    goes on further away.
+    """
     pitch_mm, rows = drawing.pitch_mm, len(drawing.darkness)
     # 1. the ink about the place
     about = int((ABOUT * place.length_mm + ABOUT_WIDTHS * width_mm) / pitch_mm)
     column, row = int(place.place_mm[0] / pitch_mm), int(rows - place.place_mm[1] / pitch_mm)
     left, top = max(column - about, 0), max(row - about, 0)
     part = drawing.darkness[top : row + about + 1, left : column + about + 1]
-    bare = (np.asarray(part, float) > 0.5).astype(np.uint8)
+    bare = (np.asarray(part, float) > INK).astype(np.uint8)
     # 2. without that of the lines
     wide_px = max(1, round(OF_WIDTH * width_mm / pitch_mm))
     for line in lines:
@@ -54,7 +57,7 @@ def bar_at(
     goes_on = min(i.min(), j.min()) == 0 or i.max() == len(bare) - 1
     if goes_on or j.max() == bare.shape[1] - 1:
         return NOTHING
-    bar = np.column_stack([j + left + 0.5, rows - i - top - 0.5]) * pitch_mm
+    bar = middles_mm(drawing, i + top, j + left)
     return bar if _is_thick(bar, pitch_mm, width_mm) else NOTHING
 
 

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.bars import bar_at
@@ -30,8 +30,7 @@ from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.unexplained import Unexplained, beside_ink, ink_beside, unexplained
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
 from morfax.tracer.tangles.folding_rule import Rule
-from morfax.tracer.tangles.seen_ink import SeenInk
-from morfax.tracer.tangles.tangle import DARKEST
+from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
 STEP = 0.1  # between the places of a way
@@ -146,6 +145,9 @@ class _Bays:
         for first, last in beside:
             yield Suspect(first, last, nothing, True)
         for place in self.left:
+            reach_mm, middle = place.length_mm + width_mm, np.array(place.place_mm)
+            if not _reaches(way, middle - reach_mm, middle + reach_mm):
+                continue
             away_mm = np.hypot(*(way - place.place_mm).T)
             at = int(np.argmin(away_mm))
             if place.kind == "beside" and away_mm[at] < width_mm:
@@ -223,30 +225,27 @@ class _Bays:
         left, top = max(int(low[0] / pitch_mm), 0), max(int(rows - high[1] / pitch_mm), 0)
         right = min(int(high[0] / pitch_mm) + 1, columns)
         bottom = min(int(rows - low[1] / pitch_mm) + 1, rows)
-        i, j = np.indices((bottom - top, right - left)).reshape(2, -1)
-        places = np.column_stack([j + left + 0.5, rows - i - top - 0.5]) * pitch_mm
-        within = np.flatnonzero(pen.away_from(places, about) < reach_mm)
+        i, j = np.mgrid[top:bottom, left:right].reshape(2, -1)
+        within = np.flatnonzero(pen.away_from(middles_mm(drawing, i, j), about) < reach_mm)
         every = 1 + len(within) // MOST_PLACES
-        places, i, j = places[within[::every]], i[within[::every]], j[within[::every]]
-        dark = np.asarray(drawing.darkness[top:bottom, left:right], float)[i, j]
+        i, j = i[within[::every]], j[within[::every]]
         # 2. how far they are from what is drawn anyway
+        places = middles_mm(drawing, i, j)
         known_mm = pen.away_from(places, rest)
         for line in self.lines:
-            if line is not self.line:
+            if line is not self.line and _reaches(line.places_mm, low, high):
                 known_mm = np.minimum(known_mm, nearest_mm(places, line.places_mm))
-        return SeenInk(
-            places,
-            np.minimum(dark, DARKEST),
-            known_mm,
-            0.5 * width_mm,
-            drawing.noise.softness_mm,
-            every * pitch_mm**2,
-            len(places) * drawing.noise.paper**2,
-        )
+        return SeenInk.of(drawing, i, j, known_mm, width_mm, every)
+
+
+def _reaches(places: Array, low: Array, high: Array) -> bool:
+    """Whether the box about some places (n, 2) mm reaches into another."""
+    first, last = bounds(places)
+    return bool(np.all(first < high) and np.all(last > low))
 
 
 def _apart(bays: list[Bay], length_mm: float) -> list[Bay]:
-    """Those of some bays that gain most, none of which lies on another; the last along the way first."""
+    """Those of some bays that gain most, none of which lies on another."""
     kept = list[Bay]()
     for bay in sorted(bays, key=lambda bay: -bay.gain):
         if all(_are_apart(bay, other, length_mm) for other in kept):

@@ -27,7 +27,7 @@ def small_lines(setup: Setup) -> list[tuple[int, Line]]:
         return small
     loops, first = SmallLoops(sheet, setup.settings), len(selection.lines_of(sheet)) + 1
     for patch in filled_up(sheet, MAYBE_BROAD, MAYBE_FILLED):
-        loop = loops.filled_up.get(patch)
+        loop = loops.slot(patch)
         if loop is not None:
             small.append((patch, loop.line(first + len(small))))
     return small

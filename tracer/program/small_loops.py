@@ -39,7 +39,6 @@ from morfax.tracer.program.selection import lines_of
 from morfax.tracer.program.small_rings import MAYBE_BROAD, paper_within_px, pen_mm
 from morfax.tracer.tangles.compass import Core, explained, filled_misfit
 from morfax.tracer.tangles.seen_ink import SeenInk
-from morfax.tracer.tangles.tangle import DARKEST
 
 SMALL_WIDTHS = 16.0  # a longer loop has sides as long as a leg, ...
 # ... but one whose sides are no further apart than this, in the mean, has ends too narrow for the head; that
@@ -89,8 +88,7 @@ class SmallLoops:
     @cached_property
     def passed_by(self) -> set[int]:
         """The patches that are no loops: on a page of text the letters."""
-        letters = lettering(self.sheet)
-        return letters if len(letters) > TEXT else set()
+        return self._letters if len(self._letters) > TEXT else set()
 
     @cached_property
     def pen_mm(self) -> float:
@@ -138,29 +136,41 @@ class SmallLoops:
         """The loop that a patch of ink is, along which the head has found no closed way."""
         if self._may_be(patch, width_mm):
             return self._laid(self._ink(patch, width_mm), math.inf)
-        return self.filled_up.get(patch)
+        return self.slot(patch)
 
     @cached_property
-    def filled_up(self) -> dict[int, Loop]:
+    def slots(self) -> dict[int, Loop]:
         """The loops that patches are whose sides run together, by the patch; the largest are looked at."""
-        drawing = self.sheet.drawing
-        # on large pixels letters look like slots
-        is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1
-        if not is_clear or not len(lines_of(self.sheet)):
-            return {}
-        letters = lettering(self.sheet)
         largest_first = np.argsort(-self.sheet.patches.areas, kind="stable").tolist()
-        broad = [p for p in largest_first if self._is_broad(p) and p not in letters]
-        loops = {patch: self._with_seam(patch) for patch in broad[:MOST_BROAD]}
+        broad = [patch for patch in largest_first if self._is_broad(patch)][:MOST_BROAD]
+        loops = {patch: self.slot(patch) for patch in broad}
         return {patch: loop for patch, loop in loops.items() if loop is not None}
 
+    def slot(self, patch: int) -> Loop | None:
+        """The loop that a patch is whose sides run together; None for another."""
+        return self._with_seam(patch) if self._is_broad(patch) else None
+
+    @cached_property
+    def _letters(self) -> set[int]:
+        """The patches that are likely letters."""
+        return lettering(self.sheet)
+
+    @cached_property
+    def _shows_seams(self) -> bool:
+        """Whether the scan shows seams, and a line whose pen is known; large pixels make seams of letters."""
+        drawing = self.sheet.drawing
+        is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1
+        return is_clear and len(lines_of(self.sheet)) > 0
+
     def _is_broad(self, patch: int) -> bool:
-        """Whether a patch is about as broad as two lines, and no longer than a narrow loop."""
+        """Whether a patch is about as broad as two lines, no longer than a narrow loop, and no letter."""
+        if not self._shows_seams:
+            return False
         least, most = BROAD
         long_mm, width_mm = self.sheet.lengths_mm[patch], self.sheet.widths_mm[patch]
         is_broad = least < width_mm / self.pen_mm < most
         is_between = SHORT_WIDTHS * self.pen_mm < long_mm < LONG_WIDTHS * self.pen_mm
-        return bool(is_broad and is_between) and patch not in self.passed_by
+        return bool(is_broad and is_between) and patch not in self._letters
 
     def _with_seam(self, patch: int) -> Loop | None:
         """The loop that a broad patch is, if its ink shows the seam between two lines."""
@@ -187,13 +197,12 @@ class SmallLoops:
     def _ink(self, patch: int, width_mm: float) -> SeenInk:
         """The ink of a patch, and the paper about it and within, as far as that is no other patch's."""
         drawing, patches = self.sheet.drawing, self.sheet.patches
-        noise = drawing.noise
         rows, columns = drawing.darkness.shape
-        about = 2 + math.ceil(ABOUT_SOFT * noise.softness_px)
+        about = 2 + math.ceil(ABOUT_SOFT * drawing.noise.softness_px)
         top, bottom, left, right = patches.boxes[patch].tolist()
         top, bottom = max(top - about, 0), min(bottom + about, rows)
         left, right = max(left - about, 0), min(right + about, columns)
-        # 1. what is nearer to this ink than so far, and to no other
+        # what is nearer to this ink than so far, and to no other
         is_own: NDArray[np.bool_] = np.arange(patches.count) == patch
         reach = np.ones((2 * about + 1,) * 2, np.uint8)
         own, others = (
@@ -201,17 +210,10 @@ class SmallLoops:
             for chosen in (is_own, ~is_own)
         )
         i, j = np.nonzero((own > 0) & (others == 0))
-        every = slice(None, None, 1 + len(i) // MOST_PLACES)
-        i, j = i[every], j[every]
-        # 2. how dark it is
-        darkness = np.asarray(drawing.darkness[top:bottom, left:right], float)[i, j]
-        places = np.column_stack([j + left + 0.5, rows - i - top - 0.5]) * drawing.pitch_mm
-        area_mm2 = every.step * drawing.pitch_mm**2
-        left_by_noise = len(i) * noise.paper**2
-        dark = np.minimum(darkness, DARKEST)
-        known_mm = np.full(len(places), math.inf)  # nothing else is drawn there
-        half_mm, softness_mm = 0.5 * width_mm, noise.softness_mm
-        return SeenInk(places, dark, known_mm, half_mm, softness_mm, area_mm2, left_by_noise)
+        every = 1 + len(i) // MOST_PLACES
+        i, j = i[::every] + top, j[::every] + left
+        known_mm = np.full(len(i), math.inf)  # nothing else is drawn there
+        return SeenInk.of(drawing, i, j, known_mm, width_mm, every)
 
     def _laid(self, ink: SeenInk, own: float) -> Loop | None:
         """The loop that explains some ink, if it leaves less unexplained than the head's own way."""

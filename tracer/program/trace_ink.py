@@ -107,20 +107,17 @@ def _mended(loops: SmallLoops, strokes: Iterator[InkStroke]) -> Iterator[InkStro
     """Strokes as they are; small loops that fail their ink as the compass lays them, also in place of all
     strokes of a patch along which none closes.
     """
-    whole = dict[int, Loop | None](loops.filled_up)
-    yield from map(_of_loop, loops.filled_up.values())
+    whole = dict[int, Loop | None](loops.slots)
+    yield from map(_of_loop, loops.slots.values())
     for stroke in strokes:
         patch = loops.sheet.patch_at(stroke.way_mm[0])
-        if stroke.closed and patch not in loops.filled_up:
-            own = loops.of_way(stroke.way_mm, stroke.width_mm)
-            yield stroke if own is None else _of_loop(own)
-            continue
         if patch not in whole:
-            whole[patch] = loops.of_patch(patch, stroke.width_mm)
+            whole[patch] = None if stroke.closed else loops.of_patch(patch, stroke.width_mm)
             if (loop := whole[patch]) is not None:
                 yield _of_loop(loop)
         if whole[patch] is None:
-            yield stroke
+            own = loops.of_way(stroke.way_mm, stroke.width_mm) if stroke.closed else None
+            yield stroke if own is None else _of_loop(own)
 
 
 def _of_loop(loop: Loop) -> InkStroke:

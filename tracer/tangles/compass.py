@@ -29,7 +29,7 @@ from morfax.motion.plane import unit
 from morfax.motion.polyline import area_mm2
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.tangles import pen
-from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk
+from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
 SHARP = (3, 4, 5, 6)  # corners of the polygons that are tried
 ROUNDED = (1, 2, 3, 4)  # points of the cores that are tried
@@ -37,7 +37,6 @@ CORE, ROUNDING = 0.6, 0.4  # of half a shape, as a rounded polygon begins
 # for each width of the way's length: what a core leaves to begin with, at most; of 58 that settled on the ink
 # of a loop the worst left 0.21
 BEGIN = 0.3
-SURE = 0.003  # the same: a core that leaves less is taken at once
 MOST_SETTLED = 3  # of the cores, those that explain most to begin with
 SHARPEST = (
     0.3  # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
@@ -108,14 +107,7 @@ def explained(ink: SeenInk) -> Core | None:
     starts = [_drawn(ink, start) for start in _starts(ink)]
     near = [start for start in starts if start.misfit < BEGIN * start.length_mm / ink.width_mm]
     likely = sorted(near, key=lambda core: core.cost)[:MOST_SETTLED]
-    best: Core | None = None
-    for start in sorted(likely, key=lambda core: core.figures):
-        core = _settled(ink, start)
-        if core is not None and (best is None or core.cost < best.cost):
-            best = core
-        if best is not None and best.misfit < SURE * best.length_mm / ink.width_mm:
-            break
-    return best
+    return best_of(ink, sorted(likely, key=lambda core: core.figures), _settled)
 
 
 def filled_misfit(ink: SeenInk, core: Core) -> float:

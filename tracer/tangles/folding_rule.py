@@ -31,7 +31,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
 from morfax.motion.polyline import area_mm2, evenly, length_mm
 from morfax.tracer.tangles import beside_itself, pen
-from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk
+from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
 # which of so many corners are rounded: the patterns that are tried
 ROUNDED = {
@@ -43,7 +43,6 @@ ROUNDED = {
 ROUNDING = 0.8  # of half a width, as a rounded rule begins
 LIKE_PEN = 0.7, 1.4  # times as wide as was felt: another pen explains nothing
 MOST_SETTLED = 8  # of the rules, those that explain most to begin with
-SURE = 0.003  # for each width of the way's length: a rule that leaves less is taken at once
 ARC_RAD = math.radians(
     6.0
 )  # between the places of an arc: they lie within 1 um of one of 0.7 mm
@@ -176,14 +175,7 @@ def explained(ink: SeenInk, rules: Iterable[Rule]) -> Rule | None:
     """The rule that explains the ink best with few figures, of some to begin with; None if none does."""
     drawn = [_drawn(ink, rule) for rule in rules]
     likely = sorted(drawn, key=lambda rule: rule.cost)[:MOST_SETTLED]
-    best: Rule | None = None
-    for start in likely:
-        rule = _settled(ink, start)
-        if rule is not None and (best is None or rule.cost < best.cost):
-            best = rule
-        if best is not None and best.misfit < SURE * best.length_mm / ink.width_mm:
-            break
-    return best
+    return best_of(ink, likely, _settled)
 
 
 def _of_corners(

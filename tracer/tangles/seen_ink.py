@@ -10,14 +10,18 @@ Source: our own; the pen is that of the tangles (see `pen`).
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable, Iterable
+from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.drawing.components import INK
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.tangle import DARKEST
 
 OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is tried with these
 
@@ -27,6 +31,28 @@ BESIDE, EVERY_WIDTHS = 1.5, 0.5
 # Of a way that is fitted to the ink:
 PRICE = 0.01  # of a figure more, as misfit: noise alone pays less than a third of that
 STEPS = 40  # times that the ink is drawn for each figure, at the most
+SURE = 0.003  # for each width of its length: one that leaves less is taken at once
+
+Pixels = NDArray[np.int64]
+
+
+class Fitted(Protocol):
+    """A way that is fitted to the ink."""
+
+    @property
+    def misfit(self) -> float:
+        """How much ink it leaves unexplained, in squares of the line's width."""
+
+    @property
+    def cost(self) -> float:
+        """The misfit, and the price of the figures that it takes."""
+
+    @property
+    def length_mm(self) -> float:
+        """The length of the way."""
+
+
+Way = TypeVar("Way", bound=Fitted)
 
 
 class SeenInk(NamedTuple):
@@ -42,6 +68,24 @@ class SeenInk(NamedTuple):
     softness_mm: float
     area_mm2: float
     noise: float
+
+    @classmethod
+    def of(
+        cls,
+        drawing: Drawing,
+        rows: Pixels,
+        columns: Pixels,
+        known_mm: Array,
+        width_mm: float,
+        every: int,
+    ) -> SeenInk:
+        """The ink at some pixels (n,) of a drawing, one in so many, about a line of a width."""
+        dark = np.minimum(np.asarray(drawing.darkness[rows, columns], float), DARKEST)
+        noise = drawing.noise
+        area_mm2, left_by_noise = every * drawing.pitch_mm**2, len(rows) * noise.paper**2
+        places = middles_mm(drawing, rows, columns)
+        half_mm, softness_mm = 0.5 * width_mm, noise.softness_mm
+        return cls(places, dark, known_mm, half_mm, softness_mm, area_mm2, left_by_noise)
 
     @property
     def width_mm(self) -> float:
@@ -75,3 +119,23 @@ class SeenInk(NamedTuple):
         """How much a pen along a way (m, 2) mm leaves unexplained, of the width that explains most."""
         halves_mm = (share * self.half_mm for share in OF_WIDTH)
         return min(self.misfit(self.drawn_along(way, half_mm)) for half_mm in halves_mm)
+
+
+def middles_mm(drawing: Drawing, rows: Pixels, columns: Pixels) -> Array:
+    """The middles (n, 2) of some pixels of a drawing, mm on the sheet."""
+    up = len(drawing.darkness) - rows - 0.5
+    return np.column_stack([columns + 0.5, up]) * drawing.pitch_mm
+
+
+def best_of(
+    ink: SeenInk, starts: Iterable[Way], settled: Callable[[SeenInk, Way], Way | None]
+) -> Way | None:
+    """The way that costs least of those to which some settle, or the first that leaves hardly any ink."""
+    best: Way | None = None
+    for start in starts:
+        way = settled(ink, start)
+        if way is not None and (best is None or way.cost < best.cost):
+            best = way
+        if best is not None and best.misfit < SURE * best.length_mm / ink.width_mm:
+            break
+    return best
