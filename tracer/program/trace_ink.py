@@ -117,6 +117,7 @@ def _mended(loops: SmallLoops, strokes: Iterator[InkStroke]) -> Iterator[InkStro
                 yield _of_loop(loop)
         if whole[patch] is None:
             own = loops.of_way(stroke.way_mm, stroke.width_mm) if stroke.closed else None
+            whole[patch] = own  # it is all of the patch: no other stroke runs along it again
             yield stroke if own is None else _of_loop(own)
 
 
