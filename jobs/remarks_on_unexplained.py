@@ -65,6 +65,17 @@ def _of_beside(places: Sequence[Unexplained], _: str) -> str:
     )
 
 
+def _of_broad(places: Sequence[Unexplained], _: str) -> str:
+    """Strokes within ink that is as broad as two lines."""
+    (x, y), long_mm = places[0][:2]
+    pieces = "piece of ink is" if len(places) == 1 else "pieces of ink are"
+    return (
+        f"{len(places)} {pieces} about as broad as two lines, the longest {long_mm:.1f} mm at "
+        f"{x:.1f},{y:.1f} mm: if it is a slot, a notch or a tongue, its two sides are not followed; draw it "
+        "with a finer pen, or scan it at a higher resolution"
+    )
+
+
 def _of_pale(places: Sequence[Unexplained], _: str) -> str:
     """A way over pale pixels of a coarse scan."""
     (x, y), dpi = places[0].place_mm, places[0].wants_dpi
@@ -85,5 +96,6 @@ SAID: dict[Kind, Said] = {
     "ink": _of_ink,
     "bare": _of_bare,
     "beside": _of_beside,
+    "broad": _of_broad,
     "pale": _of_pale,
 }

@@ -20,6 +20,7 @@ UNEXPLAINED: dict[Kind, str] = {
     "tip": "tip cut short",
     "bare": "way without ink",
     "beside": "way beside its ink",
+    "broad": "strokes within ink as broad as two lines",
     "pale": "pixels too large to tell",
 }
 

@@ -23,6 +23,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.bars import bar_at
 from morfax.tracer.program.bay_run import Bay, laid
@@ -87,6 +88,14 @@ def with_bars(setup: Setup, lines: Sequence[Line]) -> list[Line]:
     return _once_mended(setup, lines, tuple(ink_beside(setup.sheet, lines)))
 
 
+def is_clear(drawing: Drawing) -> bool:
+    """Whether a drawing is of lines that show where a pen was: on large pixels every step of them looks like a
+    corner.
+    """
+    is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
+    return is_fine and not drawing.grainy and not drawing.edges_mm
+
+
 def _mended(
     setup: Setup, lines: Sequence[Line], left_by: LeftBy
 ) -> tuple[list[Line], tuple[Unexplained, ...]]:
@@ -123,10 +132,7 @@ class _Bays:
         line = self.line
         is_marked = line.is_lead or line.reference_mm is not None or line.marks or line.guides
         is_plain = line.ending == "closed" and not is_marked and not line.loop_from
-        drawing = self.setup.sheet.drawing
-        # on large pixels every step of them looks like a corner
-        is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1 and not drawing.grainy
-        if not is_plain or line.on_edge or not is_clear or drawing.edges_mm:
+        if not is_plain or line.on_edge or not is_clear(self.setup.sheet.drawing):
             return line
         step_mm = STEP * line.width_mm
         way = evenly(line.loop_mm, step_mm)
@@ -200,10 +206,12 @@ class _Bays:
             return None
         # 3. against the way
         widths = rule.length_mm / width_mm
-        own_misfit = ink.misfit_along(own)
+        drawn_by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
+        own_misfit = ink.misfit(drawn_by_own)
         gain = own_misfit - rule.misfit + FURTHER * (STEP * long - widths)
         is_like = rule.misfit < LIKE * widths
-        is_like &= suspect.is_beside_itself or rule.misfit < MOST_LEFT * own_misfit
+        drawn = ink.drawn_along(rule.way, rule.half_mm)
+        is_like &= suspect.is_beside_itself or ink.share_left(drawn, drawn_by_own) < MOST_LEFT
         if not is_like or gain < GAIN * widths:
             return None
         return Bay(first * step_mm, last * step_mm, rule, gain)

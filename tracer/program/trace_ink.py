@@ -8,7 +8,7 @@ Source: our own (see `tracer.ink`); patent ES 361967 has one contour to a tape.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -27,11 +27,14 @@ from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import stroke_order
-from morfax.tracer.program.narrow_bays import beside_mended
+from morfax.tracer.program.as_contours import as_contours
+from morfax.tracer.program.narrow_bays import beside_mended, is_clear
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.small_loops import Loop, SmallLoops
+from morfax.tracer.program.small_rings import SmallPatch, filled_up
 from morfax.tracer.program.trace_solids import of_silhouettes, with_outlines
+from morfax.tracer.program.unexplained import Unexplained
 
 NEWEST_BYTES = 8_000_000  # of the newest strokes are kept in memory, 0.8 m at 10 mm/s; chosen
 
@@ -80,10 +83,24 @@ def _of_strokes(
     strokes.sort(key=lambda stroke: -stroke.length_mm)
     setup = Setup(sheet, settings, Operator(marks="off"))
     lines = [_line(stroke, k) for k, stroke in enumerate(strokes, 1)]
+    lines, broad = as_contours(setup, lines)
     lines, beside = beside_mended(setup, lines)
+    broad += _slots_left(setup, lines)
+    left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
     ink = balance(sheet, felt, left, [line.xy_mm for line in lines])
     in_order = tuple(_in_order(lines))
-    return Trace(in_order, Operator(), left_out_mm=ink.left_mm, ink=ink, unexplained=beside)
+    return Trace(in_order, Operator(), left_out_mm=ink.left_mm, ink=ink, unexplained=tuple(left_over))
+
+
+def _slots_left(setup: Setup, lines: Sequence[Line]) -> Iterator[Unexplained]:
+    """What is most likely a slot whose sides run together, and is none that was laid."""
+    if not is_clear(setup.sheet.drawing):
+        return
+    sheet = setup.sheet
+    laid = {sheet.patch_at(line.xy_mm[0]) for line in lines if line.ending == "closed"}
+    for patch in filled_up(sheet):
+        if patch not in laid:
+            yield Unexplained(*SmallPatch.of(sheet, patch), "broad")
 
 
 def _strokes(

@@ -56,7 +56,7 @@ EVERY_MM = 0.05  # between the places of an edge, as between those of a way
 ASTRAY = 0.2
 
 
-Kind = Literal["ink", "tip", "bare", "beside", "pale"]
+Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale"]
 
 
 class Unexplained(NamedTuple):
@@ -66,6 +66,7 @@ class Unexplained(NamedTuple):
     tip       a tip of a filled shape, or its edge: how much of it the way cuts off
     bare      a way over bare paper: for how long
     beside    a way beside its own pen's ink: for how long
+    broad     strokes within ink that is as broad as two lines: for how long
     pale      on a coarse scan a way over ink that is pale: for how long; and `wants_dpi`, the resolution that
         would show what is there
     """

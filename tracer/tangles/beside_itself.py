@@ -26,13 +26,21 @@ ON_WIDTHS = (
 APART_WIDTHS = 3.0  # of way between two stretches
 
 
-def stretches(way: Array, step_mm: float, width_mm: float) -> list[tuple[int, int]]:
-    """From which place of a closed way (n, 2) to which it comes beside itself; the last may be over n."""
-    count, near_mm = len(way), NEAR_WIDTHS * width_mm
+def stretches(
+    way: Array,
+    step_mm: float,
+    width_mm: float,
+    near_widths: float = NEAR_WIDTHS,
+    on_widths: float = ON_WIDTHS,
+) -> list[tuple[int, int]]:
+    """From which place of a closed way (n, 2) to which it comes so near to itself after so much way between;
+    the last may be over n.
+    """
+    count, near_mm = len(way), near_widths * width_mm
     cell = np.floor((way - way.min(axis=0)) / near_mm).astype(np.int64) + 1
     partner = np.full(count, -1)
     heads = np.full(tuple(cell.max(axis=0) + 2), -1)
-    _find_partners(way, cell, near_mm, round(ON_WIDTHS * width_mm / step_mm), heads, partner)
+    _find_partners(way, cell, near_mm, round(on_widths * width_mm / step_mm), heads, partner)
     found = np.flatnonzero(partner >= 0)
     if not len(found):
         return []

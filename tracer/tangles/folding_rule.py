@@ -54,6 +54,7 @@ FEWEST = 20  # places that a bar of ink has, at the least
 STEP = 0.1  # widths, between the places of a way that are held against each other
 APART = 0.8  # widths: the sides of a bay begin, at the least
 DEEP = 1.2  # widths: a bay is so deep at the least; a flatter one is hidden in the line
+FOLD = math.radians(150.0)  # at its mouth: it turns no further
 WITHIN = 0.4  # of mouth times depth lies within a bay: half in one that comes to a point
 CLOSE, NEIGHBOURS = (
     2.5,
@@ -236,6 +237,12 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     return _drawn(ink, rule) if is_way else None
 
 
+def _turned(before: Array, place: Array, after: Array) -> float:
+    """By how much a way turns at a place, rad."""
+    (x, y), (u, v) = place - before, after - place
+    return abs(math.atan2(x * v - y * u, x * u + y * v))
+
+
 def _is_apart(rule: Rule, width_mm: float) -> bool:
     """Whether a rule does not cross itself, and its sides stay apart, or begin apart and meet in a point."""
     corners, step_mm = rule.corners_mm, STEP * width_mm
@@ -243,6 +250,8 @@ def _is_apart(rule: Rule, width_mm: float) -> bool:
     if len(crossings_of(way, np.arange(len(way) - 1))):
         return False
     if len(corners) > 2:
+        if max(_turned(rule.first_mm, *corners[:2]), _turned(*corners[-2:], rule.last_mm)) > FOLD:
+            return False
         mouth = corners[[0, -1]]
         deep_mm = float(pen.away_from(corners, mouth).max())
         is_open = float(np.hypot(*(mouth[1] - mouth[0]))) > APART * width_mm

@@ -28,6 +28,7 @@ OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is t
 # widths: a place of a way from which ink is farther is beside its ink; that of a right way is within half of
 # one, and of the places that show ink some are left out
 BESIDE, EVERY_WIDTHS = 1.5, 0.5
+DIFFER = 0.1  # darkness; chosen
 # Of a way that is fitted to the ink:
 PRICE = 0.01  # of a figure more, as misfit: noise alone pays less than a third of that
 STEPS = 40  # times that the ink is drawn for each figure, at the most
@@ -94,9 +95,12 @@ class SeenInk(NamedTuple):
 
     def drawn_along(self, way: Array, half_mm: float) -> Array:
         """Darkness (n,) that a pen of half a width leaves along a way (m, 2) mm and the known lines."""
-        away_mm = np.minimum(pen.away_from(self.places_mm, way), self.known_mm)
+        return self._drawn(pen.away_from(self.places_mm, way), half_mm)
+
+    def _drawn(self, away_mm: Array, half_mm: float) -> Array:
+        """The same of ways that are so far (n,) from the places."""
         drawn = np.empty(len(away_mm))
-        pen.ink(away_mm, half_mm, self.softness_mm, drawn)
+        pen.ink(np.minimum(away_mm, self.known_mm), half_mm, self.softness_mm, drawn)
         return drawn
 
     def misfit(self, drawn: Array) -> float:
@@ -117,8 +121,20 @@ class SeenInk(NamedTuple):
 
     def misfit_along(self, way: Array) -> float:
         """How much a pen along a way (m, 2) mm leaves unexplained, of the width that explains most."""
-        halves_mm = (share * self.half_mm for share in OF_WIDTH)
-        return min(self.misfit(self.drawn_along(way, half_mm)) for half_mm in halves_mm)
+        return self.misfit(self.best_drawn(pen.away_from(self.places_mm, way)))
+
+    def best_drawn(self, away_mm: Array) -> Array:
+        """Darkness (n,) that a pen leaves along ways that are so far (n,) from the places, of the width that
+        explains most.
+        """
+        tried = [self._drawn(away_mm, share * self.half_mm) for share in OF_WIDTH]
+        return min(tried, key=self.misfit)
+
+    def share_left(self, drawn: Array, other: Array) -> float:
+        """How much is left by what is drawn (n,) in shares of what another leaves, where these differ."""
+        differ = np.abs(drawn - other) > DIFFER
+        left = np.sum((drawn - self.darkness)[differ] ** 2)
+        return float(left / max(np.sum((other - self.darkness)[differ] ** 2), 1e-12))
 
 
 def middles_mm(drawing: Drawing, rows: Pixels, columns: Pixels) -> Array:
