@@ -42,7 +42,10 @@ from morfax.tracer.tangles.seen_ink import SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
 STEP = 0.1  # between the places of a way
-NARROW, ROUND_END = 2.6, 6.0  # sides so near to each other, with so much way between them, have a narrow end
+NARROW, ROUND_END = (
+    2.6,
+    6.0,
+)  # sides so near to each other, with so much way between them, have a narrow end
 END = 5.0  # of a stroke: shows whether it ends in a bar
 OTHERS = 0.3  # of the longest stroke: a shorter one is no part of the contour, ...
 MOST_PARTS = 4  # ... which has so many at the most
@@ -51,9 +54,7 @@ REACH = 1.5  # from where they differ, the ink is looked at
 MOST_PLACES = 6000  # of ink
 
 
-def as_contours(
-    setup: Setup, lines: Sequence[Line]
-) -> tuple[list[Line], list[Unexplained]]:
+def as_contours(setup: Setup, lines: Sequence[Line]) -> tuple[list[Line], list[Unexplained]]:
     """The lines, with the strokes of some patches replaced by the closed contour that explains their ink; and
     bars of ink as broad as two lines that are left.
     """
@@ -66,13 +67,13 @@ def as_contours(
     width_mm = pen_mm(setup.sheet) if numbers else 0.0
     kept, left = list[Line](), list[Unexplained]()
     for patch, strokes in of_patch.items():
-        line, bars = None, list[Unexplained]()
+        line, bars = None, None
         if patch in numbers:
-            bars = list(_broken_at(setup.sheet, strokes, width_mm))
-            if bars or _is_folded(strokes):
+            bars = _broken_at(setup.sheet, strokes, width_mm)
+            if bars is not None or _is_folded(strokes):
                 line = _contour(setup, numbers[patch], strokes)
         kept += strokes if line is None else [line]
-        left += bars if line is None else []
+        left += bars or [] if line is None else []
     kept.sort(key=lambda line: -line.length_mm)
     return [replace(line, number=number) for number, line in enumerate(kept, 1)], left
 
@@ -80,7 +81,8 @@ def as_contours(
 def _is_folded(strokes: list[Line]) -> bool:
     """Whether a patch is one stroke that has a narrow end, or that runs past its own end."""
     line = strokes[0]
-    if len(strokes) > 1 or line.led.leaders == (REDRAWN,):  # the compass lays narrow ends
+    by_compass_mm = float(line.led.lengths_mm(line.xy_mm)[REDRAWN])
+    if len(strokes) > 1 or by_compass_mm > 0.5 * line.length_mm:  # it lays narrow ends
         return False
     if line.ending != "closed":
         near_mm, round_mm = NARROW * line.width_mm, ROUND_END * line.width_mm
@@ -90,24 +92,26 @@ def _is_folded(strokes: list[Line]) -> bool:
     return bool(beside_itself.stretches(way, step_mm, line.width_mm, NARROW, ROUND_END))
 
 
-def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> Iterator[Unexplained]:
+def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> list[Unexplained] | None:
     """The bars of ink at which strokes may be a closed line that is broken: a few strokes make it up, and the
-    others lie within bars, or go from side to side of one.
+    others lie within bars, or go from side to side of one. None if they are no such line.
     """
+    # 1. what makes up the line, and the others
     least_mm = OTHERS * strokes[0].length_mm
     parts = [stroke.places_mm for stroke in strokes if stroke.length_mm > least_mm]
     others = [stroke.places_mm for stroke in strokes[len(parts) :]]
     others_mm = sum(stroke.length_mm for stroke in strokes[len(parts) :])
     if len(strokes) == 1 or len(parts) > MOST_PARTS or others_mm > least_mm:
-        return
-    end_mm = END * width_mm
+        return None
+    # 2. the bars that the others lie within, or in which the parts end
+    end_mm, short_mm = END * width_mm, THICK[1] * width_mm
     ends = [end for way in parts for end in (_up_to(way, end_mm), _up_to(way[::-1], end_mm))]
     within = [others] if others else [[end] for end in ends]
     bars = [bar for ways in within for bar in _bars(sheet, ways, width_mm)]
-    short_mm = THICK[1] * width_mm
-    if others and not all(bar.is_thick or bar.long_mm < short_mm for bar in bars):
-        return
-    yield from (Unexplained(bar.place_mm, bar.long_mm, "broad") for bar in bars if bar.is_thick)
+    thick = [Unexplained(bar.place_mm, bar.long_mm, "broad") for bar in bars if bar.is_thick]
+    if others:
+        return thick if all(bar.is_thick or bar.long_mm < short_mm for bar in bars) else None
+    return thick or None
 
 
 def _up_to(way: Array, length_mm: float) -> Array:
@@ -116,8 +120,8 @@ def _up_to(way: Array, length_mm: float) -> Array:
 
 
 class _Bar(NamedTuple):
-    """A bar of ink: its middle, how long it is, mm, and whether it is thicker than a line, and no thicker than
-    a narrow bay between two.
+    """A bar of ink: its middle; how long it is, mm; whether it is thicker than a line, and no thicker than a
+    narrow bay between two.
     """
 
     place_mm: tuple[float, float]
@@ -139,7 +143,9 @@ def _bars(sheet: Sheet, ways: list[Array], width_mm: float) -> Iterator[_Bar]:
     ink = np.asarray(window.of(sheet.drawing.darkness), float) > INK
     least, most = (times * width_mm for times in THICK)
     for number in range(1, count):
-        box = cv2.minAreaRect(np.column_stack(np.nonzero(bars == number)[::-1]).astype(np.float32))
+        box = cv2.minAreaRect(
+            np.column_stack(np.nonzero(bars == number)[::-1]).astype(np.float32)
+        )
         within = np.zeros(drawn.shape, np.uint8)
         cv2.fillConvexPoly(within, np.round(cv2.boxPoints(box)).astype(np.int32), 1)
         across_mm, long_mm = (pitch_mm * (side_px + 1) for side_px in sorted(box[1]))
@@ -160,7 +166,7 @@ def _contour(setup: Setup, number: int, strokes: list[Line]) -> Line | None:
 
 def _is_better(sheet: Sheet, line: Line, strokes: list[Line]) -> bool:
     """Whether a line explains the ink where it differs from strokes, and these do not."""
-    width_mm = line.width_mm
+    width_mm = min(line.width_mm, strokes[0].width_mm)
     step_mm = STEP * width_mm
     one = evenly(line.loop_mm, step_mm)
     other = np.vstack([evenly(stroke.loop_mm, step_mm) for stroke in strokes])

@@ -89,8 +89,8 @@ def with_bars(setup: Setup, lines: Sequence[Line]) -> list[Line]:
 
 
 def is_clear(drawing: Drawing) -> bool:
-    """Whether a drawing is of lines that show where a pen was: on large pixels every step of them looks like a
-    corner.
+    """Whether a drawing is of lines that show where a pen was: on large pixels each step of them looks like
+    a corner.
     """
     is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
     return is_fine and not drawing.grainy and not drawing.edges_mm

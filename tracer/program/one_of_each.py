@@ -69,17 +69,15 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
     others = dict[int, list[Line]]()
     letters = lettering(setup.sheet) if may_solve(setup) else set[int]()
     for contour in asked:
-        near = [lines[k] for k in _near(contour, boxes_mm)]
-        if _is_done(contour, near, begins_mm):
+        if _is_done(contour, [lines[k] for k in _near(contour, boxes_mm)], begins_mm):
             continue
         if which == "outer" and _is_inner(contour, lines):
             continue
         is_letter = contour.stroke.patch in letters
-        found = _follow_in_window(setup.after(come_mm, total_mm), contour, is_letter)
-        own = _or_outline(setup, contour, found.line)
-        line = _as_loop(loops, contour) if own is None else loops.mended(own)
+        found = _found(setup.after(come_mm, total_mm), loops, contour, is_letter)
+        line = found.line
         if line is not None:
-            if found.others is not None and line is own:
+            if found.others is not None:
                 others[contour.number] = found.others
             lines.append(line)
             boxes_mm.append(np.array(bounds(line.places_mm)))
@@ -143,13 +141,26 @@ def _is_done(contour: Contour, near: list[Line], begins_mm: list[tuple[float, fl
 
 def _is_reference(line: Line, begins_mm: list[tuple[float, float]]) -> bool:
     """Whether a line is the reference point from which another begins, which was followed after it."""
-    begins_there = line.is_lead or line.reference_mm is not None
-    return not begins_there and selection.are_about(line.places_mm, begins_mm)
+    return not references_of([line]) and selection.are_about(line.places_mm, begins_mm)
 
 
 def _is_inner(contour: Contour, lines: list[Line]) -> bool:
     """Whether a patch lies inside one of the lines."""
     return any(not line.is_open and contour.lies_in(line.loop_mm) for line in lines)
+
+
+def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -> _Found:
+    """A line of a patch as the head follows it, as the outline of a net, or as the small loop that it is."""
+    stroke = contour.stroke
+    loop = loops.slot(stroke.patch)
+    if loop is None:
+        found = _follow_in_window(setup, contour, is_letter)
+        own = _or_outline(setup, contour, found.line)
+        if own is not None:
+            line = loops.mended(own)
+            return _Found(line, found.others if line is own else None)
+        loop = loops.of_patch(stroke.patch, stroke.width_mm)
+    return _Found(None if loop is None else loop.line(contour.number))
 
 
 def _follow_in_window(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
@@ -180,12 +191,6 @@ def _keeps_to(contour: Contour, line: Line | None) -> bool:
     width_mm = contour.stroke.width_mm
     is_within = (line_low_mm > low_mm - width_mm) & (line_high_mm < high_mm + width_mm)
     return bool(is_within.all())
-
-
-def _as_loop(loops: SmallLoops, contour: Contour) -> Line | None:
-    """A patch on which the head can nowhere be put down, as the small loop that it may be."""
-    loop = loops.of_patch(contour.stroke.patch, contour.stroke.width_mm)
-    return None if loop is None else loop.line(contour.number)
 
 
 def _or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:

@@ -7,6 +7,8 @@ Source: the drill points of patent ES 361967 are dots on guide lines; a dot alon
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from morfax.tracer.following.line import Line
@@ -14,7 +16,7 @@ from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.marks import dots
 from morfax.tracer.program import selection
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.small_loops import SmallLoops
+from morfax.tracer.program.small_loops import Loop, SmallLoops
 from morfax.tracer.program.small_rings import MAYBE_BROAD, MAYBE_FILLED, filled_up
 
 
@@ -22,15 +24,16 @@ def small_lines(setup: Setup) -> list[tuple[int, Line]]:
     """The dots that stand alone on the paper, and slots whose sides run together: patch, and line; numbered
     on from the patches that are lines.
     """
-    small, sheet = dots_alone(setup), setup.sheet
-    if sheet.bare_rings or sheet.drawing.edges_mm:
-        return small
-    loops, first = SmallLoops(sheet, setup.settings), len(selection.lines_of(sheet)) + 1
-    for patch in filled_up(sheet, MAYBE_BROAD, MAYBE_FILLED):
-        loop = loops.slot(patch)
-        if loop is not None:
-            small.append((patch, loop.line(first + len(small))))
-    return small
+    sheet, slots = setup.sheet, dict[int, Loop]()
+    if not sheet.bare_rings and not sheet.drawing.edges_mm:
+        loops = SmallLoops(sheet, setup.settings)
+        tried = ((p, loops.slot(p)) for p in filled_up(sheet, MAYBE_BROAD, MAYBE_FILLED))
+        slots = {patch: loop for patch, loop in tried if loop is not None}
+    small = [(patch, dot) for patch, dot in dots_alone(setup) if patch not in slots]
+    first = len(selection.lines_of(sheet)) + 1
+    small = [(patch, replace(dot, number=n)) for n, (patch, dot) in enumerate(small, first)]
+    numbered = enumerate(slots.items(), first + len(small))
+    return small + [(patch, loop.line(n)) for n, (patch, loop) in numbered]
 
 
 def dots_alone(setup: Setup) -> list[tuple[int, Line]]:

@@ -51,8 +51,10 @@ LIKE = 0.035
 # the same: the compass lays a loop if it leaves so much less than the head's own way. Noise of a scan is a
 # fifth of that; a corner that is cut short by 40 um leaves as much
 GAIN = 0.001
-# two lines whose ink runs together: times as broad as a line, and how long at the least; so many are tried
-BROAD, SHORT_WIDTHS, MOST_BROAD = (MAYBE_BROAD, 2.7), 2.0, 100
+# two lines whose ink runs together: times as broad as a line at the most, and how long at the least; so many
+# are tried
+BROADEST, SHORT_WIDTHS, MOST_BROAD = 2.7, 2.0, 100
+NO_BROADER = 0.9  # times as broad as a line: in the mean a seam may make up for it
 # for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
 SEAM = 0.002
 ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
@@ -105,7 +107,7 @@ class SmallLoops:
         if line.ending == "closed" and goes_once:
             loop = self.of_way(line.xy_mm, line.width_mm)
         else:
-            loop = self.of_patch(patch, line.width_mm)
+            loop = self.of_patch(patch, line.width_mm, line.xy_mm)
         if loop is None:
             return line
         return replace(
@@ -132,11 +134,11 @@ class SmallLoops:
         ink = self._ink(patch, width_mm)
         return self._laid(ink, ink.misfit_along(one_in(way, THINNED)))
 
-    def of_patch(self, patch: int, width_mm: float) -> Loop | None:
-        """The loop that a patch of ink is, along which the head has found no closed way."""
+    def of_patch(self, patch: int, width_mm: float, way: Array | None = None) -> Loop | None:
+        """The loop that a patch of ink is, along which the head has found no closed way, but an open one."""
         if self._may_be(patch, width_mm):
             return self._laid(self._ink(patch, width_mm), math.inf)
-        return self.slot(patch)
+        return self._with_seam(patch, way) if self._is_broad(patch, NO_BROADER) else None
 
     @cached_property
     def slots(self) -> dict[int, Loop]:
@@ -162,25 +164,29 @@ class SmallLoops:
         is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1
         return is_clear and len(lines_of(self.sheet)) > 0
 
-    def _is_broad(self, patch: int) -> bool:
-        """Whether a patch is about as broad as two lines, no longer than a narrow loop, and no letter."""
+    def _is_broad(self, patch: int, least: float = MAYBE_BROAD) -> bool:
+        """Whether a patch is as broad as so many lines to two; no longer than a narrow loop, no letter."""
         if not self._shows_seams:
             return False
-        least, most = BROAD
         long_mm, width_mm = self.sheet.lengths_mm[patch], self.sheet.widths_mm[patch]
-        is_broad = least < width_mm / self.pen_mm < most
+        is_broad = least < width_mm / self.pen_mm < BROADEST
         is_between = SHORT_WIDTHS * self.pen_mm < long_mm < LONG_WIDTHS * self.pen_mm
         return bool(is_broad and is_between) and patch not in self._letters
 
-    def _with_seam(self, patch: int) -> Loop | None:
-        """The loop that a broad patch is, if its ink shows the seam between two lines."""
+    def _with_seam(self, patch: int, way: Array | None = None) -> Loop | None:
+        """The loop that a broad patch is, if its ink shows the seam between two lines, and it explains more
+        than the head's open way.
+        """
         ink = self._ink(patch, self.pen_mm)
         core = explained(ink)
         if core is None:
             return None
-        least = max(SEAM * core.length_mm / ink.width_mm, abs(core.misfit))
+        widths = core.length_mm / ink.width_mm
+        least = max(SEAM * widths, abs(core.misfit))
+        own = math.inf if way is None else ink.misfit_along(one_in(way, THINNED))
         has_seam = filled_misfit(ink, core) - core.misfit > least
-        return self._run(core) if has_seam else None
+        is_better = core.misfit < min(own - GAIN * widths, LIKE * widths)
+        return self._run(core) if has_seam and is_better else None
 
     def _may_be(self, patch: int, width_mm: float) -> bool:
         """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""

@@ -11,7 +11,7 @@ Source: our own.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -47,11 +47,13 @@ class SmallPatch(NamedTuple):
         return cls(middle_mm, max(bottom - top, right - left) * pitch_mm)
 
 
-def small_rings(sheet: Sheet) -> tuple[SmallPatch, ...]:
-    """The closed lines of a sheet that are too short to be contours, and no lettering; the largest first."""
+def small_rings(sheet: Sheet, laid: Collection[int] = ()) -> tuple[SmallPatch, ...]:
+    """The closed lines of a sheet that are too short to be contours, no lettering, and no patches that were
+    laid; the largest first.
+    """
     lines, across_mm = lines_of(sheet), sheet.patches.longer_sides * sheet.drawing.pitch_mm
     small = across_mm > LEAST_WIDTHS * median(sheet.widths_mm[lines])
-    small[[*lines, *lettering(sheet)]] = False
+    small[[*lines, *lettering(sheet), *laid]] = False
     chosen = np.flatnonzero(small)
     chosen = chosen[np.argsort(-across_mm[chosen], kind="stable")][:MOST_RINGS]
     rings = [p for p in chosen.tolist() if paper_within_px(sheet, p) >= LEAST_PX]

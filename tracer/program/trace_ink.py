@@ -89,7 +89,9 @@ def _of_strokes(
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
     ink = balance(sheet, felt, left, [line.xy_mm for line in lines])
     in_order = tuple(_in_order(lines))
-    return Trace(in_order, Operator(), left_out_mm=ink.left_mm, ink=ink, unexplained=tuple(left_over))
+    return Trace(
+        in_order, Operator(), left_out_mm=ink.left_mm, ink=ink, unexplained=tuple(left_over)
+    )
 
 
 def _slots_left(setup: Setup, lines: Sequence[Line]) -> Iterator[Unexplained]:

@@ -101,7 +101,7 @@ def trace_lines(
         unexplained=left if which == "contours" else (),
         letters=_letters(sheet, lines) if which == "contours" else (),
         letters_out=found.letters_out,
-        small_rings=small_rings(sheet) if is_searched else (),
+        small_rings=small_rings(sheet, found.slots) if is_searched else (),
         unclear=found.unclear + (_filled_up(sheet, found.slots) if is_searched else ()),
     )
 

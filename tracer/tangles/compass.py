@@ -37,7 +37,7 @@ CORE, ROUNDING = 0.6, 0.4  # of half a shape, as a rounded polygon begins
 # for each width of the way's length: what a core leaves to begin with, at most; of 58 that settled on the ink
 # of a loop the worst left 0.21
 BEGIN = 0.3
-MOST_SETTLED = 3  # of the cores, those that explain most to begin with
+MOST_SETTLED = 5  # of the cores, those that explain most to begin with
 SHARPEST = (
     0.3  # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
 )
@@ -153,7 +153,7 @@ def _settled(ink: SeenInk, start: Core) -> Core | None:
 
 def _starts(ink: SeenInk) -> Iterator[Core]:
     """Cores to begin with, by the outline of the ink."""
-    dark = ink.places_mm[ink.darkness > INK]
+    dark = ink.without_specks(ink.darkness > INK)
     if len(dark) < max(SHARP):
         return
     middle = dark.mean(axis=0)

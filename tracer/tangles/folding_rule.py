@@ -56,10 +56,6 @@ APART = 0.8  # widths: the sides of a bay begin, at the least
 DEEP = 1.2  # widths: a bay is so deep at the least; a flatter one is hidden in the line
 FOLD = math.radians(150.0)  # at its mouth: it turns no further
 WITHIN = 0.4  # of mouth times depth lies within a bay: half in one that comes to a point
-CLOSE, NEIGHBOURS = (
-    2.5,
-    5,
-)  # spacings of places: a place of a bar has so many so near; a speck has not
 FURTHEST = 4.0  # times as far as a bar is long, from its tip, the line is looked for
 
 
@@ -145,10 +141,7 @@ def round_bar(ink: SeenInk, legs: Array) -> Iterator[Rule]:
     """Rules round the bar of ink beside a line, of which the legs (n, 2) mm on either side are known."""
     half_mm = ink.half_mm
     away_mm = np.minimum(pen.away_from(ink.places_mm, legs), ink.known_mm)
-    bar = ink.places_mm[(away_mm > BESIDE * half_mm) & (ink.darkness > 0.5)]
-    between = np.hypot(*(bar[:, None] - bar[None]).transpose(2, 0, 1))
-    near = between < CLOSE * math.sqrt(ink.area_mm2)
-    bar = bar[near.sum(axis=1) > NEIGHBOURS]
+    bar = ink.without_specks((away_mm > BESIDE * half_mm) & (ink.darkness > 0.5))
     if len(bar) < FEWEST:
         return
     # 1. the bar as a rectangle, and which side of that is its tip
@@ -250,7 +243,10 @@ def _is_apart(rule: Rule, width_mm: float) -> bool:
     if len(crossings_of(way, np.arange(len(way) - 1))):
         return False
     if len(corners) > 2:
-        if max(_turned(rule.first_mm, *corners[:2]), _turned(*corners[-2:], rule.last_mm)) > FOLD:
+        if (
+            max(_turned(rule.first_mm, *corners[:2]), _turned(*corners[-2:], rule.last_mm))
+            > FOLD
+        ):
             return False
         mouth = corners[[0, -1]]
         deep_mm = float(pen.away_from(corners, mouth).max())

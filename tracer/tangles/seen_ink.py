@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
@@ -29,6 +30,8 @@ OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is t
 # one, and of the places that show ink some are left out
 BESIDE, EVERY_WIDTHS = 1.5, 0.5
 DIFFER = 0.1  # darkness; chosen
+# spacings of places: a place of ink has so many so near; one of a speck has not; chosen
+CLOSE, NEIGHBOURS = 2.5, 5
 # Of a way that is fitted to the ink:
 PRICE = 0.01  # of a figure more, as misfit: noise alone pays less than a third of that
 STEPS = 40  # times that the ink is drawn for each figure, at the most
@@ -93,6 +96,14 @@ class SeenInk(NamedTuple):
         """The pen's width."""
         return 2 * self.half_mm
 
+    def without_specks(self, chosen: NDArray[np.bool_]) -> Array:
+        """Those of some places (n,) that have others about them, or are beside one that has, (m, 2) mm."""
+        places, near_mm2 = self.places_mm[chosen], CLOSE**2 * self.area_mm2
+        near, kept = np.zeros(len(places), np.int64), np.zeros(len(places), np.int64)
+        _count_near(places, near_mm2, np.ones(len(places), np.int64), near)
+        _count_near(places, near_mm2, (near > NEIGHBOURS).astype(np.int64), kept)
+        return places[kept > 0]
+
     def drawn_along(self, way: Array, half_mm: float) -> Array:
         """Darkness (n,) that a pen of half a width leaves along a way (m, 2) mm and the known lines."""
         return self._drawn(pen.away_from(self.places_mm, way), half_mm)
@@ -135,6 +146,16 @@ class SeenInk(NamedTuple):
         differ = np.abs(drawn - other) > DIFFER
         left = np.sum((drawn - self.darkness)[differ] ** 2)
         return float(left / max(np.sum((other - self.darkness)[differ] ** 2), 1e-12))
+
+
+@njit(cache=True, _nrt=False)
+def _count_near(places, near_mm2, counts, near):  # type: ignore[no-untyped-def]
+    """Add up for each of some places (n, 2) how much those count (n,) that are near it: to a square, mm2."""
+    for k in range(len(places)):
+        for other in range(len(places)):
+            dx, dy = places[k, 0] - places[other, 0], places[k, 1] - places[other, 1]
+            if dx * dx + dy * dy < near_mm2:
+                near[k] += counts[other]
 
 
 def middles_mm(drawing: Drawing, rows: Pixels, columns: Pixels) -> Array:

@@ -10,7 +10,6 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import Points, inked, polyline
 
@@ -75,9 +74,3 @@ def test_a_tick_of_one_line_and_a_bar_to_another_are_no_bays() -> None:
     trace = contours(plate(), tick, bar)
     line = max(trace.lines, key=lambda each: each.length_mm)
     assert line.length_mm == pytest.approx(92, abs=0.5)
-
-
-def test_of_all_the_ink_a_closed_line_with_a_bay_is_laid_too() -> None:
-    truth = with_bay(2.0 * WIDTH_MM, DEEP_MM)
-    trace = trace_ink(inked(truth, width_mm=WIDTH_MM, dpi=300, seed=1))
-    assert off_mm(trace.lines[0], truth) < 60 * UM

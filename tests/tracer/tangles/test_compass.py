@@ -69,6 +69,20 @@ def test_a_loop_of_a_known_shape_is_laid_true_with_the_fewest_points(
     assert core.half_mm == pytest.approx(HALF_MM, abs=2 * UM)
 
 
+def test_a_speck_beside_a_narrow_slot_moves_nothing() -> None:
+    """Four pixels of the scan at two widths from the slot's middle."""
+    narrow = np.vstack([arc((1.5, 3.0), 0.2, 90, 270), arc((4.5, 3.0), 0.2, -90, 90)])
+    ink = ink_of(narrow, noise=0.02)
+    specks = np.array([(2.05, 4.05), (2.15, 4.05), (2.05, 4.15), (2.15, 4.15)])
+    with_speck = ink._replace(
+        places_mm=np.vstack([ink.places_mm, specks]),
+        darkness=np.append(ink.darkness, np.ones(4)),
+        known_mm=np.append(ink.known_mm, np.full(4, math.inf)),
+    )
+    core = explained(with_speck)
+    assert core is not None and off_mm(core, narrow) < 0.2 * PITCH_MM
+
+
 @pytest.mark.parametrize("way", [CIRCLE, SLOT, TRIANGLE, OBLONG])
 def test_noise_of_a_scan_moves_a_loop_by_a_tenth_of_a_pixel_at_most(way: Array) -> None:
     core = explained(ink_of(way, noise=0.04))

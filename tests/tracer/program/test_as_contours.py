@@ -1,0 +1,48 @@
+"""A patch whose strokes fail its narrow bays is the closed contour that explains its ink."""
+
+from __future__ import annotations
+
+import pytest
+
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace_ink import trace_ink
+from tests.tracer.inked import Points, arc, inked, polyline
+from tests.tracer.program.test_narrow_bays import DEEP_MM, WIDTH_MM, off_mm, plate, with_bay
+
+UM = 1e-3
+
+BAYS = [
+    pytest.param(with_bay(widths * WIDTH_MM, deep_mm, 0.4), id=f"{widths}-{deep_mm}")
+    for widths in (1.1, 1.5, 2.0)
+    for deep_mm in (DEEP_MM, -DEEP_MM)
+]
+
+
+def all_ink(*lines: Points) -> Trace:
+    """All the ink of a sheet."""
+    return trace_ink(inked(*lines, width_mm=WIDTH_MM, dpi=300, seed=1))
+
+
+@pytest.mark.parametrize("truth", BAYS)
+def test_a_plate_with_a_narrow_bay_is_one_closed_line(truth: Points) -> None:
+    """Within 60 um, 0.7 of a pixel of 300 dpi; strokes run 0.3 mm beside the sides of the bay."""
+    trace = all_ink(truth)
+    (line,) = trace.lines
+    assert line.ending == "closed" and off_mm(line, truth) < 60 * UM
+    assert not trace.unexplained
+
+
+def test_a_tick_and_a_bar_from_side_to_side_stay_strokes() -> None:
+    tick, bar = polyline((12, 20), (12, 22)), polyline((24, 4), (24, 20))
+    trace = all_ink(plate(), tick, bar)
+    lengths_mm = sorted(line.length_mm for line in trace.lines)
+    assert lengths_mm == pytest.approx([2.0, 16.0, 92.0], abs=0.6)
+
+
+def test_a_bent_slot_whose_sides_run_together_is_told() -> None:
+    """The compass lays straight slots only, and a stroke in the middle is half a line beside each side."""
+    sides = arc((14, 12), 2.0, 60, 120), arc((14, 12), 2.0 + WIDTH_MM, 60, 120)
+    trace = all_ink(plate(), *sides)
+    (place,) = trace.unexplained
+    assert place.kind == "broad"
+    assert place.place_mm == pytest.approx((14, 14.2), abs=0.5)
