@@ -153,7 +153,7 @@ class Sheet:
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
         """The line nearest to a place; raises LineFault, with its place, if it is out of reach."""
-        distance_mm, (x, y), patch = self._nearest_ink(place_mm)
+        distance_mm, (x, y), patch = self._nearest_ink(place_mm, self._long_enough())
         if distance_mm > within_mm:
             raise LineFault(
                 f"no line within {within_mm:g} mm of {place_mm[0]:g},{place_mm[1]:g} mm:"
@@ -170,30 +170,31 @@ class Sheet:
         return bool(self.are_solid.any() and self.are_solid[self.patch_at(place_mm)])
 
     def patch_at(self, place_mm: Array) -> int:
-        """The number of the patch of a line whose ink is nearest to a place."""
-        _, _, patch = self._nearest_ink((float(place_mm[0]), float(place_mm[1])))
-        return patch
+        """The number of the patch whose ink is nearest to a place."""
+        return self._nearest_ink((float(place_mm[0]), float(place_mm[1])))[2]
 
     def _long_enough(self) -> NDArray[np.bool_]:
         """Which patches are long enough to be lines."""
         return self.lengths_mm >= max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * self.drawing.pitch_mm)
 
-    def _nearest_ink(self, place_mm: tuple[float, float]) -> tuple[float, Array, int]:
-        """Distance of the ink of a line nearest to a place, mm, where it is, and the number of its patch."""
+    def _nearest_ink(
+        self, place_mm: tuple[float, float], among: NDArray[np.bool_] | None = None
+    ) -> tuple[float, Array, int]:
+        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches."""
         pitch_mm, rows = self.drawing.pitch_mm, self.drawing.darkness.shape[0]
         row, about_px = rows - 1 - math.floor(place_mm[1] / pitch_mm), ABOUT_PX
         while (
             True
         ):  # all runs of a large sheet take longer than those of the rows about the place
             runs = self.patches.runs_between(row - about_px, row + about_px + 1)
-            found = self._nearest_of(place_mm, runs)
+            found = self._nearest_of(place_mm, runs, among)
             is_all = runs == slice(0, len(self.patches.row))
             if is_all or found[0] < (about_px - 1) * pitch_mm:
                 return found
             about_px *= 4
 
     def _nearest_of(
-        self, place_mm: tuple[float, float], runs: slice
+        self, place_mm: tuple[float, float], runs: slice, among: NDArray[np.bool_] | None
     ) -> tuple[float, Array, int]:
         """The same of some runs; infinitely far, and no patch, if there is none."""
         row, begin, end, patch = (
@@ -208,7 +209,8 @@ class Sheet:
         column = np.clip(round(place_mm[0] / self.drawing.pitch_mm - 0.5), begin, end - 1)
         places = self._mm(row, column)
         distances = np.hypot(*(places - np.asarray(place_mm)).T)
-        distances[~self._long_enough()[patch]] = np.inf
+        if among is not None:
+            distances[~among[patch]] = np.inf
         if not len(distances):
             return math.inf, np.zeros(2), -1
         best = int(np.argmin(distances))

@@ -61,13 +61,14 @@ def as_contours(setup: Setup, lines: Sequence[Line]) -> tuple[list[Line], list[U
     if not lines or not is_clear(setup.sheet.drawing):
         return list(lines), []
     of_patch = dict[int, list[Line]]()
-    for line in lines:
-        of_patch.setdefault(setup.sheet.patch_at(line.xy_mm[0]), []).append(line)
+    for stroke in lines:
+        of_patch.setdefault(setup.sheet.patch_at(stroke.xy_mm[0]), []).append(stroke)
     numbers = {int(p): n for n, p in enumerate(selection.lines_of(setup.sheet), 1)}
     width_mm = pen_mm(setup.sheet) if numbers else 0.0
     kept, left = list[Line](), list[Unexplained]()
     for patch, strokes in of_patch.items():
-        line, bars = None, None
+        line: Line | None = None
+        bars: list[Unexplained] | None = None
         if patch in numbers:
             bars = _broken_at(setup.sheet, strokes, width_mm)
             if bars is not None or _is_folded(strokes):
@@ -150,8 +151,8 @@ def _bars(sheet: Sheet, ways: list[Array], width_mm: float) -> Iterator[_Bar]:
         cv2.fillConvexPoly(within, np.round(cv2.boxPoints(box)).astype(np.int32), 1)
         across_mm, long_mm = (pitch_mm * (side_px + 1) for side_px in sorted(box[1]))
         inked_mm2 = np.count_nonzero((within > 0) & ink) * pitch_mm**2
-        is_thick = across_mm < most and inked_mm2 > least * long_mm
-        yield _Bar(window.place_mm(*box[0]), long_mm, is_thick)
+        is_thick = across_mm < most and float(inked_mm2) > least * long_mm
+        yield _Bar(window.place_mm(*box[0]), long_mm, bool(is_thick))
 
 
 def _contour(setup: Setup, number: int, strokes: list[Line]) -> Line | None:
@@ -190,8 +191,8 @@ def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     column, row = window.pixels(places).T
     near[row, column] = 1
     across_px = 2 * round(reach_mm / drawing.pitch_mm) + 1
-    near = cv2.dilate(near, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across_px,) * 2))
-    i, j = np.nonzero(near)
+    reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across_px,) * 2)
+    i, j = np.nonzero(cv2.dilate(near, reach))
     every = 1 + len(i) // MOST_PLACES
     i, j = i[::every] + window.top, j[::every] + window.left
     nothing_mm = np.full(len(i), NOWHERE_MM)

@@ -17,7 +17,7 @@ from morfax.tracer.marks import dots
 from morfax.tracer.program import selection
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.small_loops import Loop, SmallLoops
-from morfax.tracer.program.small_rings import MAYBE_BROAD, MAYBE_FILLED, filled_up
+from morfax.tracer.program.small_rings import maybe_slots
 
 
 def small_lines(setup: Setup) -> list[tuple[int, Line]]:
@@ -27,7 +27,7 @@ def small_lines(setup: Setup) -> list[tuple[int, Line]]:
     sheet, slots = setup.sheet, dict[int, Loop]()
     if not sheet.bare_rings and not sheet.drawing.edges_mm:
         loops = SmallLoops(sheet, setup.settings)
-        tried = ((p, loops.slot(p)) for p in filled_up(sheet, MAYBE_BROAD, MAYBE_FILLED))
+        tried = ((p, loops.of_patch(p, loops.pen_mm)) for p in maybe_slots(sheet))
         slots = {patch: loop for patch, loop in tried if loop is not None}
     small = [(patch, dot) for patch, dot in dots_alone(setup) if patch not in slots]
     first = len(selection.lines_of(sheet)) + 1

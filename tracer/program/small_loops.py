@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.polyline import length_mm
+from morfax.motion.polyline import evenly, length_mm
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
@@ -37,6 +38,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.program.selection import lines_of
 from morfax.tracer.program.small_rings import MAYBE_BROAD, paper_within_px, pen_mm
+from morfax.tracer.sensing.photocell import darkness_along, without_aperture
 from morfax.tracer.tangles.compass import Core, explained, filled_misfit
 from morfax.tracer.tangles.seen_ink import SeenInk
 
@@ -57,6 +59,7 @@ BROADEST, SHORT_WIDTHS, MOST_BROAD = 2.7, 2.0, 100
 NO_BROADER = 0.9  # times as broad as a line: in the mean a seam may make up for it
 # for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
 SEAM = 0.002
+BARE = 0.5  # widths: of a way over paper, less is a speck; a side that was not drawn is longer
 ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
@@ -186,7 +189,14 @@ class SmallLoops:
         own = math.inf if way is None else ink.misfit_along(one_in(way, THINNED))
         has_seam = filled_misfit(ink, core) - core.misfit > least
         is_better = core.misfit < min(own - GAIN * widths, LIKE * widths)
-        return self._run(core) if has_seam and is_better else None
+        return self._run(core) if has_seam and is_better and self._is_inked(core) else None
+
+    def _is_inked(self, core: Core) -> bool:
+        """Whether there is ink all along a core's way, but for specks of paper."""
+        step_mm = 0.5 * self.sheet.drawing.pitch_mm
+        way = evenly(np.vstack(core.stretches()), step_mm)
+        bare = darkness_along(without_aperture(self.sheet.drawing, INK), way) < INK
+        return bool(np.count_nonzero(bare) * step_mm < BARE * 2 * core.half_mm)
 
     def _may_be(self, patch: int, width_mm: float) -> bool:
         """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""

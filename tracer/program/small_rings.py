@@ -68,26 +68,52 @@ def pen_mm(sheet: Sheet) -> float:
     return float(sheet.widths_mm[lines][order][np.searchsorted(come_mm, 0.5 * come_mm[-1])])
 
 
-def filled_up(sheet: Sheet, broad: float = BROAD, filled: float = FILLED) -> list[int]:
+def filled_up(sheet: Sheet) -> list[int]:
     """The patches of ink inside a line that are too short for one, broader than a line and longer than a dot:
     most likely slots whose sides run together. The largest first.
     """
-    numbers, patches = lines_of(sheet), sheet.patches
+    small = _small_inside(sheet)
+    chosen: list[int] = small[_are_filled_up(sheet, small, BROAD, FILLED)].tolist()
+    return chosen
+
+
+def maybe_slots(sheet: Sheet) -> list[int]:
+    """The same of all that may be slots, if their ink shows the seam between two sides."""
+    small = _small_inside(sheet)[:MOST_RINGS]
+    maybe = _are_filled_up(sheet, small, MAYBE_BROAD, MAYBE_FILLED)
+    shows_paper = np.array([paper_within_px(sheet, p) > 0 for p in small.tolist()], bool)
+    chosen: list[int] = small[maybe | shows_paper].tolist()
+    return chosen
+
+
+def _are_filled_up(
+    sheet: Sheet, small: NDArray[np.int64], broad: float, filled: float
+) -> NDArray[np.bool_]:
+    """Which patches are so much broader than a line, and fill less of the square about them."""
+    if not len(small):
+        return np.empty(0, bool)
+    squares_px = sheet.patches.longer_sides[small].astype(float) ** 2
+    are_broad = sheet.widths_mm[small] > broad * pen_mm(sheet)
+    return np.asarray(are_broad & (sheet.patches.areas[small] < filled * squares_px))
+
+
+def _small_inside(sheet: Sheet) -> NDArray[np.int64]:
+    """The patches of ink inside a line that are too short for one, and no letters; the largest first."""
+    numbers, patches, none = lines_of(sheet), sheet.patches, np.empty(0, np.int64)
     if not len(numbers):
-        return []
-    across_px, wide_mm = patches.longer_sides, pen_mm(sheet)
-    small = (sheet.widths_mm > broad * wide_mm) & (patches.areas < filled * across_px**2)
-    small &= (across_px * sheet.drawing.pitch_mm > LEAST_WIDTHS * wide_mm) & ~sheet.are_solid
+        return none
+    across_px = patches.longer_sides
+    least_mm = LEAST_WIDTHS * pen_mm(sheet)
+    small = (across_px * sheet.drawing.pitch_mm > least_mm) & ~sheet.are_solid
     small[[*numbers, *lettering(sheet)]] = False
     if not small.any():
-        return []
+        return none
     are_lines = np.zeros(patches.count, bool)
     are_lines[numbers] = True
     inside = patches.enclosure.inside
     small &= (inside != NONE) & are_lines[inside]
     chosen = np.flatnonzero(small)
-    largest_first = chosen[np.argsort(-across_px[chosen], kind="stable")]
-    return [int(patch) for patch in largest_first]
+    return np.asarray(chosen[np.argsort(-across_px[chosen], kind="stable")])
 
 
 def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPatch, ...]:

@@ -243,10 +243,9 @@ def _is_apart(rule: Rule, width_mm: float) -> bool:
     if len(crossings_of(way, np.arange(len(way) - 1))):
         return False
     if len(corners) > 2:
-        if (
-            max(_turned(rule.first_mm, *corners[:2]), _turned(*corners[-2:], rule.last_mm))
-            > FOLD
-        ):
+        at_first = _turned(rule.first_mm, corners[0], corners[1])
+        at_last = _turned(corners[-2], corners[-1], rule.last_mm)
+        if max(at_first, at_last) > FOLD:
             return False
         mouth = corners[[0, -1]]
         deep_mm = float(pen.away_from(corners, mouth).max())
