@@ -7,7 +7,7 @@ Signals: a stance and the turns of a run in; out the head of an earlier run, whe
     back from tips                               ◀───────◁
 
 The head is deterministic: up to the junction at which the turns differ, and up to the tip from which it goes
-back, two runs are one, to the last bit.
+back, two runs are one, to the last bit. They are one altogether if the first never came to that junction.
 
 Source: our own. Questions: `knots` take a run up again, too, where turns or ink differ by their places; they
 are kept every few mm, for whoever asks for them, and outlive a trace. Branches are kept at junctions, in
@@ -41,6 +41,7 @@ class _Run:
     heads: dict[int, Follower] = field(default_factory=dict)
     at_tip: Follower | None = None
     came_to: Followed | None = None
+    asked_at: set[int] = field(default_factory=set)  # the junctions at which turns mattered
 
     def from_there(self, head: Follower, left_at: int) -> Followed | None:
         """What a run comes to that left this one at a junction, and before the next is where this one was.
@@ -63,6 +64,15 @@ class Branches:
 
     def __init__(self) -> None:
         self._runs: list[_Run] = []
+        self._kept = 0
+
+    def known(self, stance: Stance, turns: Turns) -> Followed | None:
+        """What a run comes to whose last turn is at a junction to which the earlier run never came."""
+        earlier = self._with_fewer(stance, turns) if turns.other else None
+        if earlier is None or earlier.came_to is None or turns.other[-1] in earlier.asked_at:
+            return None
+        self._runs.append(replace(earlier, turns=turns, at_tip=None))
+        return earlier.came_to
 
     def head(self, stance: Stance, turns: Turns) -> tuple[Follower | None, Before]:
         """The head where the run that begins now leaves an earlier one, if it does; and what is to be called
@@ -78,9 +88,13 @@ class Branches:
         def before(head: Follower) -> Followed | None:
             if head.junction in run.heads:
                 return None
-            if sum(len(each.heads) for each in self._runs) < MOST_HEADS:
+            if self._kept < MOST_HEADS:
                 run.heads[head.junction] = copied(head)
-            return None if left is None else left.from_there(head, turns.other[-1])
+                self._kept += 1
+            known = None if left is None else left.from_there(head, turns.other[-1])
+            if left is not None and known is not None:
+                run.asked_at |= left.asked_at
+            return known
 
         return head, before
 
@@ -88,6 +102,7 @@ class Branches:
         """The newest run has ended: keep its head if that stands at a tip."""
         self._runs[-1].at_tip = head if head.is_at_tip else None
         self._runs[-1].came_to = came_to
+        self._runs[-1].asked_at |= head.asked_at
 
     def _from_tip(self, run: _Run) -> Follower | None:
         """The head that goes back from the tip at which the same run ended."""
@@ -101,10 +116,13 @@ class Branches:
 
     def _left(self, run: _Run) -> _Run | None:
         """The earlier run that a run leaves at the junction of its last turn."""
-        number = run.turns.other[-1]
-        fewer = tuple(turn for turn in run.turns.other if turn != number)
-        earlier = self._run(run.stance, run.turns._replace(other=fewer))
-        return earlier if earlier is not None and number in earlier.heads else None
+        earlier = self._with_fewer(run.stance, run.turns)
+        return earlier if earlier and run.turns.other[-1] in earlier.heads else None
+
+    def _with_fewer(self, stance: Stance, turns: Turns) -> _Run | None:
+        """The run from a stance with the same turns but the last, if it was made."""
+        fewer = tuple(turn for turn in turns.other if turn != turns.other[-1])
+        return self._run(stance, turns._replace(other=fewer))
 
     def _from_junction(self, run: _Run, left: _Run) -> Follower:
         """The head before the junction at which a run leaves another."""
