@@ -92,6 +92,11 @@ class SeenInk(NamedTuple):
         """The pen's width."""
         return 2 * self.half_mm
 
+    def for_kernel(self) -> pen.Ink:
+        """The same for kernels."""
+        places, darkness, known_mm = map(np.ascontiguousarray, self[:3])
+        return pen.Ink(places, darkness, known_mm, self.half_mm, self.softness_mm)
+
     def drawn_along(self, way: Array, half_mm: float) -> Array:
         """Darkness (n,) that a pen of half a width leaves along a way (m, 2) mm and the known lines."""
         away_mm = np.minimum(pen.away_from(self.places_mm, way), self.known_mm)
