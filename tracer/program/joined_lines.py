@@ -26,7 +26,9 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.polyline import nearest_mm
+from morfax.tracer.corrections.on_sheet import StopAt
 from morfax.tracer.drawing.strokes import Stroke
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.program.left_ink import LeftInk
@@ -65,16 +67,19 @@ class _Found:
         """Note that the head is put down at a place."""
         self._tried.pass_by(np.array([place_mm]))
 
-    def take(self, runs: list[Line]) -> None:
-        """Take in the runs from one stance: the last is a line of its own, or all were in vain."""
-        if _is_line(runs[-1], self.lines):
-            self.lines.append(runs[-1])
-            self._tried.pass_by(runs[-1].places_mm)
+    def take(self, runs: list[Followed], stops: tuple[StopAt, ...]) -> None:
+        """Take in the runs from one stance: the last is a line of its own, with the stops that the operator
+        told, or all were in vain.
+        """
+        lines = [Line.bare(run) for run in runs]
+        if _is_line(lines[-1], self.lines):
+            self.lines.append(Line.of(runs[-1], stops=stops))
+            self._tried.pass_by(lines[-1].places_mm)
             return
-        self.spent_mm += sum(run.length_mm for run in runs)
-        for run in runs:
-            self._tried.pass_by(run.own_mm)
-            self._in_vain.pass_by(run.places_mm)
+        self.spent_mm += sum(line.length_mm for line in lines)
+        for line in lines:
+            self._tried.pass_by(line.own_mm)
+            self._in_vain.pass_by(line.places_mm)
 
 
 def joined_to(
@@ -103,7 +108,7 @@ def joined_to(
         found.tries(place_mm)
         stance = stance_near(view, left, place_mm)
         if stance is not None:
-            found.take(followed_through(setup, stance))
+            found.take(followed_through(setup, stance), setup.sheet.drawing.told_stops)
         # 2. ink that no run has passed, or else that none has tried
         left = found.left_by_all()
         if left.length_mm < shortest_mm:
