@@ -84,7 +84,9 @@ def draw(folder: Path) -> None:
     ink = (235 - ellipse.astype(float)) * (1 + 0.4 * grain / grain.std()) / 3
     noisy = 235 - ink + rng.normal(0, 8, ink.shape)
     plate = np.full((500, 500), 235, np.uint8)
-    cv2.rectangle(plate, (60, 60), (440, 300), 40, 6, cv2.LINE_AA)
+    notch = (330, 60), (330, 100), (339, 100), (339, 60)
+    outline = np.array([(60, 60), *notch, (440, 60), (440, 300), (60, 300)])
+    cv2.polylines(plate, [outline], True, 40, 6, cv2.LINE_AA)
     cv2.circle(plate, (150, 180), 7, 40, 6, cv2.LINE_AA)
     cv2.rectangle(plate, (250, 170), (310, 181), 40, 6, cv2.LINE_AA)
     cv2.imwrite(str(folder / "slots.png"), cv2.GaussianBlur(plate, (0, 0), 0.7))

@@ -41,6 +41,7 @@ from morfax.tracer.drawing.tiles import Tiles
 
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
+    from morfax.tracer.drawing.narrow import Strips
     from morfax.tracer.drawing.strokes import Sheet
     from morfax.tracer.flatten.flat import Flattening
 
@@ -167,6 +168,13 @@ class Drawing:
     def noise(self) -> Noise:
         """What the picture is like: noise of paper and ink, softness of edges, width of the pen."""
         return measured(self.darkness, self.pitch_mm, self.paper_noise)
+
+    @cached_property
+    def narrow_strips(self) -> Strips:
+        """Its narrow strips of paper between lines; none are looked for on a large sheet."""
+        from morfax.tracer.drawing.narrow import Strips
+
+        return Strips.of(self)
 
     @classmethod
     def open(

@@ -98,6 +98,9 @@ class Attempts:
         times, told = self.drawing.times_at(stance.place_mm), self.told
         told_turns = tuple(turn.enlarged(times) for turn in self.drawing.told_turns)
         wanted = Turns(turns, self.sides, self.tips, self.by_stations, told_turns)
+        known = self.branches.known(stance, wanted)
+        if known is not None:
+            return kept_to(self.drawing.edges_mm, reduced(known))
         follower, keep = self._taken_up(stance, wanted)
         branch, before = self.branches.head(stance, wanted)
         follower = follower or branch

@@ -7,17 +7,19 @@ Signals: a stance and the turns of a run in; out the head of an earlier run, whe
     back from tips                               ◀───────◁
 
 The head is deterministic: up to the junction at which the turns differ, and up to the tip from which it goes
-back, two runs are one, to the last bit.
+back, two runs are one, to the last bit. They are one altogether if the first never came to that junction.
+
+So a run from a stance from which the head has run before, with the same turns, is not run again.
 
 Source: our own. Questions: `knots` take a run up again, too, where turns or ink differ by their places; they
 are kept every few mm, for whoever asks for them, and outlive a trace. Branches are kept at junctions, in
-every run, as long as the attempts at one line go on.
+every run, as long as the attempts at one line, or at one patch of ink, go on.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from morfax.tracer.following.knots import copied
 
@@ -28,6 +30,9 @@ if TYPE_CHECKING:
     from morfax.tracer.head.stance import Stance
 
 MOST_HEADS = 128  # kept in all, some 60 kB each; a run that leaves another later begins anew
+MOST_MM = 3000.0  # travel of the runs that are kept for the attempts from another stance: 30 MB
+
+Key = tuple[Any, ...]
 
 
 @dataclass(slots=True)
@@ -37,10 +42,12 @@ class _Run:
     """
 
     stance: Stance
+    key: Key
     turns: Turns
     heads: dict[int, Follower] = field(default_factory=dict)
     at_tip: Follower | None = None
     came_to: Followed | None = None
+    asked_at: set[int] = field(default_factory=set)  # the junctions at which turns mattered
 
     def from_there(self, head: Follower, left_at: int) -> Followed | None:
         """What a run comes to that left this one at a junction, and before the next is where this one was.
@@ -63,12 +70,36 @@ class Branches:
 
     def __init__(self) -> None:
         self._runs: list[_Run] = []
+        self._kept = 0
+
+    def make_room(self) -> None:
+        """Forget the heads of the runs so far, or the runs as well, if they take much memory."""
+        kept_mm = sum(run.came_to.travel_mm for run in self._runs if run.came_to is not None)
+        if kept_mm > MOST_MM:
+            self._runs, self._kept = [], 0
+        if 2 * self._kept > MOST_HEADS:
+            self._kept = 0
+            for run in self._runs:
+                run.heads, run.at_tip = {}, None
+
+    def known(self, stance: Stance, turns: Turns) -> Followed | None:
+        """What a run comes to that was made before, or whose last turn is at a junction to which the earlier
+        run never came.
+        """
+        same = self._run(stance, turns)
+        if same is not None and same.came_to is not None:
+            return same.came_to
+        earlier = self._with_fewer(stance, turns) if turns.other else None
+        if earlier is None or earlier.came_to is None or turns.other[-1] in earlier.asked_at:
+            return None
+        self._runs.append(replace(earlier, turns=turns, at_tip=None))
+        return earlier.came_to
 
     def head(self, stance: Stance, turns: Turns) -> tuple[Follower | None, Before]:
         """The head where the run that begins now leaves an earlier one, if it does; and what is to be called
         before each junction of this run: it keeps the head.
         """
-        run = _Run(stance, turns)
+        run = _Run(stance, _key(stance), turns)
         head, left = self._from_tip(run), None
         if head is None and turns.other:
             left = self._left(run)
@@ -78,9 +109,13 @@ class Branches:
         def before(head: Follower) -> Followed | None:
             if head.junction in run.heads:
                 return None
-            if sum(len(each.heads) for each in self._runs) < MOST_HEADS:
+            if self._kept < MOST_HEADS:
                 run.heads[head.junction] = copied(head)
-            return None if left is None else left.from_there(head, turns.other[-1])
+                self._kept += 1
+            known = None if left is None else left.from_there(head, turns.other[-1])
+            if left is not None and known is not None:
+                run.asked_at |= left.asked_at
+            return known
 
         return head, before
 
@@ -88,6 +123,7 @@ class Branches:
         """The newest run has ended: keep its head if that stands at a tip."""
         self._runs[-1].at_tip = head if head.is_at_tip else None
         self._runs[-1].came_to = came_to
+        self._runs[-1].asked_at |= head.asked_at
 
     def _from_tip(self, run: _Run) -> Follower | None:
         """The head that goes back from the tip at which the same run ended."""
@@ -101,10 +137,13 @@ class Branches:
 
     def _left(self, run: _Run) -> _Run | None:
         """The earlier run that a run leaves at the junction of its last turn."""
-        number = run.turns.other[-1]
-        fewer = tuple(turn for turn in run.turns.other if turn != number)
-        earlier = self._run(run.stance, run.turns._replace(other=fewer))
-        return earlier if earlier is not None and number in earlier.heads else None
+        earlier = self._with_fewer(run.stance, run.turns)
+        return earlier if earlier and run.turns.other[-1] in earlier.heads else None
+
+    def _with_fewer(self, stance: Stance, turns: Turns) -> _Run | None:
+        """The run from a stance with the same turns but the last, if it was made."""
+        fewer = tuple(turn for turn in turns.other if turn != turns.other[-1])
+        return self._run(stance, turns._replace(other=fewer))
 
     def _from_junction(self, run: _Run, left: _Run) -> Follower:
         """The head before the junction at which a run leaves another."""
@@ -116,5 +155,22 @@ class Branches:
 
     def _run(self, stance: Stance, turns: Turns) -> _Run | None:
         """The run from a stance with some turns, if it was made."""
-        same = (run for run in self._runs if run.stance is stance and run.turns == turns)
+        key = _key(stance)
+        same = (run for run in self._runs if run.key == key and run.turns == turns)
         return next(same, None)
+
+
+def _key(stance: Stance) -> Key:
+    """What a run from a stance depends on. What the cells see is the same if it is the same array."""
+    view = stance.view
+    *_, level, tiles = cells = view.cells
+    sees = id(cells.darkness), id(tiles), level, view.pitch_mm, view.grainy, view.parted
+    line = view.width_mm, view.usual_mm, view.enlarged, view.on_edge
+    return (
+        *stance.place_mm.tolist(),
+        stance.heading_rad,
+        stance.at_end,
+        stance.reference_mm,
+        *sees,
+        *line,
+    )

@@ -84,6 +84,11 @@ class Follower(RunEnds):
         """The number of a junction to which the head comes here."""
         return self._ways_out.junctions.next(self.carriage.travel_mm)
 
+    @property
+    def asked_at(self) -> set[int]:
+        """The numbers of the junctions so far at which another turn would have led another way."""
+        return self._ways_out.asked_at
+
     def take_up(self, turns: Turns, *, at_junction: bool = False) -> None:
         """Take up an earlier run where its copy was kept, or at its end, and tell the head other turns."""
         self._ways_out.turns, self._at_junction = turns, at_junction
@@ -237,7 +242,7 @@ class Follower(RunEnds):
 
         self.carriage.says("in a tangle")
         number = self._ways_out.junctions.next(self.carriage.travel_mm)
-        way_in, rank = self.carriage.stands(), self._ways_out.turns.other.count(number)
+        way_in, rank = self.carriage.stands(), self._ways_out.rank(number)
         approach = Approach(incoming, self.carriage.trail, way_in, plan, number, rank)
         return self._tangles.way_out(self.view, approach)
 

@@ -123,6 +123,14 @@ class Line:
         )
 
     @classmethod
+    def bare(cls, run: Followed) -> Line:
+        """The same without marks, stops and gaps: what is asked for its way alone."""
+        line = run.positions_mm, run.ending, run.view.width_mm, run.travel_mm, run.fault
+        return cls(
+            *line, loop_from=run.loop_from, guides=run.guides, junctions_mm=run.junctions_mm
+        )
+
+    @classmethod
     def of_dot(cls, centre_mm: Array, width_mm: float, number: int) -> Line:
         """A dot that stands alone, a drill point without a guide line."""
         dot = Mark("dot", (float(centre_mm[0]), float(centre_mm[1])), 0.0)

@@ -66,6 +66,8 @@ class WaysOut:
     served: set[int] = field(
         default_factory=set
     )  # numbers of the corrections that the head went by
+    # numbers of the junctions at which other turns were asked for, or would have been
+    asked_at: set[int] = field(default_factory=set)
 
     def fork(self, view: View, seen: Array, here: int, carriage: Carriage) -> int | None:
         """The station of a felt line (n, 3), ahead of `here`, from which the head goes on by legs; None if
@@ -121,7 +123,7 @@ class WaysOut:
         number = self.junctions.next(travel_mm)
         side = self.turns.sides[number] if number < len(self.turns.sides) else None
         leads = number == 0 and self.from_reference
-        rank = self.turns.other.count(number)
+        rank = self.rank(number)
         way_in = WayIn(view, incoming, trail)
         found = survey(way_in, Asked(rank, side, leads))
         if found.choices > 1:
@@ -135,7 +137,7 @@ class WaysOut:
     def leaves_beside(self, view: View, incoming: Leg, carriage: Carriage) -> bool:
         """Whether the head leaves a clean line where ink turns off beside it; else counts the junction."""
         number = self.junctions.next(carriage.travel_mm)
-        asked = number in self.turns.other or any(self.turns.sides[number : number + 1])
+        asked = self.rank(number) > 0 or any(self.turns.sides[number : number + 1])
         if asked or self.comes_back(view, incoming):
             return True
         way_in = WayIn(view, incoming, carriage.trail)
@@ -144,6 +146,11 @@ class WaysOut:
             place = _place_of(way_in, found)
             self.junctions.come_to(place, carriage.travel_mm)
         return False
+
+    def rank(self, number: int) -> int:
+        """Which leg the head takes at a junction: 0 the straightest, 1 the second straightest …"""
+        self.asked_at.add(number)
+        return self.turns.other.count(number)
 
     def comes_back(self, view: View, incoming: Leg) -> bool:
         """Whether the head is back at the junction where it took a guide line."""

@@ -81,6 +81,7 @@ class Target:
     def run(self, stance: Stance, ink_mm: float, *, other_turns: bool = False) -> StanceRun:
         """Follow from a stance; with other turns also where straight on does not go round as asked."""
         sheet, operator = self.setup.sheet, self.setup.operator
+        self.setup.runs.make_room()
         attempts = Attempts(
             sheet.drawing,
             self.setup.settings,
@@ -88,6 +89,7 @@ class Target:
             operator.sides,
             self.setup.told(ink_mm),
             other_turns,
+            branches=self.setup.runs,
         )
         try:
             run = attempts.asked_for(stance, operator.direction, self.start_mm)

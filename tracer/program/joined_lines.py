@@ -21,15 +21,17 @@ the report lists its length.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
-from morfax.motion.arrays import Array
 from morfax.motion.polyline import nearest_mm
+from morfax.tracer.corrections.on_sheet import StopAt
 from morfax.tracer.drawing.strokes import Stroke
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
+from morfax.tracer.program.left_ink import LeftInk
 from morfax.tracer.program.selection import LETTER_MM, Contour, least_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_through
@@ -43,24 +45,41 @@ RUNS = 60  # tried on a patch, ...
 TRIED_MM = 1500.0  # ... and travel, besides the length of its ink, in runs that are no lines
 
 
-@dataclass(slots=True)
 class _Found:
-    """What the runs on a patch came to: its lines, the ways that were tried, and the travel spent in vain."""
+    """What the runs on a patch came to: its lines, what was tried of the ink, and travel spent in vain."""
 
-    lines: list[Line]
-    tried: list[Array]
-    in_vain: list[Array] = field(default_factory=list)
-    spent_mm: float = 0.0
+    def __init__(self, line: Line, stroke: Stroke, beside_widths: float) -> None:
+        """A patch along which one line has been followed."""
+        beside_mm = beside_widths * stroke.width_mm
+        self.lines, self.spent_mm = [line], 0.0
+        self._tried, self._in_vain = LeftInk(stroke, beside_mm), LeftInk(stroke, beside_mm)
+        self._tried.pass_by(line.places_mm)
 
-    def take(self, runs: list[Line]) -> None:
-        """Take in the runs from one stance: the last is a line of its own, or all were in vain."""
-        if _is_line(runs[-1], self.lines):
-            self.lines.append(runs[-1])
-            self.tried.append(runs[-1].places_mm)
+    def left(self) -> Stroke:
+        """The ink that no run has tried."""
+        return self._tried.left()
+
+    def left_by_all(self) -> Stroke:
+        """The ink that no run has passed."""
+        return self._tried.left(self._in_vain.away_mm)
+
+    def tries(self, place_mm: tuple[float, float]) -> None:
+        """Note that the head is put down at a place."""
+        self._tried.pass_by(np.array([place_mm]))
+
+    def take(self, runs: list[Followed], stops: tuple[StopAt, ...]) -> None:
+        """Take in the runs from one stance: the last is a line of its own, with the stops that the operator
+        told, or all were in vain.
+        """
+        lines = [Line.bare(run) for run in runs]
+        if _is_line(lines[-1], self.lines):
+            self.lines.append(Line.of(runs[-1], stops=stops))
+            self._tried.pass_by(lines[-1].places_mm)
             return
-        self.spent_mm += sum(run.length_mm for run in runs)
-        self.tried += [run.own_mm for run in runs]
-        self.in_vain += [run.places_mm for run in runs]
+        self.spent_mm += sum(line.length_mm for line in lines)
+        for line in lines:
+            self._tried.pass_by(line.own_mm)
+            self._in_vain.pass_by(line.places_mm)
 
 
 def joined_to(
@@ -75,30 +94,28 @@ def joined_to(
     if setup.sheet.drawing.edges_mm:  # every edge is a line of its own
         return [], 0.0
     shortest_mm = float(least_mm(stroke.width_mm))
-    found = _Found([line], [line.places_mm])
-    beside = BESIDE_WIDTHS
-    left = _left(stroke, found.tried, beside)
-    if left.length_mm < shortest_mm:
-        beside = CLOSE_WIDTHS
-        left = _left(stroke, found.tried, beside)
-    if left.length_mm < shortest_mm:
+    for beside in (BESIDE_WIDTHS, CLOSE_WIDTHS):
+        found = _Found(line, stroke, beside)
+        left = found.left()
+        if left.length_mm >= shortest_mm:
+            break
+    else:
         return [], 0.0
     view = view_of(setup.sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
     for _ in range(RUNS):
         # 1. put the head down on ink that is left, and run
         place_mm = replace(contour, stroke=left).starts_mm()[0]
-        found.tried.append(np.array([place_mm]))
+        found.tries(place_mm)
         stance = stance_near(view, left, place_mm)
         if stance is not None:
-            found.take(followed_through(setup, stance))
+            found.take(followed_through(setup, stance), setup.sheet.drawing.told_stops)
         # 2. ink that no run has passed, or else that none has tried
-        left = _left(stroke, [*found.tried, *found.in_vain], beside)
+        left = found.left_by_all()
         if left.length_mm < shortest_mm:
-            left = _left(stroke, found.tried, beside)
+            left = found.left()
         if left.length_mm < shortest_mm or found.spent_mm > TRIED_MM + stroke.length_mm:
             break
-    over = _left(stroke, [some.places_mm for some in found.lines], beside)
-    return found.lines[1:], over.length_mm
+    return found.lines[1:], _left_over_mm(stroke, found.lines, beside)
 
 
 def _lines_among(strokes: list[Line], line: Line, contour: Contour) -> tuple[list[Line], float]:
@@ -107,8 +124,15 @@ def _lines_among(strokes: list[Line], line: Line, contour: Contour) -> tuple[lis
     for stroke in strokes:
         if _is_line(stroke, lines):
             lines.append(stroke)
-    ways = [some.places_mm for some in lines]
-    return lines[1:], _left(contour.stroke, ways, BESIDE_WIDTHS).length_mm
+    return lines[1:], _left_over_mm(contour.stroke, lines, BESIDE_WIDTHS)
+
+
+def _left_over_mm(stroke: Stroke, lines: list[Line], beside_widths: float) -> float:
+    """The length of a patch's ink beside which no line runs, mm."""
+    ink = LeftInk(stroke, beside_widths * stroke.width_mm)
+    for line in lines:
+        ink.pass_by(line.places_mm)
+    return ink.left().length_mm
 
 
 def _is_line(line: Line, others: list[Line]) -> bool:
@@ -119,29 +143,3 @@ def _is_line(line: Line, others: list[Line]) -> bool:
     same_mm = SAME_WIDTHS * line.width_mm
     near = [nearest_mm(line.places_mm, other.places_mm) < same_mm for other in others]
     return bool(np.mean(~np.any(near, axis=0)) > NEW)
-
-
-def _left(stroke: Stroke, ways: list[Array], beside: float) -> Stroke:
-    """The part of a stroke that none of some ways passes within so many widths."""
-    beside_mm = beside * stroke.width_mm
-    near = np.any([nearest_mm(stroke.middles_mm, way) < beside_mm for way in ways], axis=0)
-    # all of it, as a rule: nothing to weigh, and scipy is not imported
-    share = 0.0 if near.all() else float(np.average(~near, weights=1 / _crowded(stroke)))
-    return replace(
-        stroke,
-        middles_mm=stroke.middles_mm[~near],
-        filled=stroke.filled[~near],
-        length_mm=stroke.length_mm * share,
-    )
-
-
-def _crowded(stroke: Stroke) -> Array:
-    """How many middle places of a stroke are within its width of each.
-
-    A line along the rows has two abreast, a sloping line has one.
-    """
-    from scipy.spatial import cKDTree
-
-    tree = cKDTree(stroke.middles_mm)
-    counts = tree.query_ball_point(stroke.middles_mm, stroke.width_mm, return_length=True)
-    return np.asarray(counts, float)

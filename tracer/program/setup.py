@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.branches import Branches
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 
@@ -30,6 +31,8 @@ class Setup:
     progress: HeadProgress | None = None
     # the junctions of the patch of ink that was solved last, by its number (see `net_outline`)
     newest: dict[int, Junctions] = field(default_factory=dict, repr=False, compare=False)
+    # the head's runs with just this set-up
+    runs: Branches = field(default_factory=Branches, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if self.operator.marks == "off":
@@ -50,6 +53,8 @@ class Setup:
 
     def without_turns(self) -> Setup:
         """The set-up with a card that asks for no turns at junctions."""
+        if not self.operator.card.turns:
+            return self
         card = replace(self.operator.card, turns=())
         return replace(self, operator=replace(self.operator, card=card))
 

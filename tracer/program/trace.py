@@ -19,6 +19,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.attempts import Attempts, longest_mm
 from morfax.tracer.following.direction import goes, turned_about
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import ends_of, put_down
 from morfax.tracer.head.settings import Settings
@@ -102,7 +103,7 @@ def followed_from_an_end(setup: Setup, stroke: Stroke, number: int = 1) -> Line 
     return best if best is not None and best.ending != "lost" else None
 
 
-def followed_through(setup: Setup, stance: Stance) -> list[Line]:
+def followed_through(setup: Setup, stance: Stance) -> list[Followed]:
     """The head's runs straight on through a stance, without other turns.
 
     The last run goes round about in the direction asked for, or from end to end.
@@ -117,7 +118,7 @@ def followed_through(setup: Setup, stance: Stance) -> list[Line]:
         runs.append(attempts.run(back))
     elif first.ending != "closed" or wrong_way:
         runs.append(attempts.run(turned_about(stance)))
-    return [Line.of(run, stops=drawing.told_stops) for run in runs]
+    return runs
 
 
 def _several_lead(lines: list[Line]) -> LineFault:

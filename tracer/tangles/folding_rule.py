@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
 from morfax.motion.polyline import area_mm2, evenly, length_mm
-from morfax.tracer.tangles import beside_itself, pen
+from morfax.tracer.tangles import bent_rule, beside_itself, pen
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
 # which of so many corners are rounded: the patterns that are tried
@@ -43,12 +43,6 @@ ROUNDED = {
 ROUNDING = 0.8  # of half a width, as a rounded rule begins
 LIKE_PEN = 0.7, 1.4  # times as wide as was felt: another pen explains nothing
 MOST_SETTLED = 8  # of the rules, those that explain most to begin with
-ARC_RAD = math.radians(
-    6.0
-)  # between the places of an arc: they lie within 1 um of one of 0.7 mm
-STRAIGHT = 1e-3  # tangent of half a turn: a smaller one is not rounded
-# of a piece: an arc takes half of it at the most, and all but this of one that ends where it is sharp
-KEPT = 0.02
 BESIDE = 1.2  # half widths from the line: darker ink further away is a bar's
 FEWEST = 20  # places that a bar of ink has, at the least
 STEP = 0.1  # widths, between the places of a way that are held against each other
@@ -85,7 +79,7 @@ class Rule(NamedTuple):
     @property
     def way(self) -> Array:
         """The way (n, 2) mm."""
-        return np.vstack(self.stretches())
+        return self._places()[:, :2]
 
     @property
     def length_mm(self) -> float:
@@ -94,39 +88,17 @@ class Rule(NamedTuple):
 
     def stretches(self) -> list[Array]:
         """The way as stretches (n, 2) mm between sharp corners."""
-        places = np.vstack([self.first_mm, self.corners_mm, self.last_mm])
-        stretches, stretch = list[Array](), [places[:1]]
-        for k, is_rounded in enumerate(self.rounded.tolist(), 1):
-            arc = self._arc(places, k) if is_rounded else places[k : k + 1]
-            stretch.append(arc)
-            if len(arc) == 1:
-                stretches.append(np.vstack(stretch))
-                stretch = [arc]
-        return [*stretches, np.vstack([*stretch, places[-1:]])]
+        places = self._places()
+        sharp = np.flatnonzero(places[:, 2]).tolist()
+        ends = zip([0, *sharp], [*sharp, len(places) - 1], strict=True)
+        return [places[first : last + 1, :2] for first, last in ends]
 
-    def _arc(self, places: Array, k: int) -> Array:
-        """The places (n, 2) mm of the arc at a corner; the corner alone where there is no room for an arc."""
-        before, after = places[k] - places[k - 1], places[k + 1] - places[k]
-        long_mm = np.array([np.hypot(*before), np.hypot(*after)])
-        ahead, on = before / max(long_mm[0], 1e-12), after / max(long_mm[1], 1e-12)
-        turned = math.atan2(ahead[0] * on[1] - ahead[1] * on[0], float(ahead @ on))
-        slope = math.tan(min(0.5 * abs(turned), 1.5))
-        # 1. how far from the corner it begins
-        open_ends = np.array([not self._is_rounded(k - 1), not self._is_rounded(k + 1)])
-        room_mm = float((long_mm * np.where(open_ends, 1 - KEPT, 0.5)).min())
-        reach_mm = min(abs(self.radius_mm) * slope, room_mm)
-        if slope < STRAIGHT or reach_mm < 1e-6:
-            return places[k : k + 1]
-        # 2. about its middle
-        radius_mm = reach_mm / slope
-        inward = math.copysign(1.0, turned) * np.array([-ahead[1], ahead[0]])
-        middle = places[k] - reach_mm * ahead + radius_mm * inward
-        along = np.linspace(0.0, abs(turned), 2 + math.ceil(abs(turned) / ARC_RAD))[:, None]
-        return np.asarray(middle + radius_mm * (np.sin(along) * ahead - np.cos(along) * inward))
-
-    def _is_rounded(self, k: int) -> bool:
-        """Whether a place of first, corners and last is a rounded corner."""
-        return 0 < k <= len(self.rounded) and bool(self.rounded[k - 1])
+    def _places(self) -> Array:
+        """Places along it (n, 3): x and y in mm, and 1 where it turns sharply."""
+        out = np.empty((bent_rule.most_places(len(self.rounded)), 3))
+        ends = np.array([self.first_mm, self.last_mm])
+        corners, radius_mm = np.ascontiguousarray(self.corners_mm), float(self.radius_mm)
+        return out[: bent_rule.bent(ends, corners, self.rounded, radius_mm, out)]
 
 
 def along(way: Array, half_mm: float) -> Iterator[Rule]:
@@ -214,15 +186,19 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
         corners_mm, half_mm = figures[:size].reshape(-1, 2), float(figures[-1])
         return start._replace(corners_mm=corners_mm, radius_mm=radius_mm, half_mm=half_mm)
 
+    seen, drawn = ink.for_kernel(), np.empty(len(ink.darkness))
+    ends_and_rounded = np.array([start.first_mm, start.last_mm]), start.rounded
+
     def wrong(figures: Array) -> Array:
-        rule = rule_of(figures)
-        return ink.drawn_along(rule.way, rule.half_mm) - ink.darkness
+        bent_rule.wrong(seen, ends_and_rounded, figures, drawn)
+        return drawn.copy()
+
+    def changes(figures: Array) -> Array:
+        return np.asarray(bent_rule.changes(seen, ends_and_rounded, figures.copy()))
 
     radius = [start.radius_mm] if is_rounded else []
     figures = np.r_[start.corners_mm.ravel(), radius, start.half_mm]
-    fit = least_squares(
-        wrong, figures, method="lm", diff_step=1e-4, max_nfev=STEPS * len(figures)
-    )
+    fit = least_squares(wrong, figures, changes, method="lm", max_nfev=STEPS * len(figures))
     rule = rule_of(fit.x)
     least, most = LIKE_PEN
     is_pen = least * ink.half_mm < rule.half_mm < most * ink.half_mm

@@ -104,6 +104,11 @@ class SeenInk(NamedTuple):
         _count_near(places, near_mm2, (near > NEIGHBOURS).astype(np.int64), kept)
         return places[kept > 0]
 
+    def for_kernel(self) -> pen.Ink:
+        """The same for kernels."""
+        places, darkness, known_mm = map(np.ascontiguousarray, self[:3])
+        return pen.Ink(places, darkness, known_mm, self.half_mm, self.softness_mm)
+
     def drawn_along(self, way: Array, half_mm: float) -> Array:
         """Darkness (n,) that a pen of half a width leaves along a way (m, 2) mm and the known lines."""
         return self._drawn(pen.away_from(self.places_mm, way), half_mm)

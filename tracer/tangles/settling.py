@@ -91,28 +91,47 @@ def _span(drawn, vertex):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def _rests(seen, places, drawn, vertices, lines):  # type: ignore[no-untyped-def]
+    """Squares (k, n), mm2, of the distances of places from all that each of the k vertices leaves in place.
+
+    The spans of the vertices follow one another: each piece is sought once before them, and once after them.
+    """
+    count = pieces(drawn, vertices, lines)
+    rests = np.empty((len(vertices), len(seen.known_mm)))
+    squares = seen.known_mm * seen.known_mm
+    at = 0
+    for i in range(len(vertices)):
+        first, _ = _span(drawn, i)
+        _near(places, lines, at, first, squares)
+        rests[i], at = squares, first
+    squares[:] = seen.known_mm * seen.known_mm
+    at = count
+    for i in range(len(vertices) - 1, -1, -1):
+        _, last = _span(drawn, i)
+        _near(places, lines, last, at, squares)
+        rests[i], at = np.minimum(rests[i], squares), last
+    return rests
+
+
+@njit(cache=True)
 def _changes(seen, places, drawn, vertices, lines, now):  # type: ignore[no-untyped-def]
     """By how much each coordinate of the vertices changes what is wrong at each place, per mm.
 
     `now`: squares of the distances, and what is wrong, (2, n).
     """
     n = now.shape[1]
-    change, rest, squares = np.zeros((2 * len(vertices), n)), np.empty(n), np.empty(n)
+    change, squares = np.zeros((2 * len(vertices), n)), np.empty(n)
+    # 1. the pieces that each vertex does not move
+    rests = _rests(seen, places, drawn, vertices, lines)
     for i in range(len(change)):
         vertex, axis = i // 2, i % 2
         first, last = _span(drawn, vertex)
-        # 1. the pieces that the vertex does not move
-        if axis == 0:
-            rest[:] = seen.known_mm * seen.known_mm
-            count = pieces(drawn, vertices, lines)
-            _near(places, lines, 0, first, rest)
-            _near(places, lines, last, count, rest)
         # 2. those that it moves
         old = vertices[vertex, axis]
         vertices[vertex, axis] = old + NUDGE_MM
         pieces(drawn, vertices, lines)
         vertices[vertex, axis] = old
-        squares[:] = rest
+        squares[:] = rests[vertex]
         _near(places, lines, first, last, squares)
         # 3. the ink, where any of them was or is the nearest
         for k in range(n):

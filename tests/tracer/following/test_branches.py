@@ -71,6 +71,45 @@ def test_a_run_with_other_turns_leaves_the_run_without_them_at_the_junction() ->
     )  # near the junction, not where it was put down
 
 
+def test_a_turn_at_a_junction_to_which_the_run_never_came_is_not_run_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    stance, attempts = stance_on(LADDER), attempts_at(LADDER)
+    turned = attempts.run(stance, (0,))
+    beyond = len(turned.junctions_mm) + 1
+    assert_same(turned, attempts_at(LADDER).run(stance, (0, beyond)))
+    followed = list[Carriage]()
+    follow = clean_line.follow
+    monkeypatch.setattr(
+        clean_line, "follow", lambda c, *more: followed.append(c) or follow(c, *more)
+    )
+    assert_same(attempts.run(stance, (0, beyond)), turned)
+    assert not followed
+    # a further turn beside it is
+    attempts.run(stance, (0, 1))
+    assert followed
+
+
+def test_a_run_that_was_made_before_is_not_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also for other attempts with the same branches, and a stance that is only alike; until they forget."""
+    stance, attempts = stance_on(LADDER), attempts_at(LADDER)
+    first = attempts.run(stance)
+    alike = replace(stance, place_mm=stance.place_mm.copy())
+    others = replace(attempts_at(LADDER), branches=attempts.branches)
+    assert others.run(alike) is first
+    assert others.run(replace(stance, heading_rad=stance.heading_rad + 0.01)) is not first
+    dim = replace(stance, view=stance.view.at_level(0.9 * stance.view.level))
+    assert others.run(dim) is not first
+    assert replace(others, by_stations=True).run(stance) is not first
+    attempts.branches.make_room()
+    assert others.run(stance) is first
+    monkeypatch.setattr(branches, "MOST_MM", 0.5 * first.travel_mm)
+    attempts.branches.make_room()
+    again = others.run(stance)
+    assert again is not first
+    assert_same(again, first)
+
+
 def test_a_run_from_another_stance_or_with_other_sides_begins_at_the_beginning() -> None:
     stance, attempts = stance_on(LADDER), attempts_at(LADDER)
     attempts.run(stance)

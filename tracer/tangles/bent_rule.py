@@ -1,0 +1,130 @@
+"""The way of a folding rule, bent at its corners, and how that way's ink differs from the ink that is seen.
+
+    first ●────╮ rounded     an arc leaves each side where it touches it: as far from the corner as its
+               │             radius asks for, and no further than the sides have room for
+         sharp └────● last
+
+Signals: the two ends of a rule (2, 2) mm, its figures (corners, radius, half the pen's width, mm) and which
+corners are rounded in; places (n, 2) mm along it, and darkness drawn too much at each place of the ink, out.
+
+Source: our own (see `folding_rule`). A fit draws a rule some hundred times, each figure moved in turn (see
+`changes`): in kernels.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from morfax.motion.compiled import njit
+from morfax.tracer.tangles import pen
+
+ARC_RAD = math.radians(
+    6.0
+)  # between the places of an arc: they lie within 1 um of one of 0.7 mm
+MOST_OF_ARC = 2 + math.ceil(math.pi / ARC_RAD)
+STRAIGHT = 1e-3  # tangent of half a turn: a smaller one is not rounded
+# of a piece: an arc takes half of it at the most, and all but this of one that ends where it is sharp
+KEPT = 0.02
+STEP = 1e-4  # of a figure, by which it is moved to see what that changes
+
+
+@njit(cache=True)
+def most_places(corners):  # type: ignore[no-untyped-def]
+    """How many places a rule with so many corners has, at the most."""
+    return 2 + corners * MOST_OF_ARC
+
+
+@njit(cache=True, _nrt=False)
+def bent(ends, corners, rounded, radius_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, 3) with places along a rule, x and y in mm, and 1 where it turns sharply; how many."""
+    last = len(corners) - 1
+    out[0, 0], out[0, 1], out[0, 2] = ends[0, 0], ends[0, 1], 0.0
+    n = 1
+    for k in range(last + 1):
+        before = corners[k - 1] if k > 0 else ends[0]
+        after = corners[k + 1] if k < last else ends[1]
+        # a side is all of a corner's own if the corner at its other end is sharp
+        own = k == 0 or not rounded[k - 1], k == last or not rounded[k + 1]
+        count = _arc((before, corners[k], after), own, radius_mm, out[n:]) if rounded[k] else 0
+        if count == 0:
+            out[n, 0], out[n, 1], out[n, 2] = corners[k, 0], corners[k, 1], 1.0
+            count = 1
+        n += count
+    out[n, 0], out[n, 1], out[n, 2] = ends[1, 0], ends[1, 1], 0.0
+    return n + 1
+
+
+@njit(cache=True, _nrt=False)
+def _arc(places, own, radius_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` with the places of the arc at the middle one of three places: how many, 0 where there is no
+    room for an arc. `own`: whether the side before it, and that after it, are the corner's own.
+    """
+    before, corner, after = places
+    x, y = corner[0] - before[0], corner[1] - before[1]
+    u, v = after[0] - corner[0], after[1] - corner[1]
+    before_mm, after_mm = math.hypot(x, y), math.hypot(u, v)
+    x, y = x / max(before_mm, 1e-12), y / max(before_mm, 1e-12)
+    u, v = u / max(after_mm, 1e-12), v / max(after_mm, 1e-12)
+    turned = math.atan2(x * v - y * u, x * u + y * v)
+    slope = math.tan(min(0.5 * abs(turned), 1.5))
+    # 1. how far from the corner it begins
+    room_mm = min(
+        before_mm * (1 - KEPT if own[0] else 0.5), after_mm * (1 - KEPT if own[1] else 0.5)
+    )
+    reach_mm = min(abs(radius_mm) * slope, room_mm)
+    # a fit may throw a corner so far that nothing is known of its turn
+    if not (abs(turned) <= math.pi and slope >= STRAIGHT and reach_mm >= 1e-6):
+        return 0
+    # 2. about its middle
+    radius_mm = reach_mm / slope
+    side = math.copysign(radius_mm, turned)
+    middle_x = corner[0] - reach_mm * x - side * y
+    middle_y = corner[1] - reach_mm * y + side * x
+    count = 2 + math.ceil(abs(turned) / ARC_RAD)
+    for k in range(count):
+        along = abs(turned) * k / (count - 1)
+        sine, cosine = radius_mm * math.sin(along), side * math.cos(along)
+        out[k, 0] = middle_x + sine * x + cosine * y
+        out[k, 1] = middle_y + sine * y - cosine * x
+        out[k, 2] = 0.0
+    return count
+
+
+@njit(cache=True)
+def wrong(ink, rule, figures, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n,) with the darkness that a rule of some figures draws too much at the places of an ink;
+    `rule`: its ends, and which of its corners are rounded.
+    """
+    ends, rounded = rule
+    corners = figures[: 2 * len(rounded)].reshape(-1, 2)
+    radius_mm = figures[2 * len(rounded)] if len(figures) > 2 * len(rounded) + 1 else 0.0
+    way = np.empty((most_places(len(rounded)), 3))
+    count = bent(ends, corners, rounded, radius_mm, way) - 1
+    lines = np.empty((4, count))
+    for k in range(count):
+        lines[0, k], lines[1, k] = way[k, 0], way[k, 1]
+        lines[2, k], lines[3, k] = way[k + 1, 0], way[k + 1, 1]
+    out[:] = pen.NOWHERE_MM
+    pen.away(ink.places_mm, lines, count, out)
+    for k in range(len(out)):
+        away_mm = min(out[k], ink.known_mm[k])
+        out[k] = pen.ink_at(away_mm, figures[-1], ink.softness_mm) - ink.darkness[k]
+
+
+@njit(cache=True)
+def changes(ink, rule, figures):  # type: ignore[no-untyped-def]
+    """By how much each figure of a rule changes what is wrong at places of an ink, (n, figures) per mm."""
+    now, then = np.empty(len(ink.places_mm)), np.empty(len(ink.places_mm))
+    change = np.empty((len(ink.places_mm), len(figures)))
+    wrong(ink, rule, figures, now)
+    for i in range(len(figures)):
+        old = figures[i]
+        figures[i] = old + STEP * old if old != 0.0 else STEP
+        wrong(ink, rule, figures, then)
+        by = figures[i] - old
+        figures[i] = old
+        for k in range(len(now)):
+            change[k, i] = (then[k] - now[k]) / by
+    return change
