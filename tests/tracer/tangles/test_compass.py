@@ -9,14 +9,14 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import length_mm, nearest_mm, with_places
-from morfax.tracer.tangles import compass, pen
+from morfax.motion.polyline import length_mm, with_places
+from morfax.tracer.tangles import compass
 from morfax.tracer.tangles.compass import Core, explained
 from morfax.tracer.tangles.seen_ink import SeenInk
-from tests.tracer.inked import arc
+from tests.tracer.inked import UM, arc
+from tests.tracer.tangles.pen_ink import HALF_MM, apart_mm, ink_along
 
-PITCH_MM, SOFTNESS_MM, HALF_MM = 0.1, 0.06, 0.25
-UM = 1e-3
+PITCH_MM, SIDE_PX = 0.1, 60
 
 CIRCLE = arc((3.0, 3.1), 0.6)
 SLOT = np.vstack([arc((2.4, 3.0), 0.5, 90, 270), arc((3.6, 3.0), 0.5, -90, 90)])
@@ -30,30 +30,13 @@ def closed(way: Array) -> Array:
 
 
 def ink_of(way: Array, noise: float = 0.0, half_mm: float = HALF_MM) -> SeenInk:
-    """The ink that a pen leaves along a closed way, on pixels with noise."""
-    rows, columns = np.indices((60, 60)).reshape(2, -1)
-    places = PITCH_MM * np.column_stack([columns + 0.5, rows + 0.5])
-    away = np.full(len(places), 1e3)
-    pieces = np.ascontiguousarray(np.hstack([closed(way)[:-1], closed(way)[1:]]).T)
-    pen.away(places, pieces, len(way), away)
-    dark = np.empty(len(places))
-    pen.ink(away, half_mm, SOFTNESS_MM, dark)
-    dark += np.random.default_rng(1).normal(0.0, noise, len(dark))
-    near = away < half_mm + 5 * SOFTNESS_MM
-    count = int(near.sum())
-    known = np.full(count, math.inf)
-    left_by_noise = count * noise**2
-    return SeenInk(
-        places[near], dark[near], known, HALF_MM, SOFTNESS_MM, PITCH_MM**2, left_by_noise
-    )
+    """The ink that a pen leaves along a closed way."""
+    return ink_along(closed(way), PITCH_MM, SIDE_PX, noise, half_mm)
 
 
 def off_mm(core: Core, way: Array) -> float:
     """How far the core's way is from a closed way, and that from it, at most."""
-    laid, true = (
-        with_places(some, 2 * UM) for some in (np.vstack(core.stretches()), closed(way))
-    )
-    return float(max(nearest_mm(laid, true).max(), nearest_mm(true, laid).max()))
+    return apart_mm(np.vstack(core.stretches()), closed(way))
 
 
 @pytest.mark.parametrize(
