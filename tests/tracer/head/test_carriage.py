@@ -15,10 +15,11 @@ from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.head import slow_cell, swinging
 from morfax.tracer.head.carriage import SETTLE_LAGS, Carriage
 from morfax.tracer.head.course import ONTO_MM, along_leg, onto
-from morfax.tracer.head.settings import LEAD_SWEEPS, Settings, tune
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.slow_cell import Piece
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home
+from morfax.tracer.head.tuning import LEAD_SWEEPS, tune
 from morfax.tracer.head.watched import watching
 from morfax.tracer.head.windows import bends_rad, lead_mm
 from morfax.tracer.sensing.leg import Leg
