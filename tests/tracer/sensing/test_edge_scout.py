@@ -19,6 +19,7 @@ PITCH_MM = 25.4 / 300
 STEP_MM = 0.35 * PITCH_MM
 CENTRE = (8.0, 8.0)
 # a filled outline is inked half a fine pixel beyond itself
+SCAN_NOISE = 0.01  # of the darkness of a usual scan
 BEYOND_MM = PITCH_MM / OVERSAMPLE / 2
 EDGE_MM = 0.1 * PITCH_MM  # of a clean drawing, straight between pixels
 
@@ -79,8 +80,8 @@ def test_there_is_no_edge_on_paper_within_ink_or_where_it_is_as_faint_as_noise()
     for place in (CENTRE, (1.0, 1.0)):
         assert math.isnan(edge_scout.onto_edge(cells, *place)[0])
     for contrast, is_seen in ((1.3, True), (0.7, False)):
-        # a ramp that gives a fundamental of so many times the faintest
-        slope = contrast * edge_scout.FAINTEST / edge_scout.CIRCLE_PX
+        # a ramp whose fundamental is so many times four standard deviations of a scan's noise
+        slope = contrast * 4 * SCAN_NOISE / edge_scout.CIRCLE_PX
         ramp = 0.5 + slope * (np.arange(40) - 19.5)
         faint = Cells(np.repeat(ramp[None, :], 40, axis=0).astype(np.float32), PITCH_MM, 0.5)
         assert (

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from morfax.motion.arrays import Array
 from morfax.tracer.sensing.leg import Leg, centre_at, leg_of, meet, turn
+from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, bend_at
 from tests.tracer.inked import UM, WIDTH_MM, arc
 
 NOTHING = np.empty((0, 3))
@@ -108,6 +109,34 @@ def test_the_centre_of_what_was_felt_is_averaged() -> None:
     assert np.hypot(*leg.end_mm) == pytest.approx(5, abs=3 * UM)  # of 4 um, 27 stations
     tangent = math.atan2(leg.end_mm[1], leg.end_mm[0]) + math.pi / 2
     assert abs(turn(leg.heading_rad, tangent)) < 5e-3  # 4 um over 1.4 mm
+
+
+@pytest.mark.parametrize("widths_off", [0.01, 0.2])
+def test_the_centre_of_what_was_felt_is_a_weighted_parabola(widths_off: float) -> None:
+    """1 - (x/h)² towards the middle, and less where the width is off by more than is usual: three robust
+    standard deviations, a fifteenth of the width at the least.
+    """
+    chance = np.random.default_rng(6)
+    x = np.arange(-1.0, 1.0, 0.05)
+    seen = stations(np.column_stack([x, 0.1 * x**3 + chance.normal(0, 5 * UM, len(x))]))
+    seen[:, 2] *= 1 + widths_off * chance.normal(size=len(x))
+    i, half_mm = 22, 0.7
+    near = np.hypot(*(seen[:, :2] - seen[i, :2]).T) < half_mm
+    d = seen[near, :2] - seen[i, :2]
+    heading = math.atan2(*(d[-1] - d[0])[::-1])
+    t, n = (
+        np.array([math.cos(heading), math.sin(heading)]),
+        np.array([-math.sin(heading), math.cos(heading)]),
+    )
+    off = np.abs(seen[near, 2] / np.median(seen[near, 2]) - 1)
+    usual = max(OUTLIERS * 1.4826 * float(np.median(off)), BITTEN)
+    weights = np.maximum(1 - (d @ t / half_mm) ** 2, 0.05) / (1 + (off / usual) ** 4)
+    bend, slope, offset = np.polyfit(d @ t, d @ n, 2, w=np.sqrt(weights))
+    leg = centre_at(seen, i, half_mm)
+    assert leg.end_mm == pytest.approx(seen[i, :2] + offset * n, abs=1e-9)
+    assert leg.heading_rad == pytest.approx(heading + math.atan(slope), abs=1e-9)
+    assert leg.bend_per_mm == pytest.approx(2 * bend / (1 + slope**2) ** 1.5, abs=1e-8)
+    assert bend_at(seen, i, half_mm) == pytest.approx(leg.bend_per_mm, abs=1e-9)
 
 
 @pytest.mark.parametrize("deflection_deg", [30.0, 60.0, 90.0, 144.0, -90.0])

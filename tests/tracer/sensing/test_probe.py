@@ -11,6 +11,7 @@ import pytest
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.probe import (
     end_of,
     is_tip,
@@ -56,6 +57,18 @@ def test_without_a_step_to_go_the_end_is_farther_than_asked() -> None:
     eyes = view(inked(polyline((4, 5), (10, 5))))
     assert reach_of_ink(eyes, straight((9, 5), 0), 0.0) is None
     assert reach_of_ink(eyes, straight((10, 6), 0), 5.0) == 0.0  # on paper already
+
+
+def test_the_last_place_that_is_looked_at_is_within_what_was_asked() -> None:
+    """Samples are half a pixel apart; an end half a step before the last of them is found."""
+    eyes = view(inked(polyline((4, 5), (10, 5))))
+    leg = straight((9, 5), 0)
+    end_mm = reach_of_ink(eyes, leg, 5.0)
+    assert end_mm is not None
+    step_mm = STEP_PX * eyes.pitch_mm
+    asked = (math.ceil(end_mm / step_mm) + 1) * step_mm + 1e-6
+    assert reach_of_ink(eyes, leg, asked) == end_mm
+    assert reach_of_ink(eyes, leg, asked - 2 * step_mm) is None
 
 
 @pytest.mark.parametrize(("beyond_mm", "is_found"), [(4.6, True), (5.4, False)])

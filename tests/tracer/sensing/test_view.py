@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -83,6 +84,40 @@ def test_an_edge_is_found_with_the_shape_to_the_left() -> None:
         turned = math.remainder(heading - (angle + math.pi / 2), math.tau)
         assert abs(turned) < math.radians(3)
     assert eyes.edge_at(np.array([10.0, 10.0])) is None
+
+
+@pytest.mark.parametrize("short_mm", [0.1, 0.7])
+def test_ink_goes_on_to_its_end_from_wherever_it_is_asked(short_mm: float) -> None:
+    """The round of the pen ends half a width beyond where it was lifted."""
+    eyes = view(inked(polyline((4, 5), (10, 5))))
+    place = np.array([10.25 - short_mm, 5.0])
+    assert eyes.ink_along(place, 0.0, 2.0) == pytest.approx(short_mm, abs=20 * UM)
+    assert math.isnan(eyes.ink_along(place, math.pi, 2.0))  # farther than that
+
+
+def test_the_usual_width_follows_by_a_tenth_of_how_far_the_width_differs() -> None:
+    eyes = view(inked(polyline((4, 5), (16, 5)), width_mm=0.62))
+    found = eyes.like(np.array([9.0, 5.0]), 0.0)
+    told = eyes.width_mm + 0.1 * (found.width_mm - eyes.width_mm)
+    assert found.usual_mm == pytest.approx(told, abs=1e-9)
+
+
+def test_larger_cells_about_a_place_see_as_far_as_is_asked() -> None:
+    """Every pixel within that is what it is of the whole sheet; so are those at the sheet's own edges."""
+    drawing = inked(polyline((1, 1), (12, 12)), polyline((1, 12), (12, 1)))
+    cells = photocell.behind_aperture(drawing, 0.15)
+    whole = cv2.GaussianBlur(cells.darkness, (0, 0), 2.0)
+    rows, columns = whole.shape
+    for place in (
+        [6.0, 6.0],
+        [0.2, 0.2],
+        [columns * cells.pitch_mm - 0.2, rows * cells.pitch_mm - 0.2],
+    ):
+        seen = cells.wider(2.0, np.array([place]), 1.5).darkness
+        x, y = np.meshgrid(np.arange(columns) + 0.5, rows - np.arange(rows) - 0.5)
+        near = np.hypot(x * cells.pitch_mm - place[0], y * cells.pitch_mm - place[1]) < 1.5
+        # the same but for how a spot is cut off at the end of its skirts
+        assert seen[near] == pytest.approx(whole[near], abs=2e-3)
 
 
 def test_larger_cells_average_the_grain_of_a_pencil() -> None:
