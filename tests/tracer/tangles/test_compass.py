@@ -9,7 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import length_mm, with_places
+from morfax.motion.plane import cross
+from morfax.motion.polyline import area_mm2, length_mm, with_places
 from morfax.tracer.tangles import compass
 from morfax.tracer.tangles.compass import Core, explained
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -142,3 +143,40 @@ def test_a_core_that_turns_back_and_forth_is_none() -> None:
     ):
         assert Core(points, 0.0, HALF_MM).is_convex == is_convex
     assert Core(square[:1], 1.0, HALF_MM).is_convex and Core(square[:2], 1.0, HALF_MM).is_convex
+
+
+@pytest.mark.parametrize(
+    "polygon", [TRIANGLE, OBLONG, OBLONG[::-1]], ids=["3", "4", "clockwise"]
+)
+def test_a_polygon_is_set_in_by_half_a_width_on_every_side(polygon: Array) -> None:
+    inner = compass._within(polygon, HALF_MM)
+    assert area_mm2(inner) > 0 and len(inner) == len(polygon)
+    for corner in inner:
+        sides = zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
+        off_mm = sorted(abs(cross(b - a, corner - a)) / math.dist(a, b) for a, b in sides)
+        # a corner is half a width from its own two sides, and further from the others
+        assert off_mm[:2] == pytest.approx([HALF_MM, HALF_MM]) and off_mm[-1] > HALF_MM
+
+
+def test_of_a_hull_the_corners_that_matter_most_are_left() -> None:
+    spare = 0.5 * (OBLONG + np.roll(OBLONG, -1, axis=0)) * 1.001
+    hull = np.empty((8, 2))
+    hull[::2], hull[1::2] = OBLONG, spare
+    assert compass._reduced(hull, 4).tolist() == OBLONG.tolist()
+
+
+@pytest.mark.parametrize("turned_rad", [0.0, 0.4, 2.0])
+def test_a_slot_is_as_long_and_as_wide_as_its_ink(turned_rad: float) -> None:
+    """A box of 2.5 x 1.5 mm with a pen of 0.5: places 1 mm apart, on a radius of 0.5."""
+    c, s = math.cos(turned_rad), math.sin(turned_rad)
+    box = np.array([(-1.25, -0.75), (1.25, -0.75), (1.25, 0.75), (-1.25, 0.75)])
+    hull = box @ np.array([[c, s], [-s, c]])
+    slot = compass._slot(hull, 2, HALF_MM)
+    assert abs(slot.points_mm[1] - slot.points_mm[0]) == pytest.approx(
+        [abs(c), abs(s)], abs=1e-6
+    )
+    assert slot.points_mm.mean(axis=0) == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert slot.radius_mm == pytest.approx(0.5, abs=1e-6)
+    circle = compass._slot(hull, 1, HALF_MM)
+    assert circle.points_mm == pytest.approx(np.zeros((1, 2)), abs=1e-6)
+    assert circle.radius_mm == pytest.approx(0.75, abs=1e-6)  # half of the mean of 2 and 1

@@ -86,3 +86,10 @@ def test_arcs_take_no_more_than_half_of_the_side_between_them() -> None:
 def test_sharp_corners_part_the_way_into_stretches() -> None:
     rule = Rule(FIRST, LAST, SQUARE, np.zeros(4, bool), 0.0, HALF_MM)
     assert len(rule.stretches()) == 5 and rule.figures == 8
+
+
+@pytest.mark.parametrize(("times", "is_laid"), [(1.0, True), (1.6, False)])
+def test_a_pen_that_is_1_4_times_as_broad_explains_nothing(times: float, is_laid: bool) -> None:
+    ink = ink_along(way_of(SQUARE), PITCH_MM, SIDE_PX, half_mm=times * HALF_MM)
+    legs = np.vstack([FIRST, [2.5, 6], [4.5, 6], LAST])
+    assert (explained(ink, folding_rule.round_bar(ink, legs)) is not None) == is_laid
