@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.polyline import APART_MM
 from morfax.tracer.head import slow_cell, swinging
 from morfax.tracer.head.carriage import SETTLE_LAGS, Carriage
 from morfax.tracer.head.course import ONTO_MM, along_leg, onto
@@ -151,8 +151,8 @@ def test_places_on_a_leg_are_as_far_apart_as_on_a_curve_at_the_most(length_mm: f
     for start_mm, end_mm in ((-0.3, length_mm - 0.3), (length_mm, 0.0)):
         places = along_leg(leg, start_mm, end_mm)
         steps = np.hypot(*np.diff(places, axis=0).T)
-        assert steps.max() <= curves.SPACING_MM + 1e-12
-        assert len(places) == max(2, math.ceil(length_mm / curves.SPACING_MM - 1e-9) + 1)
+        assert steps.max() <= APART_MM + 1e-12
+        assert len(places) == max(2, math.ceil(length_mm / APART_MM - 1e-9) + 1)
 
 
 # cells
