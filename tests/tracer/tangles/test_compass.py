@@ -180,3 +180,16 @@ def test_a_slot_is_as_long_and_as_wide_as_its_ink(turned_rad: float) -> None:
     circle = compass._slot(hull, 1, HALF_MM)
     assert circle.points_mm == pytest.approx(np.zeros((1, 2)), abs=1e-6)
     assert circle.radius_mm == pytest.approx(0.75, abs=1e-6)  # half of the mean of 2 and 1
+
+
+@pytest.mark.parametrize("radius_mm", [0.3, 0.8])
+def test_a_ring_is_told_from_the_same_shape_filled(radius_mm: float) -> None:
+    """Filled, the shape leaves its middle unexplained: what is light there is a pen's width less."""
+    way = arc((3.0, 3.0), radius_mm)
+    core = Core(np.array([(3.0, 3.0)]), radius_mm, HALF_MM)
+    ink = ink_of(way)
+    within = np.hypot(*(ink.places_mm - 3.0).T) < radius_mm
+    missing = np.where(within, 1.0 - ink.darkness, 0.0)
+    assert compass.filled_misfit(ink, core) == pytest.approx(
+        ink.misfit(ink.darkness + missing), rel=0.02
+    )

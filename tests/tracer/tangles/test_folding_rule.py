@@ -93,3 +93,16 @@ def test_a_pen_that_is_1_4_times_as_broad_explains_nothing(times: float, is_laid
     ink = ink_along(way_of(SQUARE), PITCH_MM, SIDE_PX, half_mm=times * HALF_MM)
     legs = np.vstack([FIRST, [2.5, 6], [4.5, 6], LAST])
     assert (explained(ink, folding_rule.round_bar(ink, legs)) is not None) == is_laid
+
+
+@pytest.mark.parametrize(
+    "corners", [SQUARE, ROUND, POINTED], ids=["square", "round", "pointed"]
+)
+def test_rules_begin_on_the_line_that_the_bay_leaves(corners: Array) -> None:
+    """However far its tip is from there: in steps of a fiftieth of a bar's length."""
+    ink = ink_of(corners)
+    begun = list(folding_rule.round_bar(ink, np.vstack([FIRST, [2.5, 6], [4.5, 6], LAST])))
+    feet = np.array([rule.corners_mm[[0, -1]] for rule in begun if len(rule.corners_mm) > 2])
+    assert len(feet) > 0
+    assert feet[..., 1] == pytest.approx(np.full(feet.shape[:2], 6.0), abs=4 / 50)
+    assert (feet[:, 0, 0] < feet[:, 1, 0]).all()  # in the order of the line
