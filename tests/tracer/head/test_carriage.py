@@ -184,6 +184,41 @@ def test_a_sweep_that_stands_square_looks_across_the_arc_that_touches_its_headin
         before = state.mean_sum
 
 
+@pytest.mark.parametrize(("ink", "followed"), [(0.8, 0.8), (0.1, 0.3), (3.0, 2.0)])
+def test_a_sweep_counts_as_a_third_to_twice_of_the_line_s_ink(
+    seen: View, ink: float, followed: float
+) -> None:
+    """By a tenth of the difference; the line's place is told by that ink."""
+    head = carriage(seen)
+    t, state = head.tuning, head.state
+    state.mean_sum, state.first_sum = ink * t.mean * t.sweep_periods, 0.02 * t.sweep_periods / 2
+    swinging.detect(state, t)
+    assert state.swept_ink == pytest.approx(ink)
+    assert state.ink == pytest.approx(1 + 0.1 * (followed - 1))
+    assert state.middle_mm == pytest.approx(0.02 / (t.slope_per_mm * state.ink))
+
+
+def test_on_an_edge_the_sweep_is_balanced_and_the_fundamental_tells_the_ink(seen: View) -> None:
+    head = carriage(seen)
+    t, state = head.tuning._replace(balance_per_mm=-0.8, mean=0.5), head.state
+    state.mean_sum, state.first_sum = 0.54 * t.sweep_periods, -0.3 * t.sweep_periods / 2
+    swinging.detect(state, t)
+    assert state.swept_ink == pytest.approx(0.3 / 0.5)
+    assert state.middle_mm == pytest.approx((0.54 - 0.5) / -0.8)
+    assert state.ink == 1.0
+
+
+@pytest.mark.parametrize("at", [0, 100, -1])
+def test_a_leg_comes_back_where_it_is_against_the_trail(seen: View, at: int) -> None:
+    """At the trail's beginning, in its course and at its very end."""
+    head = carriage(seen)
+    head.run([line((0, 0), (6, 0))])
+    place = head.positions_mm[at]
+    for heading, comes_back in ((0.0, False), (math.pi, True)):
+        leg = Leg(place, heading, 0.0, WIDTH_MM, NO_STATIONS)
+        assert head.trail.comes_back(leg) == comes_back
+
+
 @pytest.mark.parametrize(("share", "drawn_in"), [(0.6, True), (1.4, False)])
 def test_the_mount_is_drawn_in_at_once_and_slides_out_by_itself(
     seen: View, share: float, drawn_in: bool

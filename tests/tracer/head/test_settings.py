@@ -44,3 +44,16 @@ def test_a_mistake_is_said_in_one_line(
     with pytest.raises(ValueError, match=said) as caught:
         choose(head, changes)
     assert "\n" not in str(caught.value)
+
+
+def test_the_historic_head_swings_as_often_as_the_mains() -> None:
+    """Motor 45 turns with the mains of 50 Hz; its servo and its cells are as slow as servos were."""
+    historic = choose("historic")
+    assert (historic.sweep_hz, historic.aperture_mm, historic.steering_lag_s) == (
+        50.0,
+        0.3,
+        0.03,
+    )
+    # steered straight: damped to 0.71, 2 v / a² for a lead of 2 mm
+    assert historic.lead_mm is not None
+    assert historic.direct_rad_s_mm == 2 * historic.speed_mm_s / historic.lead_mm**2
