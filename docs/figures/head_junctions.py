@@ -23,7 +23,8 @@ from docs.figures.head_stage import (
 )
 from morfax.motion.arrays import Array
 from morfax.tracer.following import ways_out
-from morfax.tracer.junctions import planner
+from morfax.tracer.junctions import choice, planner, rings
+from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import solution
 
@@ -39,6 +40,14 @@ def draw_ring(axes: Axes, centre: Array, radius: float, arcs: Array) -> None:
         )
 
 
+def draw_rings(axes: Axes, view: View, centre: Array, found: list[Leg]) -> None:
+    """The rings about a place: on by half a leg after the first of the legs that they found."""
+    first_mm = min(np.hypot(*(leg.seen[:, :2] - centre).T).min() for leg in found)
+    last_mm = first_mm + rings.MORE_LEGS * view.leg_mm
+    for radius in np.arange(rings.BEGIN * view.width_mm, last_mm, view.step_mm):
+        draw_ring(axes, centre, radius, view.ring(centre, radius))
+
+
 def corner_figure() -> plt.Figure:
     """Two corners: the legs, the rings that found them, and the course through."""
     figure, panels = plt.subplots(1, 2, figsize=(13, 6))
@@ -50,18 +59,18 @@ def corner_figure() -> plt.Figure:
         drawing, by = inked(corner)
         run = put_head(drawing, by + np.array([-7, 0]))
         with (
-            listening(View, "ring") as rings,
+            listening(choice, "legs_around") as looks,
             listening(ways_out, "survey") as surveys,
             listening(run.carriage, "run") as drives,
         ):
             done = run.follow(30.0)
         vertex = corner[1] + by
         ground(axes, drawing, about(vertex + np.array([-1.3, 0.9]), 2.1, 2.1))
-        for (_, centre, radius), arcs in rings:
-            if np.hypot(*(centre - vertex)) < 1.5:
-                draw_ring(axes, centre, radius, arcs)
-        (way_in, *_), choice = surveys[0]
-        legs = (way_in.incoming, BLUE, "incoming"), (choice.leg, GREEN, "outgoing")
+        for (view, centre, _), found in looks:
+            if np.hypot(*(centre - vertex)) < 1.5 and found:
+                draw_rings(axes, view, centre, found)
+        (way_in, *_), chosen = surveys[0]
+        legs = (way_in.incoming, BLUE, "incoming"), (chosen.leg, GREEN, "outgoing")
         for leg, colour, name in legs:
             axes.plot(
                 *leg.seen[:, :2].T, ".", color=colour, markersize=4, label=f"{name} leg, felt"
