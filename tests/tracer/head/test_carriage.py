@@ -18,7 +18,7 @@ from morfax.tracer.head.course import ONTO_MM, along_leg, onto
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.slow_cell import Piece
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import Home
+from morfax.tracer.head.state import Home, at_rest
 from morfax.tracer.head.tuning import LEAD_SWEEPS, tune
 from morfax.tracer.head.watched import watching
 from morfax.tracer.head.windows import bends_rad, lead_mm
@@ -267,3 +267,14 @@ def test_on_a_coarse_scan_the_head_s_sizes_are_pixels(seen: View) -> None:
         assert t.half_window_mm == pytest.approx(window_px * 0.3)
         sweeps_mm = LEAD_SWEEPS * 10.0 / 250.0
         assert t.lead_mm == pytest.approx(t.half_window_mm + t.point_mm + sweeps_mm)
+
+
+def test_the_cell_s_noise_is_normal() -> None:
+    """Mean 0 and standard deviation 1 within three standard errors; twelve numbers sum to 6 at most."""
+    state = at_rest(PLACE, 0.8)
+    hiss = np.array([swinging._hiss(state) for _ in range(5000)])
+    assert abs(hiss.mean()) < 3 / math.sqrt(5000)
+    assert hiss.std() == pytest.approx(1.0, abs=3 / math.sqrt(2 * 5000))
+    assert np.abs(hiss).max() < 6.0
+    # each is independent of the one before
+    assert abs(np.corrcoef(hiss[1:], hiss[:-1])[0, 1]) < 3 / math.sqrt(5000)
