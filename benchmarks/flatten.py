@@ -30,9 +30,10 @@ from morfax.motion.contour import distances_mm
 from morfax.motion.motion import thin
 from morfax.reports import marked_sheet
 from morfax.tracer.drawing import raster
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.flatten.flat import found
 from morfax.tracer.flatten.layout import BAR_MM, Layout
-from morfax.tracer.flatten.projection import Focal
+from morfax.tracer.flatten.projection import Focal, Projection
 from morfax.tracer.flatten.wanted import parsed
 from morfax.tracer.program.trace import trace
 
@@ -98,29 +99,37 @@ def measured(way: str, number: int, *, traced: bool) -> Row:
         "found_tilt_deg": math.degrees(made.tilt_rad),
         "residual_mm": made.fit.rms_mm,
     }
+    row |= _map_row(made.projection, phone)
+    return row | _line_row(drawing) if traced else row
+
+
+def _map_row(projection: Projection, phone: Phone) -> Row:
+    """How far places on the sheet are from where the projection has them, and by how much it stretches."""
     x, y = np.meshgrid(*(np.linspace(INSET_MM, side - INSET_MM, 25) for side in A4))
     places = np.column_stack([x.ravel(), y.ravel()])
-    back = made.projection.to_sheet(phone.to_photo(places, A4))
+    back = projection.to_sheet(phone.to_photo(places, A4))
     off = np.hypot(*(back - places).T)
     grown, *_ = np.linalg.lstsq(
         np.column_stack([places, np.ones(len(places))]), back, rcond=None
     )
     stretches = np.linalg.svd(grown[:2], compute_uv=False)
-    row |= {
+    return {
         "map_rms_mm": float(np.sqrt(np.mean(off**2))),
         "map_max_mm": float(off.max()),
         "map_size": float(np.abs(stretches - 1).max()),
     }
-    if traced:
-        path, truth = thin(trace(drawing)).runs()[0], cam()
-        away = distances_mm(path, truth)
-        sizes = np.ptp(path[:, :2], axis=0) / np.ptp(truth, axis=0)
-        row |= {
-            "line_rms_mm": float(np.sqrt(np.mean(away**2))),
-            "line_max_mm": float(np.abs(away).max()),
-            "line_size": float(np.abs(sizes - 1).max()),
-        }
-    return row
+
+
+def _line_row(drawing: Drawing) -> Row:
+    """How far the line that is traced is from the drawn one, and how much larger or smaller it is."""
+    path, truth = thin(trace(drawing)).runs()[0], cam()
+    away = distances_mm(path, truth)
+    sizes = np.ptp(path[:, :2], axis=0) / np.ptp(truth, axis=0)
+    return {
+        "line_rms_mm": float(np.sqrt(np.mean(away**2))),
+        "line_max_mm": float(np.abs(away).max()),
+        "line_size": float(np.abs(sizes - 1).max()),
+    }
 
 
 def held(way: str, number: int) -> Phone:

@@ -70,16 +70,8 @@ for file in sorted(here.glob("*.ngc")):
 """
 
 
-def configuration(folder: Path, wanted: Machine) -> Path:
-    """Write a simulated machine with the speeds and accelerations of ours; its .ini file."""
-    (folder / "sim.hal").write_text(_HAL)
-    (folder / "sim.tbl").touch()
-    (folder / "sim.var").touch()
-    screen = folder / "screen.py"
-    screen.write_text(_SCREEN.replace("\\\\", "\\"))
-    screen.chmod(0o755)
-    fastest, most = max(wanted.rapid_mm_s), max(wanted.acceleration_mm_s2)
-    text = f"""[EMC]
+_INI = """\
+[EMC]
 VERSION = 1.1
 [DISPLAY]
 DISPLAY = {screen}
@@ -102,13 +94,25 @@ HALFILE = sim.hal
 COORDINATES = X Y Z
 LINEAR_UNITS = mm
 ANGULAR_UNITS = degree
-MAX_LINEAR_VELOCITY = {2 * fastest}
+MAX_LINEAR_VELOCITY = {fastest}
 DEFAULT_LINEAR_ACCELERATION = {most}
 NO_FORCE_HOMING = 1
 [KINS]
 KINEMATICS = trivkins
 JOINTS = 3
 """
+
+
+def configuration(folder: Path, wanted: Machine) -> Path:
+    """Write a simulated machine with the speeds and accelerations of ours; its .ini file."""
+    (folder / "sim.hal").write_text(_HAL)
+    (folder / "sim.tbl").touch()
+    (folder / "sim.var").touch()
+    screen = folder / "screen.py"
+    screen.write_text(_SCREEN.replace("\\\\", "\\"))
+    screen.chmod(0o755)
+    fastest, most = max(wanted.rapid_mm_s), max(wanted.acceleration_mm_s2)
+    text = _INI.format(screen=screen, fastest=2 * fastest, most=most)
     for number, letter in enumerate("XYZ"):
         limits = (
             f"MAX_VELOCITY = {wanted.rapid_mm_s[number]}\n"

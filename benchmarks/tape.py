@@ -114,38 +114,32 @@ def speed_rows(folder: Path) -> list[Row]:
             "play": lambda: play_whole(file),
         }
     )
+    return _rows_of(took, frames, seconds)
+
+
+def _rows_of(took: dict[str, float], frames: int, seconds: float) -> list[Row]:
+    """Speeds, and each as a share of what it is compared with, from times in s."""
     mega = {name: frames / taken / 1e6 for name, taken in took.items()}
     both = took["record"] + took["play"]
+
+    def through(what: str, name: str, than: str = "", called: str = "") -> Row:
+        """A row of so many million frames/s."""
+        share = (mega[name] / mega[than], called) if than else ()
+        return Row(what, mega[name], "million frames/s", *share)
+
+    decoded = took["play"] / took["decode"]
     return [
-        Row("reading as float32", mega["read"], "million frames/s"),
-        Row(
-            "decoding, file to phases",
-            mega["decode"],
-            "million frames/s",
-            mega["decode"] / mega["read"],
-            "reading",
-        ),
-        Row("scipy.signal.hilbert, blocks", mega["hilbert"], "million frames/s"),
-        Row(
-            "decoding",
-            mega["decode"],
-            "million frames/s",
-            mega["decode"] / mega["hilbert"],
-            "hilbert",
-        ),
-        Row("writing float32 as 16 bit", mega["write"], "million frames/s"),
-        Row(
-            "recording, motion to file",
-            mega["record"],
-            "million frames/s",
-            mega["record"] / mega["write"],
-            "writing",
-        ),
+        through("reading as float32", "read"),
+        through("decoding, file to phases", "decode", "read", "reading"),
+        through("scipy.signal.hilbert, blocks", "hilbert"),
+        through("decoding", "decode", "hilbert", "hilbert"),
+        through("writing float32 as 16 bit", "write"),
+        through("recording, motion to file", "record", "write", "writing"),
         Row(
             "playing, drives and all",
             seconds / took["play"],
             "x real time",
-            took["play"] / took["decode"],
+            decoded,
             "decoding",
         ),
         Row("recording and playing", seconds / both, "x real time"),

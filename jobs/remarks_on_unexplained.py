@@ -5,97 +5,71 @@ Signals in: the traced lines. Signals out: one text for each kind of place, each
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from morfax.tracer.program.program import Trace
     from morfax.tracer.program.unexplained import Kind, Unexplained
 
-    Said = Callable[[Sequence[Unexplained], str], str]
-
 
 def of_unexplained(trace: Trace) -> Iterator[str]:
     """Closed lines that may be other lines than those drawn, by what is there."""
     is_closed = any(line.ending == "closed" for line in trace.lines)
-    for kind, said in SAID.items():
+    for kind in SAID:
         places = [place for place in trace.unexplained if place.kind == kind]
         if places:
-            yield said(places, "closed line" if is_closed else "line")
+            yield _said(kind, places, "closed line" if is_closed else "line")
 
 
-def _of_tips(places: Sequence[Unexplained], _: str) -> str:
-    """Tips of filled shapes that the way cuts short."""
-    (x, y), cut_mm = places[0][:2]
-    many = _many(places, "tip", "tips")
-    return (
-        f"the path cuts {many} of the shape short, by up to {cut_mm:.2f} mm at {x:.1f},{y:.1f} mm; printed "
-        "twice as large, and with --scale 0.5, by half of that"
-    )
+def _said(kind: Kind, places: Sequence[Unexplained], line: str) -> str:
+    """What is said of the places of a kind on a line; the first of them is the worst."""
+    (one, several), text = SAID[kind]
+    worst = places[0]
+    (x, y), mm = worst[:2]
+    many = f"1 {one}" if len(places) == 1 else f"{len(places)} {several}"
+    at = f"{x:.1f},{y:.1f} mm"
+    return text.format(many=many, at=at, mm=mm, line=line, dpi=worst.wants_dpi)
 
 
-def _of_ink(places: Sequence[Unexplained], line: str) -> str:
-    """Ink that is joined to the line, and beside its way."""
-    (x, y), long_mm = places[0][:2]
-    many = _many(places, "piece of ink", "pieces of ink")
-    return (
-        f"{many} joined to the {line} beside its way, up to {long_mm:.1f} mm from it, at "
-        f"{x:.1f},{y:.1f} mm: a tip or a bay that is narrower than two lines, or another line; --picture "
-        "marks it, and --lines all follows other lines too"
-    )
-
-
-def _of_bare(places: Sequence[Unexplained], _: str) -> str:
-    """A way over bare paper."""
-    (x, y), long_mm = places[0][:2]
-    return (
-        f"the closed line runs over {long_mm:.1f} mm of bare paper at {x:.1f},{y:.1f} mm, where no ink "
-        "leads: look at --picture, and draw the line there"
-    )
-
-
-def _of_beside(places: Sequence[Unexplained], _: str) -> str:
-    """A way beside its own ink."""
-    (x, y), long_mm = places[0][:2]
-    many = _many(places, "place", "places")
-    return (
-        f"the closed line runs beside its ink at {many}, the longest {long_mm:.1f} mm at {x:.1f},{y:.1f} mm: "
-        "look there in --picture; a notch or a tongue that is narrower than two lines is followed if it is "
-        "drawn with a finer pen"
-    )
-
-
-def _of_broad(places: Sequence[Unexplained], _: str) -> str:
-    """Strokes within ink that is as broad as two lines."""
-    (x, y), long_mm = places[0][:2]
-    pieces = "piece of ink is" if len(places) == 1 else "pieces of ink are"
-    return (
-        f"{len(places)} {pieces} about as broad as two lines, the longest {long_mm:.1f} mm at "
-        f"{x:.1f},{y:.1f} mm: if it is a slot, a notch or a tongue, its two sides are not followed; draw it "
-        "with a finer pen, or scan it at a higher resolution"
-    )
-
-
-def _of_pale(places: Sequence[Unexplained], _: str) -> str:
-    """A way over pale pixels of a coarse scan."""
-    (x, y), dpi = places[0].place_mm, places[0].wants_dpi
-    many = _many(places, "place", "places")
-    return (
-        f"not sure that the closed line is the one drawn: the pixels are too large to tell at {many}, the "
-        f"first at {x:.1f},{y:.1f} mm, where a spike or a bay may be cut off; scan at {dpi} dpi"
-    )
-
-
-def _many(places: Sequence[Unexplained], one: str, several: str) -> str:
-    """How many places there are, in words."""
-    return f"1 {one}" if len(places) == 1 else f"{len(places)} {several}"
-
-
-SAID: dict[Kind, Said] = {
-    "tip": _of_tips,
-    "ink": _of_ink,
-    "bare": _of_bare,
-    "beside": _of_beside,
-    "broad": _of_broad,
-    "pale": _of_pale,
+# of each kind: one and several of its places, and the text, in which {mm} is what the worst place measures
+SAID: dict[Kind, tuple[tuple[str, str], str]] = {
+    # tips of filled shapes that the way cuts short
+    "tip": (
+        ("tip", "tips"),
+        "the path cuts {many} of the shape short, by up to {mm:.2f} mm at {at}; printed twice as large, and "
+        "with --scale 0.5, by half of that",
+    ),
+    # ink that is joined to the line, and beside its way
+    "ink": (
+        ("piece of ink", "pieces of ink"),
+        "{many} joined to the {line} beside its way, up to {mm:.1f} mm from it, at {at}: a tip or a bay that "
+        "is narrower than two lines, or another line; --picture marks it, and --lines all follows other "
+        "lines too",
+    ),
+    # a way over bare paper
+    "bare": (
+        ("", ""),
+        "the closed line runs over {mm:.1f} mm of bare paper at {at}, where no ink leads: look at --picture, "
+        "and draw the line there",
+    ),
+    # a way beside its own ink
+    "beside": (
+        ("place", "places"),
+        "the closed line runs beside its ink at {many}, the longest {mm:.1f} mm at {at}: look there in "
+        "--picture; a notch or a tongue that is narrower than two lines is followed if it is drawn with a "
+        "finer pen",
+    ),
+    # strokes within ink that is as broad as two lines
+    "broad": (
+        ("piece of ink is", "pieces of ink are"),
+        "{many} about as broad as two lines, the longest {mm:.1f} mm at {at}: if it is a slot, a notch or a "
+        "tongue, its two sides are not followed; draw it with a finer pen, or scan it at a higher resolution",
+    ),
+    # a way over pale pixels of a coarse scan
+    "pale": (
+        ("place", "places"),
+        "not sure that the closed line is the one drawn: the pixels are too large to tell at {many}, the "
+        "first at {at}, where a spike or a bay may be cut off; scan at {dpi} dpi",
+    ),
 }

@@ -27,7 +27,7 @@ from morfax.jobs.settings import DrawingFile, TraceSettings
 from morfax.jobs.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
-from morfax.motion.segments import SAME_PLACE_MM
+from morfax.motion.plane import SAME_MM
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -190,7 +190,7 @@ def corner_places(path: Path) -> Array:
     limits = Limits(1.0, 1.0, window_mm=WINDOW_MM, corner_rad=CORNER_RAD)
     found = [np.zeros((0, 2))]
     for run in path.runs():
-        points = run[np.r_[True, np.hypot(*np.diff(run, axis=0).T) > SAME_PLACE_MM]]
+        points = run[np.r_[True, np.hypot(*np.diff(run, axis=0).T) > SAME_MM]]
         if len(points) > 2:
             found.append(points[corners(points, limits)])
     return np.vstack(found)

@@ -16,11 +16,10 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.plane import NOTHING_MM, SAME_MM
+from morfax.motion.polyline import APART_MM
 from morfax.motion.speed_limits import braked
 
-SPACING_MM = 0.02  # of the places on a curve
-REPEATS_MM = 1e-6  # a place that is no further from the one before repeats it
-LEAST_STEP_MM = 1e-9  # so that no step is divided by zero
 LEAST_BEND_PER_MM = 1e-6  # so that no bend is: a radius of a kilometre is straight
 
 
@@ -30,7 +29,7 @@ def hermite(start: Array, heading: float, end: Array, end_heading: float) -> Arr
     ends = float(start[0]), float(start[1]), float(end[0]), float(end[1])
     leaving = chord * math.cos(heading), chord * math.sin(heading)
     arriving = chord * math.cos(end_heading), chord * math.sin(end_heading)
-    out = np.empty((max(2, math.ceil(chord / SPACING_MM) + 1), 2))
+    out = np.empty((max(2, math.ceil(chord / APART_MM) + 1), 2))
     _cubic(ends, (*leaving, *arriving), out)
     return out
 
@@ -49,7 +48,7 @@ def _places_through(poses):  # type: ignore[no-untyped-def]
     count = 0
     for k in range(len(poses) - 1):
         chord = math.hypot(poses[k + 1, 0] - poses[k, 0], poses[k + 1, 1] - poses[k, 1])
-        count += max(2, math.ceil(chord / SPACING_MM) + 1)
+        count += max(2, math.ceil(chord / APART_MM) + 1)
     return count
 
 
@@ -61,7 +60,7 @@ def _cubics(poses, out):  # type: ignore[no-untyped-def]
         x, y, heading = poses[k, 0], poses[k, 1], poses[k, 2]
         end_x, end_y, end_heading = poses[k + 1, 0], poses[k + 1, 1], poses[k + 1, 2]
         chord = math.hypot(end_x - x, end_y - y)
-        end = begin + max(2, math.ceil(chord / SPACING_MM) + 1)
+        end = begin + max(2, math.ceil(chord / APART_MM) + 1)
         leaving = chord * math.cos(heading), chord * math.sin(heading)
         arriving = chord * math.cos(end_heading), chord * math.sin(end_heading)
         _cubic((x, y, end_x, end_y), (*leaving, *arriving), out[begin:end])
@@ -86,7 +85,7 @@ def _cubic(ends, slopes, out):  # type: ignore[no-untyped-def]
 def bends_per_mm(points: Array) -> Array:
     """How much a polyline (n, 2) mm bends at each place between its first and last, 1/mm."""
     steps = np.diff(points, axis=0)
-    lengths = np.maximum(np.hypot(*steps.T), LEAST_STEP_MM)
+    lengths = np.maximum(np.hypot(*steps.T), NOTHING_MM)
     headings = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
     return np.asarray(np.abs(np.diff(headings)) / (0.5 * (lengths[1:] + lengths[:-1])))
 
@@ -104,7 +103,7 @@ def speeds(
     points: Array, speed_mm_s: float, acceleration_mm_s2: float, end_mm_s: float
 ) -> Array:
     """Highest speed at each place of a stretch: what bends and braking allow, `end_mm_s` at its end; mm/s."""
-    lengths = np.maximum(np.hypot(*np.diff(points, axis=0).T), LEAST_STEP_MM)
+    lengths = np.maximum(np.hypot(*np.diff(points, axis=0).T), NOTHING_MM)
     allowed = speeds_in_bends(points, speed_mm_s, acceleration_mm_s2)
     allowed[-1] = min(allowed[-1], end_mm_s)
     return braked(allowed, 2 * acceleration_mm_s2 * lengths)
@@ -114,5 +113,5 @@ def distinct(points: Array) -> Array:
     """The polyline without places that repeat the one before."""
     keep = np.ones(len(points), bool)
     steps = points[1:] - points[:-1]
-    keep[1:] = np.hypot(steps[:, 0], steps[:, 1]) > REPEATS_MM
+    keep[1:] = np.hypot(steps[:, 0], steps[:, 1]) > SAME_MM
     return points[keep]

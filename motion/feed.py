@@ -21,6 +21,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.plane import NOTHING_MM
 from morfax.motion.polyline import at_lengths, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
@@ -29,7 +30,6 @@ SHARP = math.radians(10)  # a sharper turn is a corner: the tool stops there
 ALONG, ACROSS = 0.7, 1 / 3
 SMOOTHED_S = 0.002
 BEND_WITHIN_MM = 0.1  # the bend at a place is that within this to either side; by trial
-LEAST_STEP_MM = 1e-9  # a shorter step repeats a place
 LEAST_BEND = 1e-9  # 1/mm, and rad of a turn: so that nothing is divided by zero
 STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest
 
@@ -61,7 +61,7 @@ def run_along(
 
 def _with_halves(way_mm: Array) -> Array:
     """The way without repeated places, its pieces halved, so that it moves between two stops."""
-    way_mm = way_mm[np.r_[True, steps_mm(way_mm) > LEAST_STEP_MM]]
+    way_mm = way_mm[np.r_[True, steps_mm(way_mm) > NOTHING_MM]]
     middles = 0.5 * (way_mm[1:] + way_mm[:-1])
     both = np.empty((2 * len(way_mm) - 1, 2))
     both[::2], both[1::2] = way_mm, middles

@@ -13,6 +13,8 @@ import numpy as np
 from morfax.motion.arrays import Array
 
 NO_LENGTH = 1e-12  # so that nothing is divided by zero
+NOTHING_MM = 1e-9  # rounding leaves so much of a length that is none
+SAME_MM = 1e-6  # places as near as a nanometre are one
 
 
 def direction(heading_rad: float) -> Array:

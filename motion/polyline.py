@@ -18,7 +18,7 @@ from morfax.motion.long_array import blocks
 from morfax.motion.neighbours import Neighbours
 
 UM = 1e-3  # mm
-APART_MM = 0.02  # between places that stand for a line
+APART_MM = 0.02  # between places that stand for a line, or at which it is looked
 WITHIN_MM = 0.05 * UM  # distances from a line are true to this
 
 

@@ -39,10 +39,10 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.plane import NOTHING_MM
 
 UP, CONSTANT, DOWN = 1, 0, -1
 _LARGEST_COUNT = 1 << 40  # 1000 km in increments of 1 um: the counter is a 64-bit integer
-_NOTHING_MM = 1e-9  # a shorter move is done in one period: its square is still a number
 
 
 Counts = NDArray[np.int64]
@@ -127,7 +127,7 @@ def positions_mm(
     feeds = [feed_mm_s, *(feed for _, feed in changes)]
     _check(start, end, feeds, rate_hz)
     length_mm = math.dist(start, end)
-    if length_mm < _NOTHING_MM:
+    if length_mm < NOTHING_MM:  # its square is still a number
         return np.array([start, end])[: 1 + bool((start != end).any())]
     increments = max(1, int(np.rint(np.abs(end - start) / ramp.increment_mm).sum()))
     mm_per_count = length_mm / increments

@@ -34,6 +34,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion, Path, thin
+from morfax.motion.plane import SAME_MM
 from morfax.motion.speed_limits import reachable
 
 Source = Iterable[Motion] | Motion | Path
@@ -41,7 +42,6 @@ Source = Iterable[Motion] | Motion | Path
 SHARE = 0.7  # of the acceleration, along the path and across it
 STANDING_MM_S = 0.05  # slower is standing: 0.2 um of thinning in 4 ms
 REST_S = 0.02  # a shorter stand is the turn of a corner, and no rest
-SAME_PLACE_MM = 1e-6  # places as near as this are one
 FASTEST_MM_S = 1e6  # stands for no limit: its square is still a number
 
 
@@ -137,7 +137,7 @@ def _moving(path: Path) -> tuple[Array, Array, Array]:
     length_mm = np.sqrt((np.diff(path.positions_mm, axis=0) ** 2).sum(axis=1))
     took_s = np.diff(path.t_s)
     stands = length_mm <= STANDING_MM_S * took_s
-    keep = np.r_[True, length_mm > SAME_PLACE_MM]
+    keep = np.r_[True, length_mm > SAME_MM]
     group = np.cumsum(keep) - 1  # which kept point each point falls to
     rests_s = np.bincount(group[:-1], np.where(stands, took_s, 0.0), minlength=int(keep.sum()))
     moves = keep[1:]

@@ -91,11 +91,12 @@ def main() -> None:
         own = "" if name == "mutants" else test_file(page_of(name)) + "::"
         tests = {line: line.test if "::" in line.test else own + line.test for line in lines}
         with tempfile.TemporaryDirectory() as folder:
-            if not Copy(Path(folder), sorted(set(tests.values()))).passes():
+            copy = Copy(Path(folder))
+            if not copy.passes(sorted(set(tests.values()))):
                 sys.exit(f"the tests of {name} fail as they are; mend them first")
             for line in lines:
                 begun_s = _worked_s()
-                noticed = Copy(Path(folder), [tests[line]]).notices(line.mutant(), LIMIT_S)
+                noticed = copy.notices(line.mutant(), [tests[line]], LIMIT_S)
                 left += not noticed
                 said = "noticed" if noticed else "NOT NOTICED"
                 if _worked_s() - begun_s > LIMIT_S - 1:

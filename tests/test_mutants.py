@@ -1,4 +1,4 @@
-"""Mutants: every kind of change is found in the text, and is a program still."""
+"""Mutants: every kind of change is found in the text, is a program still, and meets its tests."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from tests.mutants import Copy, Mutant, mutants_of
+from tests.mutants.tree import ROOT, WatchedTest
+from tests.mutants.users import users_of
 
 SOURCE = '''"""A module of 2 words."""
 LIMIT_MM: float = 0.3  # µm would be "3"
@@ -57,12 +59,68 @@ def test_every_mutant_can_be_read() -> None:
         assert mutant.told(SOURCE).startswith(f"a.py:{mutant.line}: ")
 
 
+FILES = {
+    "a": "LIMIT_MM = 0.3\nTWICE_MM = 2 * LIMIT_MM\n\ndef near(x):\n    return x < LIMIT_MM\n",
+    "b": "from morfax.motion.a import TWICE_MM\n\nclass Pen:\n    size = 1\n\n    def far(self, x):\n"
+    "        return x > TWICE_MM\n\ndef inked():\n    return Pen().far(2)\n",
+    "c": "def other(LIMIT_MM):\n    return LIMIT_MM\n",
+}
+
+
+def users(root: Path, file: str, line: int) -> tuple[set[str], set[str]]:
+    """Who a change in a line of FILES can matter to."""
+    (root / "motion").mkdir(exist_ok=True)
+    for name, text in FILES.items():
+        (root / "motion" / f"{name}.py").write_text(text, encoding="utf-8")
+    found = users_of(root, Path(f"motion/{file}.py"), line)
+    return {name.removeprefix("motion/") for name in found.functions}, set(found.symbols)
+
+
+def test_a_change_matters_to_its_own_function_or_to_who_names_it(tmp_path: Path) -> None:
+    """A constant also matters to those of another file that a constant made of it comes to."""
+    assert users(tmp_path, "a", 5) == ({"a.py:near"}, set())
+    assert users(tmp_path, "b", 7) == ({"b.py:Pen.far"}, set())
+    both = {"a.py:near", "b.py:Pen.far"}
+    assert users(tmp_path, "a", 1) == (both, {"LIMIT_MM", "TWICE_MM"})
+    assert users(tmp_path, "b", 4) == ({"b.py:inked"}, {"Pen"})
+
+
+def copy_of(root: Path) -> Copy:
+    """A small tree with one function, and two tests of which one comes by it."""
+    (root / "motion").mkdir()
+    (root / "motion" / "__init__.py").write_text("")
+    code = (
+        "def twice(x):\n    return 2 * x\n\ndef loop(x):\n    while x < 0.1:\n        x += 1\n"
+    )
+    (root / "motion" / "a.py").write_text(code, encoding="utf-8")
+    (root / "test_a.py").write_text(
+        "from motion.a import loop, twice\n\ndef test_a():\n    assert twice(2) == 4\n\n"
+        "def test_b():\n    loop(0)\n",
+        encoding="utf-8",
+    )
+    copy = object.__new__(Copy)
+    copy.root, copy._environment = root, dict(os.environ) | {"PYTHONPATH": str(ROOT)}
+    copy._change = root / "change.json"
+    return copy
+
+
+def test_a_mutant_meets_the_tests_that_come_by_it(tmp_path: Path) -> None:
+    """The one is found; with the other test it is not, as that does not come by its function."""
+    copy = copy_of(tmp_path)
+    every = mutants_of(Path("motion/a.py"), (tmp_path / "motion" / "a.py").read_text("utf-8"))
+    times = next(mutant for mutant in every if mutant.new == "/")
+    one = WatchedTest("test_a.py::test_a", 0.01, frozenset({"motion/a.py:twice"}))
+    other = WatchedTest("test_a.py::test_b", 0.01, frozenset({"motion/a.py:loop"}))
+    assert copy.tests_for(times, [one, other]) == [one]
+    assert copy.finds(times, [one, other]) and not copy.finds(times, [other])
+
+
 def test_a_copy_has_the_vectors_that_tests_ask_for(
     tmp_path: Path, vectors: Callable[[str], Any]
 ) -> None:
     """Else those tests are left out, and a broken line of theirs is not noticed."""
     assert vectors("se_clock")
-    copied = Copy(tmp_path, []).root.parent / "shared" / "vectors" / "se_clock.json"
+    copied = Copy(tmp_path).root.parent / "shared" / "vectors" / "se_clock.json"
     assert copied.is_file()
 
 
@@ -71,5 +129,5 @@ def test_a_mutant_that_waits_for_ever_is_found(tmp_path: Path) -> None:
         "import time\n\ndef test_a():\n    time.sleep(60)\n", encoding="utf-8"
     )
     copy = object.__new__(Copy)
-    copy.root, copy.tests, copy._environment = tmp_path, ["test_a.py"], dict(os.environ)
-    assert not copy.passes(0.1)  # a second of the clock
+    copy.root, copy._environment = tmp_path, dict(os.environ) | {"PYTHONPATH": str(ROOT)}
+    assert not copy.passes(["test_a.py"], 0.1)  # a second of the clock

@@ -24,6 +24,7 @@ import re
 import numpy as np
 
 from morfax.motion.faults import ProgramFault
+from morfax.motion.plane import NOTHING_MM
 from morfax.player.gcode.gcode_text import text_of
 from morfax.player.gcode.moves import LINE, RAPID, Move, Program
 from morfax.recorder.drawings.curve_chords import FLAT_MM, bulged
@@ -31,7 +32,6 @@ from morfax.recorder.gcode.machine import Machine
 
 ABOVE_MM = 2.0  # where the pen stands when it is up
 USUAL_CM_S = 10.0
-NO_LENGTH_MM = 1e-9  # an arc of no angle, or of no radius
 
 _COMMANDS = re.compile(r"[A-Z]{2}[^A-Z;]*|[^;\s]+")
 _COMMAND = re.compile(r"([A-Z]{2})\s*([-+\d.,\s]*)")
@@ -169,7 +169,7 @@ class _Pen:
         for _ in range(2):
             begin = complex(*self.place)
             end = centre + (begin - centre) * complex(math.cos(half_rad), math.sin(half_rad))
-            if abs(end - begin) < NO_LENGTH_MM:
+            if abs(end - begin) < NOTHING_MM:
                 continue
             ends = np.array(self.place), np.array([end.real, end.imag])
             for x, y in bulged(*ends, half_rad, FLAT_MM).tolist():

@@ -18,9 +18,9 @@ from itertools import pairwise
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import SAME_MM
 from morfax.motion.polyline import lengths_mm
 from morfax.recorder.gcode.pieces import (
-    SAME_MM,
     SPACING_MM,
     Piece,
     corners,

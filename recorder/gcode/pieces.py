@@ -23,12 +23,12 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.circle import kasa, spread
 from morfax.motion.compiled import njit
+from morfax.motion.plane import SAME_MM
 from morfax.motion.polyline import lengths_mm
 
 SPACING_MM = 0.05  # of the places that stand for a path
 WINDOW_MM = 0.2  # to either side of a corner
 CORNER_RAD = 0.2  # turned within the window: less is a bend
-SAME_MM = 1e-6  # nearer places are one
 LARGEST_TURN_RAD = 3.5  # 200 degrees, beyond which an arc is cut in two
 
 

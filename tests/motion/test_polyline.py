@@ -16,6 +16,7 @@ from morfax.motion.polyline import (
     APART_MM,
     WITHIN_MM,
     Nearest,
+    area_mm2,
     at_lengths,
     lengths_mm,
     nearest_mm,
@@ -186,3 +187,9 @@ def test_places_at_lengths_are_those_of_interpolation_to_the_last_bit(seed: int)
 def test_a_polyline_without_places_has_none_at_a_length() -> None:
     with pytest.raises(ValueError, match="one at least"):
         at_lengths(np.empty((0, 2)), np.zeros(1))
+
+
+def test_the_area_is_positive_counter_clockwise_wherever_the_line_lies() -> None:
+    oblong = np.array([[0.0, 0], [3, 0], [3, 2], [0, 2]])
+    assert area_mm2(oblong) == 6.0 and area_mm2(oblong[::-1]) == -6.0
+    assert area_mm2(oblong + 1e6) == pytest.approx(6.0, abs=1e-6)

@@ -36,7 +36,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.nesting import lies_inside
 from morfax.motion.offset import DriveCurve, OffsetPath, offset
-from morfax.motion.polyline import WITHIN_MM, Nearest, length_mm, plain, with_places
+from morfax.motion.polyline import APART_MM, WITHIN_MM, Nearest, length_mm, plain, with_places
 from morfax.tracer.cutter import sides
 from morfax.tracer.cutter.contour import Beside, Cut
 from morfax.tracer.cutter.contouring import (
@@ -59,7 +59,6 @@ LEFT_MM = 0.002  # where no more than this is left, the cutter has touched the l
 # ... and a stretch where no more is left is not listed: the head wavers as much
 LISTED_MM = 0.01
 OPEN = "is open"  # and so has neither outside nor inside
-EVERY_MM = 0.02  # between the places of a line that are looked at
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,7 +242,7 @@ def _left(
     """The stretches of lines that the cutter does not reach, and the lines that it nowhere reaches."""
     near, left = Nearest([path.points_mm for path in paths], radius_mm), Left()
     for k, cut in enumerate(cuts):
-        places = with_places(plain(cut.places_mm, WITHIN_MM), EVERY_MM)
+        places = with_places(plain(cut.places_mm, WITHIN_MM), APART_MM)
         left_mm = near.distances_mm(places) - radius_mm
         if left_mm.min() > LEFT_MM:
             stops = tuple(stop.number for stop in cut.stops if stop.number is not None)

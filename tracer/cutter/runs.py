@@ -15,6 +15,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.feed import run_along
+from morfax.motion.plane import SAME_MM
 from morfax.motion.polyline import begun_at, length_mm, lengths_mm
 from morfax.tracer.cutter.contour import PathPlace
 from morfax.tracer.cutter.start_places import Begin
@@ -22,8 +23,6 @@ from morfax.tracer.following.line import Leads
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.program import braking
 from morfax.tracer.program.passes import BRAKE_MM_S2
-
-NOTHING_MM = 1e-6  # a shorter way is not run
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +34,7 @@ class FeedRate:
 
     def run(self, way_mm: Array) -> Array:
         """Positions along a way (n, 2) mm from rest to rest."""
-        if length_mm(way_mm) < NOTHING_MM:
+        if length_mm(way_mm) < SAME_MM:
             return way_mm[-1:]
         return run_along(way_mm, self.mm_s, BRAKE_MM_S2, self.rate_hz)
 
@@ -111,7 +110,7 @@ class PathRun:
         way = np.vstack(ways)
         # 2. run as one, and where it comes onto the path and leaves it
         xy_mm = feed.run(way)
-        share = length_mm(xy_mm) / max(length_mm(way), NOTHING_MM)
+        share = length_mm(xy_mm) / max(length_mm(way), SAME_MM)
         first, last = 0, len(xy_mm) - 1
         if begin.lead_in is not None:
             first = round(position_at(xy_mm, share * length_mm(begin.lead_in)))

@@ -244,10 +244,8 @@ class Drawing:
         """The lines in grey levels on square pixels."""
         # 1. darkness, without what is printed and the scan's border
         darkness, shapes, paper_noise = _levelled(grey, pitch_mm, reading)
-        darkness, note = ruling.left_out(darkness, pitch_mm, reading.printed)
-        notes = notes if note is None else (*notes, note)
-        edges = without_border(darkness)
-        notes = (*notes, border_note(edges)) if edges else notes
+        darkness, cleared = _cleared(darkness, pitch_mm, reading)
+        notes += cleared
         # 2. pale lines
         lines, pale_mm = within(darkness, paper_noise), 0.0
         drawn_grain = lines.grain
@@ -285,6 +283,14 @@ class Drawing:
         if behind is None and finer == 1:  # the darkness that was measured
             vars(drawing)["noise"] = lines.found.noise(pitch_mm)
         return drawing
+
+
+def _cleared(darkness: Any, pitch_mm: float, reading: Reading) -> tuple[Any, tuple[str, ...]]:
+    """Darkness without what is printed and without the scan's border, and notes of both."""
+    darkness, printed = ruling.left_out(darkness, pitch_mm, reading.printed)
+    edges = without_border(darkness)
+    border = border_note(edges) if edges else None
+    return darkness, tuple(note for note in (printed, border) if note is not None)
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Any:

@@ -18,14 +18,13 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.polyline import lengths_mm, with_places
+from morfax.motion.polyline import APART_MM, lengths_mm, with_places
 from morfax.tracer.following.followed import Followed
 
 # a tip of 15 degrees that one of both has put back, and the other has left round, is as far off: six standard
 # deviations of a lens (see `drawing.lens`); of a lens as soft as a pixel, where pixels are large
 OFF_MM, OFF_PX = 0.5, 6.0
 LEFT_MM = 0.15  # where the run was so far off it had left the edge; further than the head cuts a corner
-EVERY_MM = 0.02  # between the places of an edge
 CHECKED = 8  # one position in 8 is checked: every 13 um at 10 mm/s
 
 
@@ -38,7 +37,7 @@ def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
     """The run, if it kept to the edges and, closed, left none of its edge out; else lost at that place."""
     if not edges_mm:
         return run
-    lines = [with_places(edge, EVERY_MM) for edge in edges_mm]
+    lines = [with_places(edge, APART_MM) for edge in edges_mm]
     owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
     positions, most_mm = run.positions_mm[::CHECKED], most_off_mm(run.view.pitch_mm)
     # 1. every position lies on an edge

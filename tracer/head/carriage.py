@@ -22,7 +22,7 @@ from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head import kernel, mount, screws, slow_cell, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
-from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tune, tuned_along
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.slow_cell import Stretch
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import (
@@ -35,6 +35,7 @@ from morfax.tracer.head.state import (
     two_of,
 )
 from morfax.tracer.head.trail import Marks, Trail
+from morfax.tracer.head.tuning import CALIBRATED_ASIDE, tune, tuned_along
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
 

@@ -22,7 +22,8 @@ import numpy as np
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
-from morfax.motion.curves import SPACING_MM, hermite
+from morfax.motion.curves import hermite
+from morfax.motion.polyline import APART_MM
 from morfax.tracer.sensing.leg import Leg, centre_at
 from morfax.tracer.sensing.view import View
 
@@ -53,7 +54,7 @@ def onto(place: Array, heading: float, leg: Leg, limit_mm: float) -> tuple[Array
 
 def along_leg(leg: Leg, start_mm: float, end_mm: float) -> Array:
     """Places on a leg's line from one distance to another (from its clean end)."""
-    count = max(2, math.ceil(abs(end_mm - start_mm) / SPACING_MM) + 1)
+    count = max(2, math.ceil(abs(end_mm - start_mm) / APART_MM) + 1)
     return leg.at(np.linspace(start_mm, end_mm, count))
 
 

@@ -23,8 +23,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import at_lengths, length_mm
-from morfax.tracer.head.settings import LEAD_SWEEPS, TIGHTEST_RAD
 from morfax.tracer.head.state import Tuning
+from morfax.tracer.head.tuning import LEAD_SWEEPS, TIGHTEST_RAD
 from morfax.tracer.sensing.leg import turn
 
 # Chosen by trial on the test drawings.

@@ -25,9 +25,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.plane import unit
+from morfax.motion.plane import SAME_MM, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
-from morfax.motion.segments import SAME_PLACE_MM
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing.parabola import FEWEST
 
@@ -73,7 +72,7 @@ class SharedInk(NamedTuple):
             other
             for other in self.ways
             if min(np.abs(other[[0, -1]] - ends).max(), np.abs(other[[-1, 0]] - ends).max())
-            > SAME_PLACE_MM
+            > SAME_MM
         ]
 
 

@@ -15,11 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import heading_of
-from morfax.motion.polyline import with_places
+from morfax.motion.polyline import APART_MM, with_places
 from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.corner import (
@@ -154,6 +153,6 @@ def is_as_felt(view: View, plan: Plan, seen: Array, deflection: float) -> bool:
     inner edge of its ink w/2/cos(d/2) from it, and the outer one w/2 before the aperture rounds it.
     """
     inside_mm = 0.5 * view.width_mm * (1 / max(math.cos(deflection / 2), LEAST_COSINE) - 1)
-    felt = Neighbours(with_places(seen[:, :2], curves.SPACING_MM))
+    felt = Neighbours(with_places(seen[:, :2], APART_MM))
     away_mm = felt.nearest(np.vstack(plan.stretches))[0]
     return bool(away_mm.max() < inside_mm + AS_FELT * view.pitch_mm)

@@ -28,10 +28,10 @@ from morfax.motion import curves, long_array
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import LongArray, blocks, released
+from morfax.motion.plane import NOTHING_MM
 from morfax.motion.polyline import at_lengths, at_places, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
-_NOTHING_MM = 1e-9  # a shorter step is the head standing
 _NOTHING_S = 1e-12  # so that no time is divided by zero
 ROUNDED = 1e-6  # of a period: what rounding adds
 CORNER = np.radians(
@@ -75,7 +75,7 @@ def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: fl
 def _nodes(way_mm: Array) -> Array:
     """Nodes of a way (n, 2) mm: `RUN_MM` apart, and each place where the head swivelled."""
     lengths = lengths_mm(way_mm)
-    stood = np.unique(np.round(lengths[1:][steps_mm(way_mm) < _NOTHING_MM], 6))
+    stood = np.unique(np.round(lengths[1:][steps_mm(way_mm) < NOTHING_MM], 6))
     even = np.arange(0.0, lengths[-1], RUN_MM)
     if len(stood):
         near = np.abs(even[:, None] - stood).min(axis=1) < 0.5 * RUN_MM

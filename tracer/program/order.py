@@ -27,13 +27,13 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.plane import NOTHING_MM
 
 # All limits below were chosen by trial.
 FIRSTS = 16  # lines that are tried as the first of the order, and as the last
 SOME = 2000  # places in all the orders that are tried: of a hundred lines 16 orders, of a thousand two
 MOVED = 3  # lines moved together
 TURNINGS = 6  # orders that are tried, each with the lines turned as is best for the one before
-GAIN_MM = 1e-9  # a smaller gain is rounding
 ROUNDING_MM = 0.5e-9  # of the sum of a thousand ways, some metres in all
 
 
@@ -63,7 +63,7 @@ def in_order_and_turned(
         turned = turned ^ to_turn
         begin, finish = _turned_ends(ends, turned)
         idle_mm = float(np.hypot(*(begin[order[1:]] - finish[order[:-1]]).T).sum())
-        if best is not None and idle_mm >= best[0] - GAIN_MM:
+        if best is not None and idle_mm >= best[0] - NOTHING_MM:
             break
         best = idle_mm, order, turned
         if not to_turn.any():  # the next order would be the same
@@ -179,7 +179,7 @@ def _turn_stretches(way, legs, may):  # type: ignore[no-untyped-def]
     lines, better, other = len(way), False, may[0]
     saved = _saved(legs)
     for i in range(lines - 1):
-        if i > 0 and not _best_turn(way, legs, saved, i) > GAIN_MM - ROUNDING_MM:
+        if i > 0 and not _best_turn(way, legs, saved, i) > NOTHING_MM - ROUNDING_MM:
             continue
         there = back = 0.0
         for j in range(i + 1, lines):
@@ -188,7 +188,7 @@ def _turn_stretches(way, legs, may):  # type: ignore[no-untyped-def]
             was = legs.onward[i] + there + legs.onward[j + 1]
             into = legs.there[way[i - 1], way[j]] if i > 0 else 0.0
             out = legs.there[way[i], way[j + 1]] if j + 1 < lines else 0.0
-            if was - into - back - out > GAIN_MM:
+            if was - into - back - out > NOTHING_MM:
                 for k in range(lines):
                     other[k] = way[i + j - k] if i <= k <= j else way[k]
                 if _taken(way, legs, may):
@@ -234,14 +234,14 @@ def _move_lines(way, legs, may):  # type: ignore[no-untyped-def]
             least = min(least, _least_into(way, (to_first, from_last), onward, (0, i - 1)))
             last = j + 1, lines - 1
             least = min(least, _least_into(way, (to_first, from_last), onward, last))
-            if not out - least > GAIN_MM:
+            if not out - least > NOTHING_MM:
                 continue
             for k in range(-1, lines):
                 if i - 1 <= k <= j:
                     continue
                 into = to_first[way[k]] if k >= 0 else 0.0
                 into += from_last[way[k + 1]] if k + 1 < lines else 0.0
-                if out - (into - onward[k + 1]) > GAIN_MM:
+                if out - (into - onward[k + 1]) > NOTHING_MM:
                     _move(way, (i, j, k), may[0])
                     if _taken(way, legs, may):
                         return True

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.tracer.program.order import GAIN_MM
+from morfax.motion.plane import NOTHING_MM
 
 SPAN = 2000  # strokes in a stretch that is turned at most; by trial: the time stays that of the ink
 FIRSTS, SOME = (
@@ -87,7 +87,7 @@ def _turn_stretches(places, way, turned, span, passes):  # type: ignore[no-untyp
                     continue
                 will = _apart(places, way, turned, (i - 1, 1), (j, 1))
                 will += _apart(places, way, turned, (i, 0), (j + 1, 0))
-                if was - will > GAIN_MM:
+                if was - will > NOTHING_MM:
                     way[i : j + 1] = way[i : j + 1][::-1].copy()
                     turned[i : j + 1] = ~turned[i : j + 1][::-1]
                     _lay_out(places, way, turned, (i, j + 1), laid)

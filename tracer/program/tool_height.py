@@ -17,12 +17,12 @@ import numpy as np
 
 from morfax.motion import ramp
 from morfax.motion.arrays import Array
+from morfax.motion.plane import NOTHING_MM
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.operator.work import Descent, Work
 from morfax.tracer.operator.zunit import QuillMove, z_moves
 
 ROUNDED = 1e-9  # of the feed, and of a period: what rounding adds
-ARRIVED_MM = 1e-9  # of a slope: what rounding leaves of it
 
 PlaceMm = Array | tuple[float, float]
 
@@ -58,7 +58,7 @@ class ToolHeight:
             share = lengths / lengths[-1] if lengths[-1] > 0 else lengths
             z_mm = self.entry.z_mm(self.come_mm + share * length_mm)
             self.come_mm += length_mm
-            if self.left_mm <= ARRIVED_MM:
+            if self.left_mm <= NOTHING_MM:
                 z_mm[-1] = -self.entry.depth_mm
                 self.entry = None
             self.z_mm = float(z_mm[-1])

@@ -25,7 +25,9 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import lasting, njit
 from morfax.tracer.drawing import tiles as sheet
 
-SIDE_PX, SHIFT, WITHIN = 16, 4, 15
+SHIFT = 4  # of a pixel's number: its made tile
+SIDE_PX = 1 << SHIFT
+WITHIN = SIDE_PX - 1
 ROOM = 4096  # made tiles that are kept, 5 MB: 2 m of a line at 600 dpi
 PAPER, NOT_MADE = -2, -1
 # standard deviations of the spot that are looked at to either side: as OpenCV does

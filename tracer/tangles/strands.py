@@ -14,7 +14,8 @@ from itertools import pairwise
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.curves import SPACING_MM, hermite
+from morfax.motion.curves import hermite
+from morfax.motion.polyline import APART_MM
 from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
@@ -101,4 +102,4 @@ def _straight(start: Array, end: Array) -> Array:
 
 def _count(start: Array, end: Array) -> int:
     """How many places there are between two."""
-    return max(2, math.ceil(float(np.hypot(*(end - start))) / SPACING_MM) + 1)
+    return max(2, math.ceil(float(np.hypot(*(end - start))) / APART_MM) + 1)

@@ -20,7 +20,8 @@ from morfax.tracer.following import follower
 from morfax.tracer.following.agreement import AGREES
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head import carriage, swinging
-from morfax.tracer.head.settings import CALIBRATED_ASIDE, Settings, tuned_along
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.head.tuning import CALIBRATED_ASIDE, tuned_along
 from morfax.tracer.program.trace import trace
 from tests.console.conftest import SAMPLES
 from tests.tracer.inked import UM, arc, inked, polyline

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
+from morfax.motion.polyline import APART_MM
 from morfax.tracer.head.course import through_nodes
 from morfax.tracer.junctions.corner import SHARP, Corner, missing_ink_mm, through_corner
 from morfax.tracer.sensing import photocell
@@ -44,9 +45,9 @@ def test_a_cubic_leaves_and_arrives_on_its_headings(
     )
     line = curves.hermite(a, way + headings[0], b, way + headings[1])
     assert line[0] == pytest.approx(a) and line[-1] == pytest.approx(b)
-    assert np.hypot(*np.diff(line, axis=0).T).max() < 2 * curves.SPACING_MM
+    assert np.hypot(*np.diff(line, axis=0).T).max() < 2 * APART_MM
     step = (
-        curves.SPACING_MM / length_mm
+        APART_MM / length_mm
     )  # the first chord has turned by half of what the cubic turns on it
     assert abs(math.remainder(heading(line, 0) - way - headings[0], math.tau)) < 4 * step + 1e-6
     assert (

@@ -17,9 +17,10 @@ from morfax.motion.drive import Drive
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.head import kernel, screws, swinging
 from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.head.settings import Settings, tune
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, JUNCTION, MORE, TIGHT, Home, Tuning, at_rest
+from morfax.tracer.head.tuning import tune
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.photocell import LEVEL, Cells, behind_aperture
 from morfax.tracer.sensing.view import View

@@ -9,6 +9,30 @@ import pytest
 from morfax.motion.drive import Drive
 from morfax.tracer.head.settings import BOUNDS, HEADS, Settings, choose, value_of
 
+# what messages and the settings file promise, in the unit of the name
+ALLOWED = {
+    "speed_mm_s": (0.01, 1000),
+    "slowed": (0.01, 1),
+    "slow_s": (0, 10),
+    "acceleration_mm_s2": (1, 100000),
+    "sweep_hz": (1, 750),
+    "aperture_mm": (0, 10),
+    "steering_lag_s": (0, 1),
+    "swivel_rad_s": (0.1, 1000),
+    "gap_mm": (0, 20),
+    "recatch_mm": (0, 50),
+    "line_width_mm": (0.01, 20),
+    "lead_mm": (0.01, 20),
+    "amplitude_mm": (0.01, 20),
+    "look_ahead_mm": (0.01, 100),
+    "direct_rad_s_mm": (0, 10000),
+    "cell_gain": (0, 10),
+    "detector_gain": (-10, 10),
+    "cell_noise": (0, 10),
+    "drive_lag_s": (0, 1),
+    "drive_acceleration_mm_s2": (1, 1000000),
+}
+
 
 def test_the_precise_set_is_the_default() -> None:
     assert choose() == Settings() == HEADS["precise"]
@@ -44,3 +68,20 @@ def test_a_mistake_is_said_in_one_line(
     with pytest.raises(ValueError, match=said) as caught:
         choose(head, changes)
     assert "\n" not in str(caught.value)
+
+
+def test_the_historic_head_swings_as_often_as_the_mains() -> None:
+    """Motor 45 turns with the mains of 50 Hz; its servo and its cells are as slow as servos were."""
+    historic = choose("historic")
+    assert (historic.sweep_hz, historic.aperture_mm, historic.steering_lag_s) == (
+        50.0,
+        0.3,
+        0.03,
+    )
+    # steered straight: damped to 0.71, 2 v / a² for a lead of 2 mm
+    assert historic.lead_mm is not None
+    assert historic.direct_rad_s_mm == 2 * historic.speed_mm_s / historic.lead_mm**2
+
+
+def test_settings_are_allowed_what_is_promised() -> None:
+    assert {name: (bounds.least, bounds.most) for name, bounds in BOUNDS.items()} == ALLOWED

@@ -11,8 +11,9 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.following.start import put_down
-from morfax.tracer.head.settings import Settings, tune
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.state import Tuning
+from morfax.tracer.head.tuning import tune
 from morfax.tracer.head.windows import (
     BENT_WIDTHS,
     TOUCHING_WIDTHS,

@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import NOTHING_MM
 from morfax.tracer.program import order
 
 
@@ -35,7 +36,7 @@ def improved(way: list[int], idle_mm: Array, before: NDArray[np.bool_]) -> list[
                 was = legs(way, idle_mm, i - 1, i) + there + legs(way, idle_mm, j, j + 1)
                 now = legs(way, idle_mm, i - 1, j) + back + legs(way, idle_mm, i, j + 1)
                 turned = way[:i] + way[i : j + 1][::-1] + way[j + 1 :]
-                if was - now > order.GAIN_MM and may_come(turned, before):
+                if was - now > NOTHING_MM and may_come(turned, before):
                     way, there, back, better = turned, back, there, True
         moved = first_move(way, idle_mm, before)
         way, better = moved or way, better or moved is not None
@@ -54,7 +55,7 @@ def first_move(way: list[int], idle_mm: Array, before: NDArray[np.bool_]) -> lis
                 into += legs(way, idle_mm, j, k + 1) - legs(way, idle_mm, k, k + 1)
                 at = k + 1 if k < i else k - len(part) + 1
                 moved = rest[:at] + part + rest[at:]
-                if out - into > order.GAIN_MM and may_come(moved, before):
+                if out - into > NOTHING_MM and may_come(moved, before):
                     return moved
     return None
 

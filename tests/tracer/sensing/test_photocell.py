@@ -272,6 +272,21 @@ def test_a_ring_on_a_line_sees_two_arcs(
 
 
 @COMPILED_AND_PLAIN
+def test_a_ring_s_arcs_end_between_pixels(plain: bool) -> None:
+    """Within a twentieth of a pixel, on a soft edge: a half plane under the centre gives half a ring."""
+    y = 10.0 - np.arange(200) * 0.1  # the edge of a lens two pixels soft
+    rows = 1 / (1 + np.exp((y - 0.55) / 0.1))
+    cells = photocell.Cells(np.repeat(rows[:, None], 200, axis=1).astype(np.float32), 0.1, 0.5)
+    height = len(rows) * 0.1 - 0.05 - (10.0 - 0.55)
+    centre, radius_mm = np.array([10.0, height]), 1.5
+    (arc_rad,) = kernel(photocell.ring, plain)(cells, centre, radius_mm)
+    assert math.remainder(arc_rad[0] - math.pi, math.tau) == pytest.approx(
+        0, abs=0.005 / radius_mm
+    )
+    assert math.remainder(arc_rad[1], math.tau) == pytest.approx(0, abs=0.005 / radius_mm)
+
+
+@COMPILED_AND_PLAIN
 def test_a_ring_all_dark_or_all_light(plain: bool) -> None:
     go_round = kernel(photocell.ring, plain)
     centre, black = np.array([2.0, 2.0]), np.ones((400, 400), np.float32)

@@ -9,14 +9,15 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import length_mm, nearest_mm, with_places
-from morfax.tracer.tangles import compass, pen
+from morfax.motion.plane import cross
+from morfax.motion.polyline import area_mm2, length_mm, with_places
+from morfax.tracer.tangles import compass
 from morfax.tracer.tangles.compass import Core, explained
 from morfax.tracer.tangles.seen_ink import SeenInk
-from tests.tracer.inked import arc
+from tests.tracer.inked import UM, arc
+from tests.tracer.tangles.pen_ink import HALF_MM, apart_mm, ink_along
 
-PITCH_MM, SOFTNESS_MM, HALF_MM = 0.1, 0.06, 0.25
-UM = 1e-3
+PITCH_MM, SIDE_PX = 0.1, 60
 
 CIRCLE = arc((3.0, 3.1), 0.6)
 SLOT = np.vstack([arc((2.4, 3.0), 0.5, 90, 270), arc((3.6, 3.0), 0.5, -90, 90)])
@@ -30,30 +31,13 @@ def closed(way: Array) -> Array:
 
 
 def ink_of(way: Array, noise: float = 0.0, half_mm: float = HALF_MM) -> SeenInk:
-    """The ink that a pen leaves along a closed way, on pixels with noise."""
-    rows, columns = np.indices((60, 60)).reshape(2, -1)
-    places = PITCH_MM * np.column_stack([columns + 0.5, rows + 0.5])
-    away = np.full(len(places), 1e3)
-    pieces = np.ascontiguousarray(np.hstack([closed(way)[:-1], closed(way)[1:]]).T)
-    pen.away(places, pieces, len(way), away)
-    dark = np.empty(len(places))
-    pen.ink(away, half_mm, SOFTNESS_MM, dark)
-    dark += np.random.default_rng(1).normal(0.0, noise, len(dark))
-    near = away < half_mm + 5 * SOFTNESS_MM
-    count = int(near.sum())
-    known = np.full(count, math.inf)
-    left_by_noise = count * noise**2
-    return SeenInk(
-        places[near], dark[near], known, HALF_MM, SOFTNESS_MM, PITCH_MM**2, left_by_noise
-    )
+    """The ink that a pen leaves along a closed way."""
+    return ink_along(closed(way), PITCH_MM, SIDE_PX, noise, half_mm)
 
 
 def off_mm(core: Core, way: Array) -> float:
     """How far the core's way is from a closed way, and that from it, at most."""
-    laid, true = (
-        with_places(some, 2 * UM) for some in (np.vstack(core.stretches()), closed(way))
-    )
-    return float(max(nearest_mm(laid, true).max(), nearest_mm(true, laid).max()))
+    return apart_mm(np.vstack(core.stretches()), closed(way))
 
 
 @pytest.mark.parametrize(
@@ -173,3 +157,53 @@ def test_a_core_that_turns_back_and_forth_is_none() -> None:
     ):
         assert Core(points, 0.0, HALF_MM).is_convex == is_convex
     assert Core(square[:1], 1.0, HALF_MM).is_convex and Core(square[:2], 1.0, HALF_MM).is_convex
+
+
+@pytest.mark.parametrize(
+    "polygon", [TRIANGLE, OBLONG, OBLONG[::-1]], ids=["3", "4", "clockwise"]
+)
+def test_a_polygon_is_set_in_by_half_a_width_on_every_side(polygon: Array) -> None:
+    inner = compass._within(polygon, HALF_MM)
+    assert area_mm2(inner) > 0 and len(inner) == len(polygon)
+    for corner in inner:
+        sides = zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
+        off_mm = sorted(abs(cross(b - a, corner - a)) / math.dist(a, b) for a, b in sides)
+        # a corner is half a width from its own two sides, and further from the others
+        assert off_mm[:2] == pytest.approx([HALF_MM, HALF_MM]) and off_mm[-1] > HALF_MM
+
+
+def test_of_a_hull_the_corners_that_matter_most_are_left() -> None:
+    spare = 0.5 * (OBLONG + np.roll(OBLONG, -1, axis=0)) * 1.001
+    hull = np.empty((8, 2))
+    hull[::2], hull[1::2] = OBLONG, spare
+    assert compass._reduced(hull, 4).tolist() == OBLONG.tolist()
+
+
+@pytest.mark.parametrize("turned_rad", [0.0, 0.4, 2.0])
+def test_a_slot_is_as_long_and_as_wide_as_its_ink(turned_rad: float) -> None:
+    """A box of 2.5 x 1.5 mm with a pen of 0.5: places 1 mm apart, on a radius of 0.5."""
+    c, s = math.cos(turned_rad), math.sin(turned_rad)
+    box = np.array([(-1.25, -0.75), (1.25, -0.75), (1.25, 0.75), (-1.25, 0.75)])
+    hull = box @ np.array([[c, s], [-s, c]])
+    slot = compass._slot(hull, 2, HALF_MM)
+    assert abs(slot.points_mm[1] - slot.points_mm[0]) == pytest.approx(
+        [abs(c), abs(s)], abs=1e-6
+    )
+    assert slot.points_mm.mean(axis=0) == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert slot.radius_mm == pytest.approx(0.5, abs=1e-6)
+    circle = compass._slot(hull, 1, HALF_MM)
+    assert circle.points_mm == pytest.approx(np.zeros((1, 2)), abs=1e-6)
+    assert circle.radius_mm == pytest.approx(0.75, abs=1e-6)  # half of the mean of 2 and 1
+
+
+@pytest.mark.parametrize("radius_mm", [0.3, 0.8])
+def test_a_ring_is_told_from_the_same_shape_filled(radius_mm: float) -> None:
+    """Filled, the shape leaves its middle unexplained: what is light there is a pen's width less."""
+    way = arc((3.0, 3.0), radius_mm)
+    core = Core(np.array([(3.0, 3.0)]), radius_mm, HALF_MM)
+    ink = ink_of(way)
+    within = np.hypot(*(ink.places_mm - 3.0).T) < radius_mm
+    missing = np.where(within, 1.0 - ink.darkness, 0.0)
+    assert compass.filled_misfit(ink, core) == pytest.approx(
+        ink.misfit(ink.darkness + missing), rel=0.02
+    )

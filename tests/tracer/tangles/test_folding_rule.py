@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import nearest_mm, with_places
-from morfax.tracer.tangles import folding_rule, pen
+from morfax.tracer.tangles import folding_rule
 from morfax.tracer.tangles.folding_rule import Rule, explained
 from morfax.tracer.tangles.seen_ink import SeenInk
-from tests.tracer.inked import arc
+from tests.tracer.inked import UM, arc
+from tests.tracer.tangles.pen_ink import HALF_MM, apart_mm, ink_along
 
-PITCH_MM, SOFTNESS_MM, HALF_MM = 0.085, 0.06, 0.25
-UM = 1e-3
+PITCH_MM, SIDE_PX = 0.085, 90
 FIRST, LAST = np.array([1.0, 6.0]), np.array([6.0, 6.0])
 SQUARE = np.array([(3.1, 6), (3.1, 3), (3.9, 3), (3.9, 6)])
 ROUND = np.vstack([(3.1, 6), arc((3.5, 3.4), 0.4, 180, 360), (3.9, 6)])
@@ -28,26 +25,13 @@ def way_of(corners: Array) -> Array:
 
 
 def ink_of(corners: Array, noise: float = 0.0) -> SeenInk:
-    """The ink that a pen leaves along a bay, on pixels with noise."""
-    rows, columns = np.indices((90, 90)).reshape(2, -1)
-    places = PITCH_MM * np.column_stack([columns + 0.5, rows + 0.5])
-    away = pen.away_from(places, way_of(corners))
-    dark = np.empty(len(places))
-    pen.ink(away, HALF_MM, SOFTNESS_MM, dark)
-    dark += np.random.default_rng(1).normal(0.0, noise, len(dark))
-    near = away < 2 * HALF_MM
-    count = int(near.sum())
-    known = np.full(count, math.inf)
-    left_by_noise = count * noise**2
-    return SeenInk(
-        places[near], dark[near], known, HALF_MM, SOFTNESS_MM, PITCH_MM**2, left_by_noise
-    )
+    """The ink that a pen leaves along a bay."""
+    return ink_along(way_of(corners), PITCH_MM, SIDE_PX, noise)
 
 
 def off_mm(rule: Rule, corners: Array) -> float:
     """How far the rule's way is from a bay, and that from it, at most."""
-    laid, true = (with_places(some, 2 * UM) for some in (rule.way, way_of(corners)))
-    return float(max(nearest_mm(laid, true).max(), nearest_mm(true, laid).max()))
+    return apart_mm(rule.way, way_of(corners))
 
 
 @pytest.mark.parametrize(
@@ -102,3 +86,23 @@ def test_arcs_take_no_more_than_half_of_the_side_between_them() -> None:
 def test_sharp_corners_part_the_way_into_stretches() -> None:
     rule = Rule(FIRST, LAST, SQUARE, np.zeros(4, bool), 0.0, HALF_MM)
     assert len(rule.stretches()) == 5 and rule.figures == 8
+
+
+@pytest.mark.parametrize(("times", "is_laid"), [(1.0, True), (1.6, False)])
+def test_a_pen_that_is_1_4_times_as_broad_explains_nothing(times: float, is_laid: bool) -> None:
+    ink = ink_along(way_of(SQUARE), PITCH_MM, SIDE_PX, half_mm=times * HALF_MM)
+    legs = np.vstack([FIRST, [2.5, 6], [4.5, 6], LAST])
+    assert (explained(ink, folding_rule.round_bar(ink, legs)) is not None) == is_laid
+
+
+@pytest.mark.parametrize(
+    "corners", [SQUARE, ROUND, POINTED], ids=["square", "round", "pointed"]
+)
+def test_rules_begin_on_the_line_that_the_bay_leaves(corners: Array) -> None:
+    """However far its tip is from there: in steps of a fiftieth of a bar's length."""
+    ink = ink_of(corners)
+    begun = list(folding_rule.round_bar(ink, np.vstack([FIRST, [2.5, 6], [4.5, 6], LAST])))
+    feet = np.array([rule.corners_mm[[0, -1]] for rule in begun if len(rule.corners_mm) > 2])
+    assert len(feet) > 0
+    assert feet[..., 1] == pytest.approx(np.full(feet.shape[:2], 6.0), abs=4 / 50)
+    assert (feet[:, 0, 0] < feet[:, 1, 0]).all()  # in the order of the line

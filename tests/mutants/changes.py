@@ -1,38 +1,19 @@
-"""Mutation testing of one room: put one wrong line at a time into the code, and see whether a test fails.
-
-    python -m tests.mutants player/gcode --sample 60 --seed 1
-
-The tree is copied to a temporary folder, so nothing here is changed. A mutant is one of these changes, in a
-function or in a constant of a module:
+"""Mutants: each is one wrong line in a file, told by its place in the text and by what stands there then.
 
     a < b     a >= b            a + b     a - b            if a      if not a         min      max
     a == b    a != b            a * b     a / b            a and b   a or b           x[0] = 1    (left out)
     0.8       1.6, 0.27         3         6                  0        1               floor    ceil
 
-A mutant is found where a test fails, or where the tests take three times the processor time that they
-should, or wait for ever. The quickest files of tests are run first. What builds a message (`raise`, `assert`,
-f-strings) is left alone, and so are types and decorators.
-
-Questions: mutants that change nothing (a bound that is never reached) are counted as not found.
+What builds a message (`raise`, `assert`, f-strings) is left alone, and so are types and decorators.
 """
 
 from __future__ import annotations
 
-import argparse
 import ast
-import math
-import os
-import random
 import re
-import resource
-import shutil
-import subprocess
-import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
 OPPOSITE = {
     ast.Lt: ">=", ast.LtE: ">", ast.Gt: "<=", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "==",
     ast.Is: "is not", ast.IsNot: "is", ast.In: "not in", ast.NotIn: "in",
@@ -41,11 +22,6 @@ OPPOSITE = {
 }  # fmt: skip
 _PAIRS = [("min", "max"), ("argmin", "argmax"), ("floor", "ceil")]
 TWINS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
-SLOWER = 3.0  # times the tests' own time, for a mutant
-SPARE_S = 30.0  # to compile the kernels of a mutant
-WAITS = (
-    10.0  # times that limit, by the clock: a mutant may also wait for ever, and take no time
-)
 
 
 @dataclass(frozen=True)
@@ -212,130 +188,3 @@ class _Finder(ast.NodeVisitor):
     def _at(self, line: int, column: int) -> int:
         """Where a line and a column (in bytes) are in the text."""
         return self._starts[line - 1] + len(self._bytes[line - 1][:column].decode())
-
-
-def tests_of(room: str) -> list[str]:
-    """The files of tests of a room, and those of the sources that import it."""
-    name = "morfax." + room.replace("/", ".")
-    sources = (ROOT / "tests" / "sources").glob("test_*.py")
-    own = sorted((ROOT / "tests" / room).rglob("test_*.py"))
-    asking = [s for s in sources if name in s.read_text("utf-8")]
-    return [str(file.relative_to(ROOT)) for file in (*own, *asking)]
-
-
-class Copy:
-    """A copy of the tree, with its own cache of compiled kernels."""
-
-    def __init__(self, folder: Path, tests: list[str]) -> None:
-        hidden = shutil.ignore_patterns(".*", "__pycache__", "demo", "site")
-        self.root = folder / "tree"
-        if not self.root.exists():
-            shutil.copytree(ROOT, self.root, symlinks=True, ignore=hidden)
-            # tests that ask for the vectors would be left out without them, and notice nothing
-            if (ROOT.parent / "shared").exists():
-                (folder / "shared").symlink_to(ROOT.parent / "shared")
-        self.tests = tests
-        self._kernels = folder / "kernels"
-        self._environment = os.environ | {
-            "NUMBA_CACHE_DIR": str(self._kernels),
-            "PYTHONDONTWRITEBYTECODE": "1",
-        }
-
-    def passes(self, limit_s: float | None = None) -> bool:
-        """Whether the tests pass, in time: processor time, as the machine may have other work."""
-        limited = ["prlimit", f"--cpu={math.ceil(limit_s)}"] if limit_s else []
-        how = {"cwd": self.root, "env": self._environment}
-        pytest = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
-        command = [*limited, *pytest, *self.tests]
-        try:
-            done = subprocess.run(
-                command,
-                capture_output=True,
-                check=False,
-                timeout=WAITS * limit_s if limit_s else None,
-                **how,
-            )
-        except subprocess.TimeoutExpired:
-            return False
-        return done.returncode == 0
-
-    def quickest_first(self) -> float | None:
-        """Put the quickest files of tests first, as most mutants are found by any; the processor time of all,
-        s, or None if one fails.
-        """
-        tests, took_s = self.tests, dict[str, float]()
-        for file in tests:
-            self.tests, began_s = [file], _children_s()
-            if not self.passes():
-                return None
-            took_s[file] = _children_s() - began_s
-        self.tests = sorted(tests, key=took_s.__getitem__)
-        return sum(took_s.values())
-
-    def notices(self, mutant: Mutant, limit_s: float) -> bool:
-        """Whether a test fails with a mutant, which is taken out again."""
-        file = self.root / mutant.file
-        source = file.read_text(encoding="utf-8")
-        self._write(mutant.file, mutant.text(source))
-        found = not self.passes(limit_s)
-        self._write(mutant.file, source)
-        return found
-
-    def _write(self, file: Path, text: str) -> None:
-        """Write a file, and forget the compiled kernels of those files that may have taken in one of it.
-
-        numba knows a kernel by the text of its own file alone.
-        """
-        (self.root / file).write_text(text, encoding="utf-8")
-        name = "morfax." + ".".join(file.with_suffix("").parts)
-        for other in (self.root / file.parts[0]).rglob("*.py"):
-            asked = other.read_text(encoding="utf-8")
-            if name in asked and "njit" in asked:
-                for kernel in self._kernels.rglob(f"{other.stem}.*"):
-                    kernel.unlink()
-
-
-def _children_s() -> float:
-    """The processor time of all processes that have been run and waited for, s."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def main() -> None:
-    """Run the mutants of a room, and list those that no test has found."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("room", help="a folder, such as player/gcode, or one file of it")
-    parser.add_argument(
-        "--sample", type=int, default=0, help="so many mutants by chance; 0 is all of them"
-    )
-    parser.add_argument("--seed", type=int, default=1, help="of the choice")
-    parser.add_argument("--tests", nargs="*", help="instead of the room's own and the sources'")
-    asked = parser.parse_args()
-    place = Path(asked.room)
-    inside = (
-        [place] if place.suffix else [f.relative_to(ROOT) for f in (ROOT / place).glob("*.py")]
-    )
-    sources = {file: (ROOT / file).read_text(encoding="utf-8") for file in sorted(inside)}
-    every = [mutant for file, source in sources.items() for mutant in mutants_of(file, source)]
-    count = min(asked.sample or len(every), len(every))
-    chosen = random.Random(asked.seed).sample(every, count)
-    tests = asked.tests or tests_of(str(place.parent if place.suffix else place))
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Copy(Path(folder), tests)
-        copy.passes()  # compiles the kernels
-        took_s = copy.quickest_first()
-        if took_s is None:
-            sys.exit("the tests fail without a mutant; mend them first")
-        limit_s = SLOWER * took_s + SPARE_S
-        named = " ".join(copy.tests)
-        print(f"{count} of {len(every)} mutants; {named}; {limit_s:.0f} s each", flush=True)
-        left = 0
-        for mutant in chosen:
-            if not copy.notices(mutant, limit_s):
-                left += 1
-                print(mutant.told(sources[mutant.file]), flush=True)
-    print(f"found {count - left} of {count}, {1 - left / max(1, count):.0%}")
-
-
-if __name__ == "__main__":
-    main()
