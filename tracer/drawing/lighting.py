@@ -14,8 +14,8 @@ levels are a power of the light, which leaves ratios ratios.
 
 Source: He, Sun and Tang, Guided Image Filtering (2010), the picture being its own guide. Questions: grey
 paper, glued or printed, is white paper in a shadow, and what is drawn on it is drawn on white paper then.
-A dark area with a sharp edge that is nearly as dark as the ink of the lines is a filled shape: beneath it the
-light is that beside it.
+A dark area with a sharp edge that is nearly as dark as the ink of the lines, and has no lines in it, is a
+filled shape: beneath it the light is that beside it.
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ EVEN = 0.85  # of the brightest paper: a scanner's lamp lights the sheet that ev
 INK = 0.35  # of the brightest paper: what is darker is ink; a shadow that takes 0.7 of the light leaves 0.58
 LEAST = 0.5  # a place is made at most twice as bright: its noise is, too
 NOISE = 0.02  # of the brightest paper: by so much a paper's level differs from place to place
+LINES = 0.4  # of the ink's darkness: so dark a line of a few tenths of a millimetre is on the reduced picture
+FEW = 0.002  # of an area: specks; a single line across 50 mm covers more
 ABOUT = np.ones(
     (3, 3), np.uint8
 )  # a pixel of the reduced picture may be half on a shape's edge
@@ -42,21 +44,25 @@ ABOUT = np.ones(
 
 @dataclass(frozen=True, slots=True)
 class Lighting:
-    """The paper's level in parts of the brightest paper's, which is `white` grey levels."""
+    """The level of the paper, and what is seen with the strokes on it, in parts of the brightest paper's
+    level, which is `white` grey levels.
+    """
 
     level: Levels
+    seen: Levels
     white: float
 
     @classmethod
-    def of(cls, level: Levels) -> Lighting | None:
+    def of(cls, level: Levels, seen: Levels) -> Lighting | None:
         """The lighting of a sheet by its paper's level; None where it is even."""
         white = percentile(level.ravel(), BRIGHTEST)
         if float(level.min()) >= EVEN * white:
             return None
         black = (level < INK * white).view(np.uint8)
-        return cls(np.asarray(level / np.float32(white), np.float32), white)._beneath(black)
+        shares = (np.asarray(each / np.float32(white), np.float32) for each in (level, seen))
+        return cls(*shares, white)._beneath(black)
 
-    def beneath_shapes(self, darker: float, sharp_px: int) -> Lighting:
+    def beneath_shapes(self, darker: float, sharp_px: int, stroke_px: float) -> Lighting:
         """The same, where what is darker than the paper beside it, no farther away than a sharp edge is
         broad, by so many parts of that is a shape; it is uncovered from its edges inwards.
         """
@@ -66,8 +72,19 @@ class Lighting:
             brightest = np.asarray(cv2.dilate(lit, beside), np.float32)
             further = dark | (self.level < (1 - darker) * brightest)
             if np.array_equal(further, dark):
-                return self._beneath(dark.view(np.uint8))
+                return self._beneath(self._without_lines(dark, darker, stroke_px))
             dark, lit = further, np.where(further, brightest, self.level)
+
+    def _without_lines(
+        self, dark: NDArray[np.bool_], darker: float, stroke_px: float
+    ) -> NDArray[np.uint8]:
+        """The dark areas in which nothing is darker, half of a stroke's width within their edges."""
+        count, areas = cv2.connectedComponents(dark.view(np.uint8), connectivity=8)
+        depth = cv2.distanceTransform(dark.view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        inner = depth > stroke_px
+        lines = inner & (self.seen < (1 - LINES * darker) * self.level)
+        lined, all_of = (np.bincount(areas[each], minlength=count) for each in (lines, inner))
+        return (dark & (lined <= FEW * all_of)[areas]).view(np.uint8)
 
     def _beneath(self, dark: NDArray[np.uint8]) -> Lighting:
         """The same with the light at the nearest place beside dark areas beneath them."""

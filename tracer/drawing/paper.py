@@ -98,14 +98,16 @@ class Paper:
     def lighting(self, small: Levels) -> Lighting | None:
         """How the sheet of the reduced picture is lit; None if evenly, and for light strokes on dark."""
         across = _stroke_px(self.by_px, self.pitch_mm / self.by_px)
-        return Lighting.of(_closed(small, True, across)) if self.is_light else None
+        return Lighting.of(_closed(small, True, across), small) if self.is_light else None
 
     def light(self, lighting: Lighting, ink: float | None = None) -> Levels:
         """The light on the reduced picture, filled shapes as dark as ink of a contrast apart."""
+        stroke_px = WIDEST_STROKE_MM / 2 / self.pitch_mm
         if ink is not None:
             sharp_px = round(SHARP_MM / self.pitch_mm)
-            lighting = lighting.beneath_shapes(BLACK * ink / lighting.white, sharp_px)
-        return lighting.light(WIDEST_STROKE_MM / 2 / self.pitch_mm)
+            darker = BLACK * ink / lighting.white
+            lighting = lighting.beneath_shapes(darker, sharp_px, stroke_px)
+        return lighting.light(stroke_px)
 
     def beneath_shapes(self, small: Levels, contrast: float) -> Paper:
         """The same with filled shapes as ink of a contrast: beneath them it is as bright as about them.

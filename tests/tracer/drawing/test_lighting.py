@@ -69,9 +69,14 @@ def test_lines_across_a_shadows_edge_are_run_once_and_whole(
     assert np.sqrt(np.mean(off**2)) < 12 * UM
 
 
+def even(level: NDArray[np.float32]) -> Lighting | None:
+    """How a sheet without strokes is lit."""
+    return Lighting.of(level, level)
+
+
 def test_even_light_is_left_as_it_is() -> None:
     """A scanner's lamp that falls off by a tenth is none."""
-    assert Lighting.of(FLAT * np.linspace(0.9, 1, 200, dtype=np.float32)) is None
+    assert even(FLAT * np.linspace(0.9, 1, 200, dtype=np.float32)) is None
 
 
 @pytest.mark.parametrize("soft_px", [1, 20, 100])
@@ -79,7 +84,7 @@ def test_the_light_follows_a_shadows_edge_hard_or_soft(soft_px: int) -> None:
     """Within a twentieth of the light, where the edge is."""
     light = 1 - 0.4 * np.clip((np.arange(200) - 100) / soft_px + 0.5, 0, 1)
     level = FLAT * light.astype(np.float32)
-    lighting = Lighting.of(level)
+    lighting = even(level)
     assert lighting is not None
     found = lighting.light(9.0)
     assert np.abs(found / light - 1).max() < 0.05
@@ -91,11 +96,24 @@ def test_beneath_a_filled_shape_the_light_is_that_beside_it() -> None:
     level[30:60, 20:60] = 30
     level[30:60, 90:120] *= 0.55
     level[:, 150:] *= 0.8
-    lighting = Lighting.of(level)
+    lighting = even(level)
     assert lighting is not None
-    found = lighting.beneath_shapes(0.8 * 0.5, 4).light(1.0)
+    found = lighting.beneath_shapes(0.8 * 0.5, 4, 9.0).light(1.0)
     assert np.abs(found[:, :148] - 1).max() < 0.02
     assert np.abs(found[:, 153:] - 0.8).max() < 0.02
+
+
+def test_a_grey_picture_on_white_paper_is_no_shape_if_lines_are_drawn_on_it() -> None:
+    """As dark as the ink of the lines, and with a sharp edge."""
+    level = FLAT.copy()
+    level[30:90, 60:140] *= 0.55
+    seen = level.copy()
+    seen[58:60, 70:130] *= 0.6
+    for shown, light in ((seen, 0.55), (level, 1.0)):
+        lighting = Lighting.of(level, shown)
+        assert lighting is not None
+        found = lighting.beneath_shapes(0.8 * 0.5, 4, 9.0).light(1.0)
+        assert np.abs(found[40:80, 70:130] - light).max() < 0.02
 
 
 def test_a_disc_of_pencil_under_a_lamp_stays_dark() -> None:
