@@ -59,8 +59,10 @@ class Lighting:
         if float(level.min()) >= EVEN * white:
             return None
         black = (level < INK * white).view(np.uint8)
-        shares = (np.asarray(each / np.float32(white), np.float32) for each in (level, seen))
-        return cls(*shares, white)._beneath(black)
+        paper, all_ink = (
+            np.asarray(each / np.float32(white), np.float32) for each in (level, seen)
+        )
+        return cls(paper, all_ink, white)._beneath(black)
 
     def beneath_shapes(self, darker: float, sharp_px: int, stroke_px: float) -> Lighting:
         """The same, where what is darker than the paper beside it, no farther away than a sharp edge is
