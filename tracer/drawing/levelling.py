@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.faults import DrawingFault
 from morfax.motion.median import ROBUST, median, percentile
 from morfax.tracer.drawing.blocks import runs_behind_spot, runs_in
 from morfax.tracer.drawing.components import Patches
@@ -42,7 +43,7 @@ def levelled(
     on a picture reduced by a whole number; the noise of the paper. Raises DrawingFault if nothing is long and
     dark enough to be a line.
     """
-    contrast = Contrast.of(grey, pitch_mm)
+    contrast = _in_even_light(Contrast.of(grey, pitch_mm), pitch_mm)
     ink, everywhere = _ink_contrast(contrast, pitch_mm)
     if shapes_are_ink:  # another paper beneath them, and so another contrast
         contrast, everywhere = contrast.with_shapes(ink), None
@@ -53,6 +54,30 @@ def levelled(
     if everywhere is None:
         return contrast.darkness(ink), shapes, noise_of_paper
     return contrast.in_parts_of(ink, everywhere), shapes, noise_of_paper
+
+
+def _in_even_light(contrast: Contrast, pitch_mm: float) -> Contrast:
+    """A picture in uneven light made one in even light; filled shapes stay as dark as they are."""
+    paper = contrast.paper
+    lighting = paper.lighting(contrast.blocks.mean)
+    if lighting is None:
+        return contrast
+    try:
+        # shapes are known by how dark the lines are, and that by the light: all that is dark is in a shadow
+        ink, _ = _ink_contrast(_lit(contrast, paper.light(lighting), pitch_mm), pitch_mm)
+    except DrawingFault:
+        return contrast
+    return _lit(contrast, paper.light(lighting, ink), pitch_mm)
+
+
+def _lit(contrast: Contrast, light: Darkness, pitch_mm: float) -> Contrast:
+    """The same of the picture divided by the light on it, which is given on the reduced picture."""
+    by, (rows, columns) = contrast.blocks.by, contrast.grey.shape
+    large = cv2.resize(light, None, fx=by, fy=by, interpolation=cv2.INTER_LINEAR)
+    lit = cv2.divide(
+        contrast.grey.astype(np.float32), np.ascontiguousarray(large[:rows, :columns])
+    )
+    return Contrast.of(np.asarray(np.clip(np.rint(lit), 0, 255), np.uint8), pitch_mm)
 
 
 def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness | None]:

@@ -18,12 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.blocks import Blocks
+from morfax.tracer.drawing.lighting import Lighting, from_beside
 
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
 SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shadow
 # light falls off over a sheet, by ink's whole contrast beneath a lamp; behind a shape's edge, blurred by a
 # stroke's width, the paper is bright again within three of these
 BESIDE_SHAPE_MM = 18.0
+SHARP_MM = 1.5  # a shape's edge is no broader, most shadows' are; by trial
 DARK = 0.5  # of the ink's contrast: what is darker than the paper by more is ink
 BLACK = 0.8  # of the ink's contrast: a paler area is a panel, or in shadow; by trial
 ALIKE = 0.02  # of the ink's contrast: levels that differ by less are one
@@ -61,12 +63,11 @@ class Paper:
     @classmethod
     def of_reduced(cls, small: Levels, by: int, columns: int, pitch_mm: float) -> Paper:
         """The paper of a picture of so many columns that was reduced already."""
-        across = 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * by)) + 1
-        stroke = _disc(across // 2)
+        across = _stroke_px(by, pitch_mm)
         relief = small - cv2.blur(small, (across, across))
         # strokes take less room than paper: the few stand out further
         is_light = float((relief * relief * relief).sum()) <= 0
-        level = cv2.morphologyEx(small, cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN, stroke)
+        level = _closed(small, is_light, across)
         smooth = np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32)
         return cls(smooth, by, columns, is_light, by * pitch_mm)
 
@@ -94,6 +95,20 @@ class Paper:
         grown = cv2.dilate(dark, _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
         return np.asarray(grown, bool)
 
+    def lighting(self, small: Levels) -> Lighting | None:
+        """How the sheet of the reduced picture is lit; None if evenly, and for light strokes on dark."""
+        across = _stroke_px(self.by_px, self.pitch_mm / self.by_px)
+        return Lighting.of(_closed(small, True, across), small) if self.is_light else None
+
+    def light(self, lighting: Lighting, ink: float | None = None) -> Levels:
+        """The light on the reduced picture, filled shapes as dark as ink of a contrast apart."""
+        stroke_px = WIDEST_STROKE_MM / 2 / self.pitch_mm
+        if ink is not None:
+            sharp_px = round(SHARP_MM / self.pitch_mm)
+            darker = BLACK * ink / lighting.white
+            lighting = lighting.beneath_shapes(darker, sharp_px, stroke_px)
+        return lighting.light(stroke_px)
+
     def beneath_shapes(self, small: Levels, contrast: float) -> Paper:
         """The same with filled shapes as ink of a contrast: beneath them it is as bright as about them.
 
@@ -107,7 +122,7 @@ class Paper:
             hidden = np.asarray(cv2.dilate(uncovered, about), np.uint8)
             if hidden.all():
                 return self
-            nearest = _from_beside(self.reduced, hidden)
+            nearest = from_beside(self.reduced, hidden)
             level = np.where(hidden > 0, self._seen(small, nearest, contrast), self.reduced)
             further = replace(self, reduced=np.asarray(level, np.float32))
             if not (further.shapes(contrast) & (uncovered == 0)).any():
@@ -136,15 +151,15 @@ class Paper:
         return np.asarray(np.where(among > FEW, level, about), np.float32)
 
 
-def _from_beside(level: Levels, hidden: NDArray[np.uint8]) -> Levels:
-    """A level that is that of the nearest place beside what is hidden."""
-    _, nearest = cv2.distanceTransformWithLabels(
-        hidden, cv2.DIST_L2, cv2.DIST_MASK_PRECISE, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    seen = hidden == 0
-    at = np.zeros(int(nearest.max()) + 1, np.float32)
-    at[nearest[seen]] = level[seen]
-    return np.asarray(at[nearest], np.float32)
+def _stroke_px(by: int, pitch_mm: float) -> int:
+    """How broad the widest stroke is on a picture of a pitch that was reduced; an odd number."""
+    return 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * by)) + 1
+
+
+def _closed(small: Levels, is_light: bool, across: int) -> Levels:
+    """A reduced picture without its strokes."""
+    closing = cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN
+    return np.asarray(cv2.morphologyEx(small, closing, _disc(across // 2)), np.float32)
 
 
 def _disc(radius_px: int) -> NDArray[np.uint8]:

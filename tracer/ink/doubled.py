@@ -52,8 +52,11 @@ CUT_WIDTHS = 1.8  # of its own: a shorter piece is where others cross
 ALIKE = 0.15  # of its width: a piece of the same two lines is about as broad, and as broad all along
 STRAIGHT_COS = 0.98  # 11 degrees
 PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the same two lines
-# the width of a line as the head wants it: of a narrower one pixels make the width swell
-LEAST_PX = 3.0
+# the width of a line as the head wants it: of a narrower one pixels make the width swell; and where they are
+LEAST_PX = (
+    3.0,
+    7.0,
+)  # ink or paper alone, and tell a width to one of them: `SHARED` is more then
 # of the stations where ink lies still: of two lines more lie together, between flares. Ink that swells and
 # shrinks on the way is a line that is broader at its bends, as a printed letter's (0.2 to 0.7; a pen's loop
 # 0.83); by trial
@@ -79,10 +82,10 @@ class Doubled(NamedTuple):
         felt: Sequence[Run],
         ends: Sequence[Ends],
         patch_of: Mapping[int, int],
-        pixel_mm: float,
+        narrowest_mm: float,
     ) -> Doubled:
         """Find the doubled stretches among those whose patch is given, some of which end the ink; none of a
-        sheet that is not clean, or whose lines are few pixels of the picture wide.
+        sheet that is not clean, or whose lines are narrower than a width.
         """
         # 1. how wide the ink is along each stretch, and whether one pen's line or two lines are
         found = {
@@ -92,7 +95,7 @@ class Doubled(NamedTuple):
         pen_mm, beside_mm = pen_of(every), pen_of_hollow(every)
         if math.isnan(pen_mm):
             pen_mm = beside_mm
-        if not pen_mm > LEAST_PX * pixel_mm:
+        if not pen_mm > narrowest_mm:
             return cls()
         ink = Ink.TWO_LINES if beside_mm > 0 else _what_is(every, pen_mm)
         if ink == Ink.NIB:

@@ -40,6 +40,7 @@ LEAST_MM = 5.0  # a shorter pale line is a smudge
 # of the length of all its branches that the box about it measures: on a grained paper what is more branched
 # is grain, which thins to a web; by trial on photographs of paper and boards
 STRETCHED = 0.5
+MOSTLY = 0.5  # of a line's middle
 LEAST_WIDTHS = 5.0  # of a line's length: less is a blot
 
 
@@ -125,6 +126,9 @@ def _lines(mask: Mask, drawing: Drawing) -> Iterator[Pale]:
     widths_px = 2 * np.bincount(patch, depth, count) / pixels
     least_px = np.maximum(LEAST_MM / drawing.pitch_mm, LEAST_WIDTHS * widths_px)
     are_lines = lengths_px > least_px
+    # a line of one hard pixel is ink, and pale behind the spot alone
+    inked = np.bincount(patch, drawing.darkness[rows, columns] > INK, count)
+    are_lines &= inked < MOSTLY * pixels
     if ABOVE_NOISE * _noise_of_spots(drawing) > LEAST:
         are_lines &= np.hypot(*_sides(patch, rows, columns, count)) > STRETCHED * lengths_px
     for k in np.flatnonzero(are_lines):

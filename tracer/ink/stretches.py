@@ -29,7 +29,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import ONE_PEN, Window
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS, SHARED, Doubled
+from morfax.tracer.ink.doubled import BROADER, LEAST_PX, LEAST_WIDTHS, SHARED, Doubled
 from morfax.tracer.ink.felt import (
     Ends,
     Parted,
@@ -154,7 +154,8 @@ class FeltSheet:
         doubled, some = Doubled(), _no_letters(graph, letters)
         if not settings.line_width_mm:
             patch, pixel_mm = graph.patches(), drawing.pitch_mm * drawing.finer
-            doubled = Doubled.of(felt, ends, {n: int(patch[n]) for n in some}, pixel_mm)
+            narrowest_mm = LEAST_PX[drawing.is_hard] * pixel_mm
+            doubled = Doubled.of(felt, ends, {n: int(patch[n]) for n in some}, narrowest_mm)
         if doubled.is_sure and math.isfinite(doubled.pen_mm):
             for n in set(some).intersection(of_two_lines(straight, measured, doubled.pen_mm)):
                 widths[n] = doubled.pen_mm

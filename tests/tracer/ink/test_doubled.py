@@ -257,6 +257,13 @@ def test_lines_of_few_pixels_do_not_tell() -> None:
     assert doubled_mm(two_pens(0.2, 0.28, None)) == 0.0
 
 
+def test_hard_pixels_tell_a_width_to_one_of_them() -> None:
+    """A line of five and six pixels was ink of two lines, of which one was told as left out, or both were."""
+    seen = inked(*near_lines(True), CLEAR)
+    assert doubled_mm(seen) > 10.0
+    assert doubled_mm(replace(seen, is_hard=True)) == 0.0
+
+
 @pytest.mark.parametrize("seed", [None, 1, 2])
 def test_a_broader_pen_that_comes_by_two_lines_in_one_ink_draws_one_line(
     seed: int | None,

@@ -60,3 +60,14 @@ def test_a_smudge_on_grained_paper_is_no_pale_line_and_a_line_beside_it_is_one()
     assert on_bar_mm == pytest.approx(30 - 2 * 0.25, abs=RIM_MM)
     # of 160 mm of web that the smudge thins to
     assert sum(line.length_mm for line in found) - on_bar_mm < 25
+
+
+def test_a_line_of_one_hard_pixel_is_ink() -> None:
+    """It was followed, and told as left out: a third of a plan of 1-bit pixels."""
+    sheet = with_pale_bar(0.0, 0.0)
+    rows = round(16 / sheet.pitch_mm)
+    darkness = np.asarray(sheet.darkness, np.float32).copy()
+    darkness[rows, round(10 / sheet.pitch_mm) : round(32 / sheet.pitch_mm)] = 1.0
+    assert pale_lines(replace(sheet, darkness=darkness)) == []
+    darkness[rows] *= 0.45
+    assert len(pale_lines(replace(sheet, darkness=darkness))) == 1
