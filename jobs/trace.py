@@ -115,7 +115,7 @@ class TraceJob:
         picture = None if outputs.picture is None else traced.name(outputs.picture)
         if picture is not None:
             written["picture"] = str(picture)
-        unit.warn(outputs.program, listener)
+        unit.warn(outputs.program, listener, self.settings)
         flat = {**flattening.figures(drawing, picture), **figures_of(drawing)}
         figures = {"drawing": str(self.drawing.file), **written, **flat, **traced.figures()}
         figures |= {**timed, **traced.zero_figures(unit), **unit.figures()}
