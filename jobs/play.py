@@ -141,10 +141,10 @@ class PlayJob:
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> PlayResult:
         """Play and write; raises WrongUse, and the fault if nothing was played before it."""
         # 1. what is set
-        for file in (*self.outputs, *self.charts):
-            medium.outgoing(file, self.tape)
+        medium.outgoing_together((*self.outputs, *self.charts), self.tape)
         is_live = str(self.tape) == PIPE
         if not is_live:
+            medium.refuse_drawing(self.tape, medium.kind_of(self.tape))
             outlines.check_unit(self.drawn_unit, self.tape)
         settings = self.control.for_file(self.tape, self.by_hand)
         chart = following.new_chart(self.raw) if self.charts else None
