@@ -26,7 +26,17 @@ from morfax.motion.files import printable
 from morfax.reports.axis_numbers import numbers, steps_in
 from morfax.reports.canvas import DPI
 from morfax.reports.page import Box, Page
-from morfax.reports.plate import BLACK, Colours, Place, Plate, View, Words, fitted, free_corner
+from morfax.reports.plate import (
+    BLACK,
+    LEGEND_SHARE,
+    Colours,
+    Place,
+    Plate,
+    View,
+    Words,
+    fitted,
+    free_corner,
+)
 
 PX_PER_PT = DPI / 72
 PT_PER_IN = 72
@@ -82,7 +92,8 @@ def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
         (2 * PAD + rows + (rows - 1) * BETWEEN) * em,
     )
     shown = replace(plate, view=fitted(plate.view, high_px / wide_px))
-    shares = (wide + OUTSIDE * em) / wide_px, (high + OUTSIDE * em) / high_px
+    own = (wide + OUTSIDE * em) / wide_px, (high + OUTSIDE * em) / high_px
+    shares = max(own[0], LEGEND_SHARE[0]), max(own[1], LEGEND_SHARE[1])
     is_upper, is_right = free_corner(shown, shares)
     left = wide_px - OUTSIDE * em - wide if is_right else OUTSIDE * em
     top = OUTSIDE * em if is_upper else high_px - OUTSIDE * em - high

@@ -15,13 +15,21 @@ from morfax.reports.axis_numbers import numbers
 from morfax.reports.canvas import new_figure
 from morfax.reports.looks import SEE_THROUGH, WORDS_PT
 from morfax.reports.page import Box, Page
-from morfax.reports.plate import Area, Colours, Line, Mark, Plate, Spot, Words, free_corner
+from morfax.reports.plate import (
+    LEGEND_SHARE,
+    Area,
+    Colours,
+    Line,
+    Mark,
+    Plate,
+    Spot,
+    Words,
+    free_corner,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-LEGEND_SHARE = 0.25, 0.2  # of the axes' width and height: about what a legend takes up
 
 
 def figure_of(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | None) -> Figure:
