@@ -19,13 +19,12 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
 from morfax.reports import corrected, labels, leaders, left_out
-from morfax.reports.canvas import COMPRESSION, REFERENCE, UM_PER_MM, grey, save, write
+from morfax.reports.canvas import COMPRESSION, DPI, REFERENCE, UM_PER_MM, grey, save, write
 from morfax.reports.coloured import error_lines
 from morfax.reports.looks import LINE_PT, NAME_PT, NUMBERS_PT, THIN_PT, WORDS_PT
 from morfax.reports.page import INSETS, Page, lay_out
 from morfax.reports.plate import (
     BLACK,
-    LEGEND_SHARE,
     Colours,
     Line,
     Plate,
@@ -76,7 +75,7 @@ def draw(picture: Picture, file: FilePath) -> None:
     """Write the picture, of the kind that the suffix says (.png, .svg, .pdf)."""
     places, view = _worst_places(picture), view_of(picture)
     page, main, scale = _laid_out(picture, view, len(places))
-    if main.legend and not has_free_corner(main, LEGEND_SHARE):
+    if main.legend and not has_free_corner(main, _legend_share(main, page)):
         page, main, scale = _laid_out(picture, _with_margin(view), len(places))
     plates = [(page.main, main)]
     for number, (box, place_mm) in enumerate(zip(page.insets, places, strict=True), 1):
@@ -101,6 +100,13 @@ def _laid_out(picture: Picture, view: View, insets: int) -> tuple[Page, Plate, C
     shape = (view[3] - view[2]) / (view[1] - view[0])
     page = lay_out(shape, insets, has_bar=_is_measured(picture))
     return page, *_whole(picture, view, page)
+
+
+def _legend_share(plate: Plate, page: Page) -> tuple[float, float]:
+    """How much of the main axes' width and height the legend takes."""
+    from morfax.reports.lettering import legend_share
+
+    return legend_share(plate, page.main.width_in * DPI, page.main.height_in * DPI)
 
 
 def _with_margin(view: View) -> View:

@@ -20,7 +20,6 @@ from morfax.motion.arrays import Array
 View = tuple[float, float, float, float]  # left, right, bottom, top, mm on the sheet
 Place = tuple[float, float]
 BLACK = "#000000"
-LEGEND_SHARE = 0.25, 0.25  # of the axes' width and height: about what a legend takes up
 
 
 @dataclass(frozen=True, slots=True)

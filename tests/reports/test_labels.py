@@ -10,7 +10,7 @@ import pytest
 from morfax.motion.motion import Path
 from morfax.reports import labels, overlay
 from morfax.reports.overlay import Picture
-from morfax.reports.plate import LEGEND_SHARE, Line, Plate, Spot, Words, free_corner
+from morfax.reports.plate import Line, Plate, Spot, Words, free_corner
 
 WIDE_PT = HIGH_PT = 400.0
 SIZE_PT = 8.0
@@ -82,12 +82,13 @@ def test_a_legend_stands_beside_the_sheet_where_lines_are_in_all_corners() -> No
     view = overlay.view_of(picture)
     shown = overlay._with_margin(view)
     for seen, is_free in ((view, False), (shown, True)):
-        _, plate, _ = overlay._laid_out(picture, seen, 0)
+        page, plate, _ = overlay._laid_out(picture, seen, 0)
+        share = overlay._legend_share(plate, page)
         left, right, low, high = plate.view
-        is_upper, is_right = free_corner(plate, LEGEND_SHARE)
+        is_upper, is_right = free_corner(plate, share)
         x = (places[:, 0] - left) / (right - left)
         y = (places[:, 1] - low) / (high - low)
-        aside = x > 1 - LEGEND_SHARE[0] if is_right else x < LEGEND_SHARE[0]
-        level = y > 1 - LEGEND_SHARE[1] if is_upper else y < LEGEND_SHARE[1]
+        aside = x > 1 - share[0] if is_right else x < share[0]
+        level = y > 1 - share[1] if is_upper else y < share[1]
         within = aside & level
         assert bool(within.any()) != is_free
