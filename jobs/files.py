@@ -15,15 +15,14 @@ with --force. A result never goes over the file that it is made from.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from morfax.jobs.figures import Figures
+from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import FileFault
 from morfax.motion.files import check_name, check_regular
-
-if TYPE_CHECKING:
-    pass
 
 Kind = Literal["tape", "program", "drawing", "outline", "path"]
 
@@ -84,6 +83,15 @@ def kind_of(file: FilePath) -> Kind:
     return kind or "path"
 
 
+def refuse_drawing(file: FilePath, kind: Kind) -> None:
+    """Raise WrongUse for a scan or a photo where a program or a path is wanted."""
+    if kind == "drawing":
+        raise WrongUse(
+            f"{file} is a drawing, and no program: `morfax trace {file.name}` makes one of it, `morfax run "
+            f"{file.name}` plays it too"
+        )
+
+
 def kind_by_name(file: FilePath) -> Kind | None:
     """Which kind of file this is by its name alone; None if the suffix does not say."""
     return _SUFFIXES.get(file.suffix.lower())
@@ -109,6 +117,20 @@ def outgoing(file: FilePath, *made_from: FilePath) -> FilePath:
             "give another name"
         )
     return file
+
+
+def outgoing_together(files: Iterable[FilePath | None], *made_from: FilePath) -> None:
+    """Check the names of a job's results; raises FileFault as `outgoing`, WrongUse for one file twice."""
+    taken = dict[FilePath, FilePath]()
+    for file in files:
+        if file is None:
+            continue
+        place = outgoing(file, *made_from).resolve()
+        if place in taken:
+            raise WrongUse(
+                f"{taken[place]} and {file} are one file, for two results; give each a name of its own"
+            )
+        taken[place] = file
 
 
 def made_up(name: FilePath, *made_from: FilePath, force: bool) -> FilePath:

@@ -122,6 +122,7 @@ class PlayResult:
     chart: Chart | None
     speeds: following.Speeds | None
     fault: Fault | None
+    picture: FilePath | None = None  # of `path` with the following errors of the chart along it
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,17 +138,19 @@ class PlayJob:
     by_hand: ByHand = field(default_factory=ByHand)
     drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
     intake: Intake = field(default_factory=Intake)  # of the pipe: it may be a device
+    picture: FilePath | None = None  # of the path, with the following error along it
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> PlayResult:
         """Play and write; raises WrongUse, and the fault if nothing was played before it."""
         # 1. what is set
-        for file in (*self.outputs, *self.charts):
-            medium.outgoing(file, self.tape)
+        medium.outgoing_together((*self.outputs, *self.charts, self.picture), self.tape)
         is_live = str(self.tape) == PIPE
         if not is_live:
+            medium.refuse_drawing(self.tape, medium.kind_of(self.tape))
             outlines.check_unit(self.drawn_unit, self.tape)
         settings = self.control.for_file(self.tape, self.by_hand)
-        chart = following.new_chart(self.raw) if self.charts else None
+        is_charted = bool(self.charts) or self.picture is not None
+        chart = following.new_chart(self.raw) if is_charted else None
         # 2. the machine runs
         with settings_checked(), outlines.as_tape(self.tape, self.drawn_unit, listener) as tape:
             playing = Playing(tape, self.by_hand, self.raw, chart, settings, self.intake)
@@ -155,11 +158,13 @@ class PlayJob:
         # 3. what it ran
         paths = _marked(self.outputs, fault)
         charts = _marked(self.charts, fault)
+        (picture,) = (None,) if self.picture is None else _marked((self.picture,), fault)
         speeds = following.speeds_held(playback) if _has_picture(charts) else None
         figures = {
             medium.called(self.tape): self.intake.called if is_live else str(self.tape),
             "paths": [str(file) for file in paths] or None,
             "following": [str(file) for file in charts] or None,
+            "picture": None if picture is None else str(picture),
             **_figures(passage, playback, fault),
         }
         if not fault and not passage.worked:
@@ -168,13 +173,14 @@ class PlayJob:
                 "should "
                 "go down"
             )
-        return PlayResult(figures, paths, charts, path, chart, speeds, fault)
+        return PlayResult(figures, paths, charts, path, chart, speeds, fault, picture)
 
     def _played(
         self, playing: Playing, listener: Listener
     ) -> tuple[Passage, Playback, Fault | None, Path | None]:
         """Play and write the path as it comes; keep the whole of it only for a picture or a program."""
-        if all(file.suffix.lower() in medium.PATHS for file in self.outputs):
+        is_shown = self.picture is not None
+        if not is_shown and all(file.suffix.lower() in medium.PATHS for file in self.outputs):
             return *playing.into(self.outputs, listener), None
         played = playing.whole(listener)
         from morfax.motion.pathfile import write_path

@@ -232,6 +232,7 @@ def read_or_play(
     from morfax.motion.pathfile import FEED_MM_S, read_path
 
     kind, feed_mm_s = medium.kind_of(file), feed_mm_s or FEED_MM_S
+    medium.refuse_drawing(file, kind)
     if kind in ("tape", "program"):
         return Playing(file, by_hand).without_fault(listener)
     if kind == "outline":

@@ -9,11 +9,12 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from morfax.jobs import files as medium
-from morfax.jobs import machining
+from morfax.jobs import machining, scaled
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
     from morfax.jobs.listener import Listener
+    from morfax.jobs.settings import TraceSettings
     from morfax.motion.motion import Motion
     from morfax.motion.placement import Placement
     from morfax.recorder.gcode.machine import Machine, UsualLines
@@ -127,20 +128,21 @@ class RecordingUnit:
             return None
         return self.chosen(program).lines
 
-    def warn(self, program: FilePath | None, listener: Listener) -> None:
+    def warn(
+        self,
+        program: FilePath | None,
+        listener: Listener,
+        settings: TraceSettings | None = None,
+    ) -> None:
         """Say what a scale does to the cutter and the speed, and name a feed that no machine cuts with."""
         if program is not None and medium.has_machine(program):
             for text in machining.doubtful_feeds(
                 self.chosen(program), self.feed_mm_s, self.plunge_mm_s
             ):
                 listener.warning(text)
-        scale = self.scale
-        if scale != 1:
-            listener.warning(
-                f"scaled by {scale:g}: the drawn contour allows for a cutter's radius, which is scaled too, "
-                f"so the cutter must be {scale:g} times as thick; leads and tabs are {scale:g} times as long,"
-                f" and X and Y run {scale:g} times as fast; Z is not scaled"
-            )
+        of_scale = scaled.said(self.scale, settings, has_feed=self.feed_mm_s is not None)
+        if of_scale is not None:
+            listener.warning(of_scale)
 
     def record(self, stream: Iterable[Motion], file: FilePath, listener: Listener) -> Report:
         """Record a motion, placed, in the medium that the name says; raises MotionFault if it cannot be."""

@@ -6,7 +6,7 @@ Signals in: the traced lines. Signals out: texts, each with what to do.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from morfax.jobs.remarks_on_lines import of_letters
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from morfax.tracer.following.line import Line
     from morfax.tracer.ink.ledger import Balance
     from morfax.tracer.program.program import Trace
+    from morfax.tracer.program.small_rings import SmallPatch
 
 # chosen by trial on the test drawings
 LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
@@ -175,23 +176,34 @@ def _of_small_rings(trace: Trace) -> Iterator[str]:
     """Lines that are too small to be contours, and may be holes."""
     rings = trace.small_rings
     if rings:
-        (x, y), across_mm = rings[0]
         many = (
             "1 small closed line is"
             if len(rings) == 1
             else f"{len(rings)} small closed lines are"
         )
         yield (
-            f"{many} left out, too short for a contour (the largest, {across_mm:.1f} mm across, at "
-            f"{x:.1f},{y:.1f} mm): --lines all follows all ink"
+            f"{many} left out, too short for a contour ({_largest(rings)}): --lines all follows all ink"
         )
-    if trace.unclear:
-        (x, y), across_mm = trace.unclear[0]
-        many = "1 line is" if len(trace.unclear) == 1 else f"{len(trace.unclear)} lines are"
+    filled = [patch for patch in trace.unclear if patch.is_filled]
+    lines = [patch for patch in trace.unclear if not patch.is_filled]
+    if filled:
+        many = "1 filled shape is" if len(filled) == 1 else f"{len(filled)} filled shapes are"
         yield (
-            f"{many} left out, so small or narrow that the head can nowhere be put down (the largest, "
-            f"{across_mm:.1f} mm across, at {x:.1f},{y:.1f} mm): draw it larger or with a finer pen"
+            f"{many} left out ({_largest(filled)}): --lines all --edge follows the outlines of filled shapes "
+            "and the lines beside them"
         )
+    if lines:
+        many = "1 line is" if len(lines) == 1 else f"{len(lines)} lines are"
+        yield (
+            f"{many} left out, so small or narrow that the head can nowhere be put down "
+            f"({_largest(lines)}): draw it larger or with a finer pen"
+        )
+
+
+def _largest(patches: Sequence[SmallPatch]) -> str:
+    """The first of some patches in words: they are sorted by size."""
+    (x, y), across_mm = patches[0].place_mm, patches[0].across_mm
+    return f"the largest, {across_mm:.1f} mm across, at {x:.1f},{y:.1f} mm"
 
 
 def _of_joined(trace: Trace) -> Iterator[str]:

@@ -38,6 +38,17 @@ def of_reference(trace: Trace, drawing: Drawing, settings: TraceSettings) -> Ite
             yield from _of_holes(trace)
 
 
+def of_zero(zero_mm: Place, trace: Trace, settings: TraceSettings) -> Iterator[str]:
+    """The zero at a cross or ring that nobody has named, and from which no line begins: perhaps a hole."""
+    is_sought = settings.program.zero == "reference" and settings.line.reference_mm is None
+    if is_sought and trace.reference_mm is None:
+        x, y = zero_mm
+        yield (
+            f"the program's zero is the only small cross or ring on the drawing, at {x:.1f},{y:.1f} mm, "
+            "though no line begins there: if it is a hole or a symbol, give --reference-point X,Y"
+        )
+
+
 def _leads_nowhere(given: tuple[float, float], settings: TraceSettings) -> str:
     """A reference point that was given and from which no line begins."""
     from morfax.tracer.following.open_ends import LEAD_MM

@@ -87,7 +87,7 @@ class RunJob:
         chart = following.new_chart(raw=False) if self.charted else None
         played = Playing(program, by_hand, chart=chart).whole(listener)
         played_file = self._write(played, traced)
-        unit.warn(program, listener)
+        unit.warn(program, listener, self.settings)
         # 3. compare, as the drawing was before it was mirrored, scaled and turned
         about = unit.placement.about(traced.path.positions_mm[0])
         path = about.back(played.path)

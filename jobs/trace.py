@@ -15,6 +15,7 @@ from morfax.jobs.machining import tell_what_is_lost
 from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.settings import DrawingFile, TraceSettings
 from morfax.jobs.tracing import Tracing
+from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -40,14 +41,19 @@ class TraceOutputs:
     force: bool = False
 
     def checked(self, drawing: FilePath) -> TraceOutputs:
-        """The names under which results can be written; raises FileFault if one cannot."""
-        for file in (self.program, self.path, self.picture):
-            if file is not None:
-                medium.outgoing(file, drawing)
+        """The names under which results can be written; raises FileFault if one cannot, WrongUse for one
+        name twice.
+        """
+        medium.outgoing_together((self.program, self.path, self.picture), drawing)
         program = self.program
         if program is None:
             program = medium.made_up(FilePath(f"{drawing.stem}.wav"), drawing, force=self.force)
         if program.suffix.lower() in medium.PATHS:
+            if self.path is not None:
+                raise WrongUse(
+                    f"{program} and {self.path} would both hold the head's path; give -o a program, such as "
+                    f"{program.with_suffix('.ngc')}, or leave --path out"
+                )
             return TraceOutputs(None, program, self.picture)
         return TraceOutputs(program, self.path, self.picture)
 
@@ -115,7 +121,7 @@ class TraceJob:
         picture = None if outputs.picture is None else traced.name(outputs.picture)
         if picture is not None:
             written["picture"] = str(picture)
-        unit.warn(outputs.program, listener)
+        unit.warn(outputs.program, listener, self.settings)
         flat = {**flattening.figures(drawing, picture), **figures_of(drawing)}
         figures = {"drawing": str(self.drawing.file), **written, **flat, **traced.figures()}
         figures |= {**timed, **traced.zero_figures(unit), **unit.figures()}

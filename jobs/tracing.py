@@ -6,6 +6,7 @@ the operator should know about the run goes to the listener as warnings (see `re
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -15,7 +16,7 @@ from morfax.jobs.contour_remarks import of_around, of_contouring, of_order
 from morfax.jobs.depths import of_tabs
 from morfax.jobs.remarks import of_cutter, remarks
 from morfax.jobs.remarks_on_edges import of_picture_edge
-from morfax.jobs.remarks_on_reference import of_reference
+from morfax.jobs.remarks_on_reference import of_reference, of_zero
 from morfax.jobs.skips import gap_across_skips, of_pieces
 from morfax.jobs.stub_lines import StubLines
 from morfax.jobs.traced import Traced
@@ -86,6 +87,8 @@ class Tracing:
             listener.warning(text)
         # 2. the zero of the program
         zero = ZeroOnSheet.of(self.settings, drawing, followed)
+        for text in of_zero(zero.place_mm, followed, self.settings):
+            listener.warning(text)
         # 3. the cutter beside the lines, or the tool along them
         beside, left = self._cut(drawing, followed, listener)
         cutter = self.settings.tool.cutter()
@@ -150,12 +153,16 @@ class Tracing:
     def on_machine(self, unit: RecordingUnit, program: FilePath | None) -> Tracing:
         """The same with the direction of closed lines that a machine asks for, if nobody asks for another.
 
-        Of a program that is mirrored the lines run the other way round on the drawing.
+        Of a program that is mirrored the lines run the other way round on the drawing. A ramp has the angle
+        that is asked for after X and Y are scaled, which Z is not.
         """
         contour = self.settings.contour.on_machine(
             unit.milling(program), self.settings.line.direction, bool(unit.mirror)
         )
-        return replace(self, settings=replace(self.settings, contour=contour))
+        settings, work = replace(self.settings, contour=contour), self.operator.work
+        if work.ramp_rad is not None:
+            work = replace(work, ramp_rad=math.atan(unit.scale * math.tan(work.ramp_rad)))
+        return replace(self, settings=settings, operator=replace(self.operator, work=work))
 
     def _cut(
         self, drawing: Drawing, followed: Trace, listener: Listener

@@ -26,7 +26,16 @@ from morfax.motion.files import printable
 from morfax.reports.axis_numbers import numbers, steps_in
 from morfax.reports.canvas import DPI
 from morfax.reports.page import Box, Page
-from morfax.reports.plate import BLACK, Colours, Place, Plate, View, Words, fitted, free_corner
+from morfax.reports.plate import (
+    BLACK,
+    Colours,
+    Place,
+    Plate,
+    View,
+    Words,
+    fitted,
+    free_corner,
+)
 
 PX_PER_PT = DPI / 72
 PT_PER_IN = 72
@@ -74,16 +83,9 @@ def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
     if not plate.legend:
         return None
     em = LEGEND_PT * PX_PER_PT
-    font = _font(LEGEND_PT)
-    longest = max(font.getlength(_plain(mark.label)) for mark in plate.legend)
-    rows = len(plate.legend)
-    wide, high = (
-        (2 * PAD + SAMPLE + GAP) * em + longest,
-        (2 * PAD + rows + (rows - 1) * BETWEEN) * em,
-    )
+    rows, (wide, high) = len(plate.legend), _legend_px(plate)
     shown = replace(plate, view=fitted(plate.view, high_px / wide_px))
-    shares = (wide + OUTSIDE * em) / wide_px, (high + OUTSIDE * em) / high_px
-    is_upper, is_right = free_corner(shown, shares)
+    is_upper, is_right = free_corner(shown, legend_share(plate, wide_px, high_px))
     left = wide_px - OUTSIDE * em - wide if is_right else OUTSIDE * em
     top = OUTSIDE * em if is_upper else high_px - OUTSIDE * em - high
     begin = left + PAD * em
@@ -91,6 +93,20 @@ def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
     middles = [top + (PAD + 0.5 + row * (1 + BETWEEN)) * em for row in range(rows)]
     samples = [(begin, end, middle) for middle in middles]
     return Legend((left, top, left + wide, top + high), samples, HALF_HIGH * em)
+
+
+def legend_share(plate: Plate, wide_px: float, high_px: float) -> tuple[float, float]:
+    """How much of the width and height of axes of a size a plate's legend takes in its corner."""
+    wide, high = _legend_px(plate)
+    outside = OUTSIDE * LEGEND_PT * PX_PER_PT
+    return (wide + outside) / wide_px, (high + outside) / high_px
+
+
+def _legend_px(plate: Plate) -> tuple[float, float]:
+    """Width and height of a plate's legend."""
+    em, rows = LEGEND_PT * PX_PER_PT, len(plate.legend)
+    longest = max(_font(LEGEND_PT).getlength(_plain(mark.label)) for mark in plate.legend)
+    return (2 * PAD + SAMPLE + GAP) * em + longest, (2 * PAD + rows + (rows - 1) * BETWEEN) * em
 
 
 def written(

@@ -18,12 +18,22 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
-from morfax.reports import corrected, leaders, left_out
-from morfax.reports.canvas import COMPRESSION, REFERENCE, UM_PER_MM, grey, save, write
+from morfax.reports import corrected, labels, leaders, left_out
+from morfax.reports.canvas import COMPRESSION, DPI, REFERENCE, UM_PER_MM, grey, save, write
 from morfax.reports.coloured import error_lines
 from morfax.reports.looks import LINE_PT, NAME_PT, NUMBERS_PT, THIN_PT, WORDS_PT
 from morfax.reports.page import INSETS, Page, lay_out
-from morfax.reports.plate import BLACK, Colours, Line, Plate, Spot, View, Words, with_gaps
+from morfax.reports.plate import (
+    BLACK,
+    Colours,
+    Line,
+    Plate,
+    Spot,
+    View,
+    Words,
+    has_free_corner,
+    with_gaps,
+)
 
 if TYPE_CHECKING:
     from morfax.jobs.who_led import WhoLed
@@ -34,6 +44,8 @@ PLAIN = "#c1121f"
 RAISED = "#1f5fbf"  # stops, and ways with the tool up
 UNMEASURED = "#8a8a8a"  # the path where its error cannot be measured
 MARGIN_SHARE = 0.06  # of the larger side, round the path
+MARGIN_RIGHT = 0.28  # of the width: room for a legend where no corner is free
+PT_PER_IN = 72
 NARROWEST = 0.35  # shorter to longer side of what is shown
 # along an enlargement: each number of all takes a hundredth of a picture's time
 FEW_NUMBERS = 4
@@ -62,9 +74,9 @@ class Picture:
 def draw(picture: Picture, file: FilePath) -> None:
     """Write the picture, of the kind that the suffix says (.png, .svg, .pdf)."""
     places, view = _worst_places(picture), view_of(picture)
-    shape = (view[3] - view[2]) / (view[1] - view[0])
-    page = lay_out(shape, len(places), has_bar=_is_measured(picture))
-    main, scale = _whole(picture, view, page)
+    page, main, scale = _laid_out(picture, view, len(places))
+    if main.legend and not has_free_corner(main, _legend_share(main, page)):
+        page, main, scale = _laid_out(picture, _with_margin(view), len(places))
     plates = [(page.main, main)]
     for number, (box, place_mm) in enumerate(zip(page.insets, places, strict=True), 1):
         plates.append((box, _enlarged(picture, place_mm, number)))
@@ -72,6 +84,7 @@ def draw(picture: Picture, file: FilePath) -> None:
         main.add(
             Spot(at, "+", 9, BLACK, order=5), Words(at, str(number), NAME_PT, offset_pt=(9, 9))
         )
+    labels.spread(main, page.main.width_in * PT_PER_IN, page.main.height_in * PT_PER_IN)
     if file.suffix.lower() == PIXELS:
         from morfax.reports import bitmap
 
@@ -80,6 +93,26 @@ def draw(picture: Picture, file: FilePath) -> None:
         from morfax.reports import vector
 
         save(vector.figure_of(page, plates, scale), file, trim=False)
+
+
+def _laid_out(picture: Picture, view: View, insets: int) -> tuple[Page, Plate, Colours | None]:
+    """The page for a view, the whole contour on it, and what its colours mean."""
+    shape = (view[3] - view[2]) / (view[1] - view[0])
+    page = lay_out(shape, insets, has_bar=_is_measured(picture))
+    return page, *_whole(picture, view, page)
+
+
+def _legend_share(plate: Plate, page: Page) -> tuple[float, float]:
+    """How much of the main axes' width and height the legend takes."""
+    from morfax.reports.lettering import legend_share
+
+    return legend_share(plate, page.main.width_in * DPI, page.main.height_in * DPI)
+
+
+def _with_margin(view: View) -> View:
+    """The same view with room for a legend on its right."""
+    left, right, low, high = view
+    return left, left + (right - left) / (1 - MARGIN_RIGHT), low, high
 
 
 def _whole(picture: Picture, view: View, page: Page) -> tuple[Plate, Colours | None]:
@@ -155,9 +188,12 @@ def _stops(plate: Plate, picture: Picture) -> None:
         return
     raised = np.where(picture.path.tool[:, None], np.nan, picture.path.xy_mm)
     plate.add(Line(raised, RAISED, LINE_PT, dash=(4, 2), label="tool up"))
+    written, named = labels.shortened(picture.stops_mm), set[str]()
     for name, place_mm in picture.stops_mm.items():
-        plate.add(Spot(place_mm, "D", 6, RAISED, order=5))
-        plate.add(Words(place_mm, name, WORDS_PT, RAISED, (7, 7)))
+        words, label = written[name]
+        plate.add(Spot(place_mm, "D", 6, RAISED, "" if label in named else label, order=5))
+        plate.add(Words(place_mm, words, WORDS_PT, RAISED, (7, 7)))
+        named.add(label)
 
 
 def _enlarged(picture: Picture, place_mm: Array, number: int) -> Plate:

@@ -9,6 +9,8 @@ from __future__ import annotations
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from morfax.motion.files import written_beside
 from morfax.motion.units import drawn_length_mm
 from morfax.reports import following, table
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from morfax.jobs.trace import TraceResult
     from morfax.motion.faults import LineFault
     from morfax.motion.motion import Path
+    from morfax.player.monitor.chart import Chart
     from morfax.tracer.drawing.drawing import Drawing
 
 REPORT = ".html"
@@ -114,10 +117,25 @@ def draw_played(result: PlayResult, name: str) -> None:
     for file in filter(is_picture, result.paths):
         assert result.path is not None
         _draw_path(result.path, file, f"{name}, played")
+    if result.picture is not None:
+        assert result.path is not None and result.chart is not None
+        draw(_followed(result.path, result.chart, f"{name}, played"), result.picture)
     for file in result.charts:
         assert result.chart is not None
         title = f"{name}: following error against its limit"
         following.write(result.chart, file, title, result.speeds)
+
+
+def _followed(path: Path, chart: Chart, title: str) -> Picture:
+    """The machine's path with the following error of X and Y in colour, where the tool is in the work.
+
+    Of each axis the error is that which came nearest to its limit within the chart's stretch of time.
+    """
+    in_work = np.interp(chart.t_s, path.t_s, path.tool) > 0
+    x_mm, y_mm = (np.interp(chart.t_s, path.t_s, along) for along in path.xy_mm.T)
+    error_mm = np.hypot(*chart.error_mm[:, :2].T)
+    points_mm = np.column_stack([x_mm, y_mm])
+    return Picture(title, path, points_mm=points_mm[in_work], error_mm=error_mm[in_work])
 
 
 def draw_systems(result: SystemsResult, file: FilePath) -> None:

@@ -153,12 +153,34 @@ def with_gaps(runs: Sequence[Array]) -> Array:
     return np.vstack([part for run in runs for part in (gap, run)][1:])
 
 
+def filled_in(places: Array, apart: float) -> Array:
+    """The places (n, 2) of a line, and more on it where two are further apart; gaps are left out."""
+    steps = np.hypot(*np.diff(places, axis=0).T)
+    parts = [places[np.isfinite(places).all(axis=1)]]
+    for k in np.flatnonzero(steps > apart):
+        parts.append(np.linspace(places[k], places[k + 1], int(steps[k] / apart) + 2))
+    return np.vstack(parts)
+
+
 def free_corner(plate: Plate, share: tuple[float, float]) -> tuple[bool, bool]:
     """The corner of a plate, of so much of its width and height, in which the fewest places lie: whether it
     is an upper one, and a right one. Of equal ones the upper right is the first.
     """
+    places = _in_corners(plate, share)
+    return min(places, key=lambda corner: places[corner])
+
+
+def has_free_corner(plate: Plate, share: tuple[float, float]) -> bool:
+    """Whether a legend of so much of a plate's width and height hides nothing in one of its corners."""
+    return min(_in_corners(plate, share).values()) == 0
+
+
+def _in_corners(plate: Plate, share: tuple[float, float]) -> dict[tuple[bool, bool], int]:
+    """How many places lie in each corner of a plate: an upper one or not, a right one or not."""
     left, right, low, high = plate.view
-    marked = [line.places_mm for line in plate.marks if isinstance(line, Line)]
+    apart_mm = 0.25 * min(share) * min(right - left, high - low)
+    lines = [mark for mark in plate.marks if isinstance(mark, Line)]
+    marked = [filled_in(line.places_mm, apart_mm) for line in lines]
     marked += [np.array([spot.place_mm]) for spot in plate.marks if isinstance(spot, Spot)]
     places = np.vstack([np.empty((0, 2)), *marked])
     x = (places[:, 0] - left) / (right - left)
@@ -166,4 +188,4 @@ def free_corner(plate: Plate, share: tuple[float, float]) -> tuple[bool, bool]:
     aside = {True: x > 1 - share[0], False: x < share[0]}
     level = {True: y > 1 - share[1], False: y < share[1]}
     corners = [(is_upper, is_right) for is_upper in (True, False) for is_right in (True, False)]
-    return min(corners, key=lambda corner: int(np.sum(level[corner[0]] & aside[corner[1]])))
+    return {corner: int(np.sum(level[corner[0]] & aside[corner[1]])) for corner in corners}

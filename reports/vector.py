@@ -12,16 +12,24 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from morfax.reports.axis_numbers import numbers
-from morfax.reports.canvas import new_figure
+from morfax.reports.canvas import DPI, new_figure
+from morfax.reports.lettering import legend_share
 from morfax.reports.looks import SEE_THROUGH, WORDS_PT
 from morfax.reports.page import Box, Page
-from morfax.reports.plate import Area, Colours, Line, Mark, Plate, Spot, Words, free_corner
+from morfax.reports.plate import (
+    Area,
+    Colours,
+    Line,
+    Mark,
+    Plate,
+    Spot,
+    Words,
+    free_corner,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-LEGEND_SHARE = 0.25, 0.2  # of the axes' width and height: about what a legend takes up
 
 
 def figure_of(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | None) -> Figure:
@@ -36,7 +44,7 @@ def figure_of(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | 
         return figure.add_axes((left, bottom, across, up))
 
     for box, plate in plates:
-        _fill(axes(box), plate)
+        _fill(axes(box), plate, (box.width_in * DPI, box.height_in * DPI))
     if scale is not None and page.bar is not None:
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import LinearSegmentedColormap, Normalize
@@ -75,8 +83,8 @@ def put(axes: Axes, mark: Mark) -> None:
         _words(axes, mark)
 
 
-def _fill(axes: Axes, plate: Plate) -> None:
-    """Draw a plate on axes of its own."""
+def _fill(axes: Axes, plate: Plate, size_px: tuple[float, float]) -> None:
+    """Draw a plate on axes of its own, which would have such a size as pixels."""
     if plate.ground is not None:
         grey: dict[str, Any] = {"cmap": "gray", "vmin": 0, "vmax": 255, "zorder": 0}
         axes.imshow(
@@ -97,7 +105,7 @@ def _fill(axes: Axes, plate: Plate) -> None:
     if plate.names is not None:
         axes.set(xlabel=plate.names[0], ylabel=plate.names[1])
     if plate.legend:
-        is_upper, is_right = free_corner(plate, LEGEND_SHARE)
+        is_upper, is_right = free_corner(plate, legend_share(plate, *size_px))
         corner: Any = f"{'upper' if is_upper else 'lower'} {'right' if is_right else 'left'}"
         axes.legend(loc=corner, fontsize=WORDS_PT, framealpha=SEE_THROUGH)
 

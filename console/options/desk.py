@@ -18,7 +18,7 @@ def desk_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "-q",
         "--quiet",
         is_flag=True,
-        help="Print only faults, and the figures of --json: no table, notes, warnings or progress bar.",
+        help="Print only faults, warnings, and the figures of --json: no table, notes or progress bar.",
     )
     @option("Output", "-v", "--verbose", is_flag=True, help="Say more on stderr.")
     @option(

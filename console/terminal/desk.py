@@ -47,8 +47,8 @@ class Desk:
             click.echo(said, err=aside)
 
     def warning(self, text: str) -> None:
-        """Say a line on stderr, unless quiet."""
-        self.note(text)
+        """Say a line on stderr, quiet or not: what was written may be wrong."""
+        click.echo(text, err=True)
 
     def compiling(self, what: str, packages: tuple[str, ...]) -> None:
         """Say that the first run takes longer, if it will."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\b
 Examples:
   morfax play cam.wav -o cam.csv -o cam.svg -o cam.png
-  morfax play cam.ngc --control herbert --following servos.png
+  morfax play cam.ngc --control herbert --following servos.png --picture cam.png
   morfax play found.wav --reference-frequency 6kHz --cycles-per-mm 20 --from 40,62 -o found.csv
   morfax play --device usb --label cam.json -o cam.csv
 """
@@ -60,6 +60,13 @@ Examples:
     help="Draw (.png, .svg, .pdf) or write (.csv) the following error of each axis against its limit; "
     "of an .ngc "
     "program the picture also shows the speed held.",
+)
+@option(
+    "Output",
+    "--picture",
+    type=Result(*PICTURES),
+    help="Draw the machine's path (.png, .svg, .pdf) with the following error of X and Y along it in colour, "
+    "the worst places enlarged.",
 )
 @option(
     "Output",
@@ -161,6 +168,7 @@ def command(
     outputs: tuple[FilePath, ...],
     path_file: FilePath | None,
     charts: tuple[FilePath, ...],
+    picture: FilePath | None,
     raw: bool,
     by_hand: ByHand,
     drawn_unit: str | None,
@@ -183,7 +191,8 @@ def command(
     settings = ControlSettings(
         **{field.name: control[field.name] for field in fields(ControlSettings)}
     )
-    result = PlayJob(tape, paths, charts, raw, settings, by_hand, drawn_unit, intake).run(desk)
+    asked = PlayJob(tape, paths, charts, raw, settings, by_hand, drawn_unit, intake, picture)
+    result = asked.run(desk)
     if result.path is not None or result.chart is not None:
         from morfax.reports.pictures import draw_played
 

@@ -33,8 +33,9 @@ SHAKE_S = 0.096  # 576 rows at 6 kHz
 SHAKE_STRIDE = 4  # rows: the filter spans eight, so the rows between say little more
 # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
 SHAKE_CYCLES = 0.0047
-# of full scale and of the carrier: below it noise may be the rounding of the samples
+# of full scale and of the carrier: below it noise may be the rounding of samples of 16 bit
 STUCK_NOISE = 1e-4
+ROUNDED = 1.0  # steps of coarser samples: rounding makes 0.29, and it is the same on all tracks at standstill
 
 Float32s = NDArray[np.float32]
 
@@ -162,6 +163,8 @@ def demand_apart(frames: Float32s, levels: Array, names: Sequence[str]) -> None:
         floor = _noise(frames[:, one])
         if floor < max(STUCK_NOISE, STUCK_NOISE * float(levels[one])):
             continue
+        if floor < ROUNDED * _step(frames[:, one]):
+            continue
         for other in range(one):
             if float(np.std(equal[:, one] - equal[:, other])) * levels[one] < 0.05 * floor:
                 raise TapeFault(
@@ -169,6 +172,11 @@ def demand_apart(frames: Float32s, levels: Array, names: Sequence[str]) -> None:
                     f"({track_name(one, names)}) carry the "
                     f"same signal, noise and all; look to the cables, and copy the tape again"
                 )
+
+
+def _step(samples: Float32s) -> float:
+    """The least step between samples, of full scale: 1/128 of 8 bit."""
+    return float(np.diff(np.unique(samples)).min(initial=1.0))
 
 
 def _noise(samples: Float32s) -> float:

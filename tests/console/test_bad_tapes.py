@@ -12,6 +12,8 @@ import pytest
 import soundfile
 
 from morfax.console.cli import main
+from morfax.motion.contour import distance
+from morfax.motion.pathfile import read_path
 from tests.console.conftest import Morfax
 
 RATE_HZ = 48000
@@ -188,6 +190,17 @@ def test_two_tracks_with_one_signal_are_told(
     noisy[:, 2] = noisy[:, 1]
     said = refused(morfax, written(noisy, tape_text(here, frames)))
     assert "tracks 2 (X) and 3 (Y) carry the same signal, noise and all" in said
+
+
+def test_the_rounding_of_a_tape_of_8_bit_is_no_signal_that_two_tracks_share(
+    morfax: Morfax, here: Path, path_file: Path, bare_frames: np.ndarray
+) -> None:
+    """At standstill all tracks are rounded alike; the phase is off by a thousandth of a cycle, 0.1 um."""
+    coarse = (np.round(bare_frames * 128) / 128).astype(np.float32)
+    file = written(coarse, tape_text(here, bare_frames))
+    assert morfax("play", file, "-o", "coarse.csv").exit_code == 0
+    apart = distance(read_path(here / "coarse.csv"), read_path(path_file))
+    assert apart.hausdorff_mm < 0.005  # one bit in 64 of the carrier's height is 0.0025 cycle
 
 
 def test_a_track_that_becomes_noise_stops_the_machine(

@@ -112,3 +112,34 @@ def test_what_cannot_be_is_one_line_before_anything_moves(
     answer = morfax("trace", CAM, *words)
     assert answer.exit_code == code and says in answer.fault
     assert all(file.suffix == ".toml" for file in here.iterdir())
+
+
+def test_a_scale_leaves_the_ramp_its_angle_and_names_what_it_does_change(
+    morfax: Morfax, here: Path
+) -> None:
+    """Half as large a cam: the ramps of its program go down at the 4 degrees that were asked for."""
+    words = (
+        "trace",
+        CAM,
+        "--depth",
+        "2mm",
+        "--ramp",
+        "4deg",
+        "--scale",
+        "0.5",
+        "-o",
+        "half.csv",
+    )
+    answer = morfax(*words)
+    assert answer.err.splitlines()[-1] == (
+        "scaled by 0.5: X and Y run 0.5 times as fast, Z is not scaled"
+    )
+    steps_mm = np.diff(read_path("half.csv").positions_mm, axis=0)
+    down = (steps_mm[:, 2] < -1e-3) & (np.hypot(*steps_mm[:, :2].T) > 1e-3)
+    slopes = -steps_mm[down, 2] / np.hypot(*steps_mm[down, :2].T)
+    assert np.degrees(np.arctan(np.median(slopes))) == pytest.approx(4.0, abs=0.1)
+    cut = ("--cutter", "4mm", "--tabs", "2", "--feed", "600mm/min")
+    told = morfax("trace", CAM, *cut, "--scale", "2", "-o", "twice.ngc").err.splitlines()[-1]
+    assert told == (
+        "scaled by 2: the program is for a cutter of 8 mm, tabs are 2 times as long, Z is not scaled"
+    )

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from PIL import Image
@@ -93,3 +95,30 @@ def test_solid_areas_among_lines_are_outlined_in_the_same_run(
     outlines = [row for row in answer.figures["lines"] if row.get("outline")]
     assert len(outlines) == 1 and "line_width_mm" not in outlines[0]
     assert all("line_width_mm" in row for row in answer.figures["lines"] if row not in outlines)
+
+
+@pytest.mark.parametrize("across_mm", [8.0, 20.0])
+def test_a_filled_disc_in_a_frame_is_named_and_the_advice_works(
+    morfax: Morfax, here: Path, across_mm: float
+) -> None:
+    """Where only contours are asked for the disc is no line; outlined beside the frame both come closed."""
+    grey = np.full((800, 800), 245, np.uint8)
+    cv2.rectangle(grey, (100, 100), (700, 700), 30, 6)
+    cv2.circle(grey, (400, 400), round(across_mm / 2 * 300 / 25.4), 30, -1, cv2.LINE_AA)
+    Image.fromarray(grey).save("disc.png", dpi=(300, 300))
+    words = ("trace", "disc.png", "-o", "disc.csv", "--json", "--lines")
+    told = morfax(*words, "contours")
+    assert "filled shape" in told.err or "is a dark area, and no line" in told.err
+    assert "--lines all --edge" in told.err
+    advised = morfax(*words, "all", "--edge")
+    assert advised.exit_code == 0
+    lengths_mm = sorted(row["length_mm"] for row in advised.figures["lines"])
+    assert lengths_mm == pytest.approx([math.pi * across_mm, 4 * 600 / 300 * 25.4], rel=0.01)
+
+
+def test_a_dark_area_up_to_the_border_is_not_sent_to_edge(morfax: Morfax, here: Path) -> None:
+    """A ramp of grey: --edge would refuse it, since it is cut by the border."""
+    grey = np.tile(np.linspace(0, 255, 400).astype(np.uint8), (400, 1))
+    Image.fromarray(grey).save("ramp.png", dpi=(300, 300))
+    fault = morfax("trace", "ramp.png", "-o", "ramp.csv").fault
+    assert "reaches the border of the picture" in fault and "--edge" not in fault

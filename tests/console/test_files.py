@@ -103,9 +103,28 @@ def test_a_path_file_with_a_bad_line_is_told_by_its_line(morfax: Morfax, here: P
     assert answer.exit_code == 7 and "line 3" in answer.fault
 
 
-def test_a_drawing_is_no_path_and_no_tape(morfax: Morfax, here: Path) -> None:
-    assert morfax("record", SAMPLES / "cam.png").exit_code == 7
-    assert morfax("play", SAMPLES / "cam.png").exit_code == 5
+@pytest.mark.parametrize("verb", ["record", "play"])
+def test_a_drawing_is_no_path_and_no_tape(morfax: Morfax, here: Path, verb: str) -> None:
+    answer = morfax(verb, SAMPLES / "cam.png", "-o", "cam.ngc")
+    assert answer.exit_code == 2 and "`morfax trace cam.png` makes one of it" in answer.fault
+    assert not (here / "cam.ngc").exists()
+
+
+def test_each_result_has_a_file_of_its_own(morfax: Morfax, path_file: Path, here: Path) -> None:
+    """Of two results under one name the second would replace the first without a word."""
+    (here / "sub").mkdir()
+    (here / "link.csv").symlink_to(here / "a.csv")
+    cam, tape = SAMPLES / "cam.png", here / "a.wav"
+    assert morfax("record", path_file, "-o", tape).exit_code == 0
+    for one, other in (("a.csv", "./a.csv"), ("a.csv", "sub/../a.csv"), ("link.csv", "a.csv")):
+        answer = morfax("play", tape, "-o", one, "--following", other)
+        assert answer.exit_code == 2
+        assert f"{one} and {Path(other)} are one file, for two results" in answer.fault
+    answer = morfax("trace", cam, "-o", "a.svg", "--picture", here / "a.svg")
+    assert answer.exit_code == 2 and "are one file, for two results" in answer.fault
+    answer = morfax("trace", cam, "-o", "a.csv", "--path", "b.csv")
+    assert answer.exit_code == 2 and "would both hold the head's path" in answer.fault
+    assert not any((here / name).exists() for name in ("a.csv", "b.csv", "a.svg"))
 
 
 @pytest.fixture

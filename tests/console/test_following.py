@@ -7,6 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from morfax.motion.motion import Path as MotionPath
+from morfax.player.monitor.chart import Chart
+from morfax.reports.pictures import _followed
 from tests.console.conftest import Morfax
 
 SUFFIXES = (".wav", ".steps", ".cubic", ".ngc")
@@ -85,3 +88,29 @@ def test_a_fault_leaves_the_errors_up_to_it_under_a_name_that_says_so(
         "errors.incomplete.csv",
     ]
     assert not (here / "errors.csv").exists()
+
+
+def test_every_control_draws_its_path_with_the_following_error(
+    morfax: Morfax, here: Path, program: Path
+) -> None:
+    """In the worst place the error in colour is that of the figures: of one axis, or of both."""
+    answer = morfax("play", program, "--picture", "a.png", "--json")
+    assert answer.exit_code == 0 and answer.figures["picture"] == "a.png"
+    assert (here / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_error_along_the_path_is_where_the_chart_has_it() -> None:
+    """X stands 30 um and Y 40 um behind for a second; with the tool up nothing is shown."""
+    chart = Chart(every_s=0.01)
+    chart.begin(("x", "y", "z"))
+    t_s = np.arange(0, 3, 1e-3)
+    actual_mm = np.column_stack([10 * t_s, 0 * t_s, np.where(t_s < 2, -1.0, 2.0)])
+    behind = ((t_s >= 1) & (t_s < 2))[:, None]
+    demand_mm = actual_mm + behind * (0.03, 0.04, 0.0)
+    chart.note(0, 1000.0, demand_mm, actual_mm, np.full_like(actual_mm, 0.1))
+    shown = _followed(MotionPath(t_s, actual_mm), chart, "played")
+    assert shown.points_mm is not None and shown.error_mm is not None
+    x_mm = shown.points_mm[:, 0]
+    assert x_mm.max() == pytest.approx(20.0, abs=0.2)
+    assert shown.error_mm[x_mm < 9.9].max() == 0
+    assert shown.error_mm[(x_mm > 10.1) & (x_mm < 19.9)] == pytest.approx(0.05, abs=1e-6)

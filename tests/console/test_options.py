@@ -8,7 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
+from PIL import Image
 
 from morfax.console.cli import VERBS
 from tests.console.conftest import SAMPLES, Morfax
@@ -135,6 +138,23 @@ def test_quiet_says_only_what_went_wrong(morfax: Morfax, here: Path) -> None:
     (here / "bad.ngc").write_text((here / "cam.ngc").read_text().replace("M5", "G64 X"))
     told = morfax("check", "bad.ngc", "--quiet")
     assert told.exit_code == 1 and told.out.startswith("line ")
+
+
+def test_quiet_keeps_warnings_and_drops_notes(morfax: Morfax, here: Path) -> None:
+    """Whoever wants no table wants to know all the same that the zero may be the middle of a hole."""
+    grey = np.full((300, 300), 245, np.uint8)
+    cv2.rectangle(grey, (40, 40), (260, 260), 30, 4)
+    cv2.circle(grey, (100, 200), 24, 30, 4, cv2.LINE_AA)
+    Image.fromarray(grey).save("plate.png", dpi=(254, 254))
+    words = ("trace", "plate.png", "--lines", "contours", "-o", "plate.csv", "--quiet")
+    told = morfax(*words, "--zero", "reference")
+    assert told.exit_code == 0 and told.out == ""
+    assert told.err.startswith("the program's zero is the only small cross or ring")
+    assert "at 10.0,9.9 mm" in told.err or "at 10.1,9.9 mm" in told.err
+    assert morfax(*words).err == ""
+    assert morfax(*words, "--zero", "reference", "--reference-point", "10,10").err.startswith(
+        "no line"
+    )
 
 
 @pytest.mark.parametrize(

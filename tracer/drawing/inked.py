@@ -9,6 +9,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,10 +61,27 @@ def are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
     """Which patches of ink are the rims of filled shapes."""
     if drawing.shapes is None:
         return np.zeros(patches.count, bool)
+    beside = _beside_shapes(drawing, patches, slice(None))
+    inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
+    return np.asarray(inked > SOLID * patches.areas)
+
+
+def is_filled(drawing: Drawing, patches: Patches, patch: int) -> bool:
+    """Whether a patch of ink is beside a filled shape: its rim, or a line in a shadow as dark as one."""
+    if drawing.shapes is None:
+        return False
+    runs = np.flatnonzero(patches.patch == patch)
+    long_px = patches.end[runs] - patches.begin[runs]
+    inked = float(_beside_shapes(drawing, patches, runs) @ long_px)
+    return inked > SOLID * float(patches.areas[patch])
+
+
+def _beside_shapes(drawing: Drawing, patches: Patches, runs: Any) -> NDArray[np.bool_]:
+    """Which of some runs of ink are where a filled shape is."""
+    assert drawing.shapes is not None
     down, across = (
         math.ceil(whole / part)
         for whole, part in zip(drawing.darkness.shape, drawing.shapes.shape, strict=True)
     )
-    beside = drawing.shapes[patches.row // down, (patches.begin + patches.end) // 2 // across]
-    inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
-    return np.asarray(inked > SOLID * patches.areas)
+    middle = (patches.begin[runs] + patches.end[runs]) // 2
+    return np.asarray(drawing.shapes[patches.row[runs] // down, middle // across])

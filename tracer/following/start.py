@@ -18,6 +18,7 @@ import numpy as np
 from morfax.motion.faults import Fault, LineFault
 from morfax.tracer.drawing.coarse import finer_dpi
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.inked import is_filled
 from morfax.tracer.drawing.narrow import PARTED, narrow_strip_of
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.open_ends import at_ends, stances_at
@@ -190,8 +191,9 @@ def _nowhere_clean(
     sheet: Sheet, stroke: Stroke, width_mm: float, told_width_mm: float | None
 ) -> LineFault:
     """The fault of a line on which the head can nowhere be put down."""
-    drawing, is_solid = sheet.drawing, bool(sheet.are_solid[stroke.patch])
-    why, edge = "", "follow the edges of a filled shape with --edge, " if is_solid else ""
+    drawing, why, edge = sheet.drawing, "", ""
+    if is_filled(drawing, sheet.patches, stroke.patch):
+        return _filled(sheet, stroke)
     gap = narrow_strip_of(drawing, stroke.middles_mm, width_mm)
     if gap is not None:
         (x, y), dpi = gap.place_mm, finer_dpi(drawing.pitch_mm * drawing.finer, PARTED)
@@ -205,3 +207,19 @@ def _nowhere_clean(
         f"no clean stretch of line {width_mm:.2f} mm wide to start on{why}; {edge}follow all the ink with "
         f"--lines all, {give} --line-width, or --start X,Y at a plain stretch"
     )
+
+
+def _filled(sheet: Sheet, stroke: Stroke) -> LineFault:
+    """The fault of a filled shape where a line is asked for; an edge needs paper all round."""
+    x, y = stroke.middles_mm[0]
+    top, bottom, left, right = sheet.patches.boxes[stroke.patch].tolist()
+    rows, columns = sheet.drawing.darkness.shape
+    is_whole = top > 0 and left > 0 and bottom < rows and right < columns
+    use = (
+        "--lines all --edge follows the outlines of filled shapes and the lines beside them; or give "
+        "--start X,Y at a line"
+        if is_whole
+        else "it reaches the border of the picture: scan the sheet with paper all round, or cut a dark "
+        "border off; or give --start X,Y at a line"
+    )
+    return LineFault(f"the ink at {x:.1f},{y:.1f} mm is a dark area, and no line: {use}")

@@ -6,12 +6,12 @@ leaves it, if one does.
 
     ─┼─   ○       alone on the paper           ─┼────  ○────       with the lead line drawn from it
 
-A cross: a ring of cells sees arms square to each other that end alike, four of them, or three and the lead
-line. Its place is where the middle lines of the arms meet. A ring: spokes from its middle meet paper, then
-ink as wide as a line, then paper again; its place is the middle of the circle through them.
+A cross: see `crosses`. A ring: spokes from its middle meet paper, then ink as wide as a line, then paper
+again; its place is the middle of the circle through them.
 
 A cross is nothing but a reference point. A ring is a hole of the part as well: of itself it is a reference
 point only where the line that begins at it leads to a contour, or the operator says that a program is drawn.
+A symbol, a cross in a circle, marks a position or a hole's middle: it is one only if the operator says so.
 
 Source: patent ES 361967, section on use: a reference point, normally outside the contour, and a lead line
 from it to the contour. Questions: the patent says neither how it is drawn nor how large it is. Chosen: 1.5 to
@@ -31,21 +31,13 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.motion.median import median
-from morfax.motion.plane import direction, heading_of, meeting
+from morfax.motion.plane import direction
 from morfax.tracer.drawing.holes import holes
 from morfax.tracer.drawing.strokes import Sheet, Stroke
-from morfax.tracer.marks.sizes import (
-    ALIKE,
-    BOX,
-    CROSS_MM,
-    INKED,
-    RING_LIKE,
-    RING_ROUND,
-    RING_SEEN,
-    SQUARE,
-)
+from morfax.tracer.marks.crosses import crosses
+from morfax.tracer.marks.sizes import BOX, CROSS_MM, RING_LIKE, RING_ROUND, RING_SEEN
 from morfax.tracer.sensing.leg import Leg, leg_of
-from morfax.tracer.sensing.probe import SPECK_WIDTHS, is_tip, lines_on
+from morfax.tracer.sensing.probe import SPECK_WIDTHS
 from morfax.tracer.sensing.spokes import SPOKES, WAYS, spokes
 from morfax.tracer.sensing.view import View
 
@@ -53,6 +45,11 @@ LEAST_MM, LARGEST_MM = CROSS_MM
 MOST_PX = 50_000_000  # of a patch that is searched for holes: a tenth of a second
 BESIDE = np.arange(SPOKES) - 1  # of each spoke, the one before it
 BEYOND = np.array([1.5, 1.9, 2.3])  # widths beyond the arms, at which the lead line is sought
+PARTING = 3.0  # widths round a cross or a ring: two lines that leave it nearer to each other part there
+WIDENED = 1.15  # widths: a line that is broader is two, still side by side
+FEWEST = 4  # stations that show a width
+
+Kind = Literal["cross", "ring", "symbol"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +57,7 @@ class Reference:
     """A reference point: its place, mm, and the clean beginning of the lead line that touches it."""
 
     place_mm: tuple[float, float]
-    kind: Literal["cross", "ring"]
+    kind: Kind
     lead: Leg | None = None
 
     def is_sure(self, sheet: Sheet, patch: int) -> bool:
@@ -69,6 +66,8 @@ class Reference:
         """
         if self.kind == "cross" or sheet.bare_rings:
             return True
+        if self.kind == "symbol":
+            return False
         return any(
             size_mm > LARGEST_MM or math.dist(middle_mm, self.place_mm) > LEAST_MM
             for middle_mm, size_mm, _ in _inside(sheet, patch)
@@ -96,11 +95,17 @@ def _every(
 ) -> Iterator[Reference]:
     """The reference points, some of them more than once."""
     if stroke is not None:
-        yield from _crosses(view, stroke.ends_mm())
+        yield from _crosses(view, stroke)
         yield from _rings(view, _holes(sheet, stroke.patch))
     for patch, middle in _small_patches(sheet, stroke, about_mm):
-        yield from _crosses(view, sheet.stroke(patch).ends_mm())
+        yield from _crosses(view, sheet.stroke(patch))
         yield from _rings(view, [middle])
+
+
+def _crosses(view: View, stroke: Stroke) -> Iterator[Reference]:
+    """The crosses and symbols whose arms end where a stroke does."""
+    for cross in crosses(view, stroke.ends_mm()):
+        yield _reference(view, cross.centre_mm, cross.reach_mm, cross.kind)
 
 
 def _rings(view: View, places: Iterable[Array]) -> Iterator[Reference]:
@@ -172,83 +177,32 @@ def _inside(sheet: Sheet, patch: int) -> Iterator[tuple[Array, float, bool]]:
             yield np.array(middle_px) * pitch, size_mm, bool(_is_square(high, wide))
 
 
-def _crosses(view: View, tips_mm: Array) -> Iterator[Reference]:
-    """The crosses whose arms end at some places."""
-    tips = [tip for tip in tips_mm if is_tip(view, tip)]
-    for i, a in enumerate(tips):
-        for b in tips[i + 1 :]:
-            if not LEAST_MM < math.dist(a, b) + view.width_mm < LARGEST_MM:
-                continue
-            others = [c for c in tips if c is not a and c is not b]
-            crosses = (_cross(view, a, b, c) for c in others)
-            yield from (cross for cross in crosses if cross is not None)
-
-
-def _cross(view: View, a: Array, b: Array, c: Array) -> Reference | None:
-    """The cross whose arms end at three tips, a and b of one stroke.
-
-    The fourth arm may run on as the lead line, or another line may begin anywhere on it.
-    """
-    # 1. three arms square to each other, and a fourth, all of them inked
-    half = 0.5 * (b - a)
-    middle = a + 0.5 * (b - a)
-    arm = c - middle
-    reach = float(np.hypot(*half))
-    length = float(np.hypot(*arm))
-    if abs(length - reach) >= ALIKE * reach or abs(arm @ half) > SQUARE * length * reach:
-        return None
-    fourth = -arm * min(1.0, reach / length)
-    if not all(_inked(view, middle, middle + way) for way in (-half, half, arm, fourth)):
-        return None
-    # 2. their middle lines cross in one place, as far from all the tips
-    arms = [_felt_inward(view, tip, middle) for tip in (a, b, c)]
-    if min(len(arm) for arm in arms) < 4:
-        return None
-    centre = _crossing(np.vstack(arms[:2]), arms[2])
-    reaches = np.hypot(*(np.array([a, b, c]) - centre).T)
-    if np.ptp(reaches) > ALIKE * median(reaches):
-        return None
-    # 3. no lines pass or cross here
-    reach_mm = float(reaches.max())
-    if lines_on(view, centre, reach_mm + 1.2 * view.width_mm) > 1:
-        return None
-    return _reference(view, centre, reach_mm, "cross")
-
-
-def _reference(
-    view: View, centre: Array, reach_mm: float, kind: Literal["cross", "ring"]
-) -> Reference:
+def _reference(view: View, centre: Array, reach_mm: float, kind: Kind) -> Reference:
     """A reference point that reaches so far from its centre, with its lead line."""
     place_mm = float(centre[0]), float(centre[1])
     return Reference(place_mm, kind, _lead(view, centre, reach_mm))
 
 
-def _inked(view: View, a: Array, b: Array) -> bool:
-    """Whether there is ink all along a straight stretch, but for a speck of paper."""
-    count = 2 + int(math.dist(a, b) / view.pitch_mm)
-    return bool(np.mean([view.dark(place) for place in np.linspace(a, b, count)]) > INKED)
-
-
-def _felt_inward(view: View, tip: Array, middle: Array) -> Array:
-    """The clean stations (n, 2) of an arm, felt from its tip towards the middle."""
-    way = middle - tip
-    length = float(np.hypot(*way))
-    start = tip + 0.3 * view.width_mm * way / length
-    return view.feel(start, heading_of(way), length - view.width_mm)[:, :2]
-
-
 def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
     """The clean beginning of the line that leaves a cross or a ring, felt back to it as far as it is clean.
 
-    The cross or the ring reaches so far from its centre.
+    The cross or the ring reaches so far from its centre. Two lines that part there are a part of the drawing.
     """
-    for arc in view.ring(centre, reach_mm + BEYOND[0] * view.width_mm):
+    radius_mm = reach_mm + BEYOND[0] * view.width_mm
+    arcs = view.ring(centre, radius_mm)
+    middles_mm = radius_mm * arcs.mean(axis=1)
+    for arc, middle_mm in zip(arcs, middles_mm, strict=True):
+        apart_mm = np.abs(_round(middles_mm - middle_mm, math.tau * radius_mm))
+        if np.count_nonzero(apart_mm < PARTING * view.width_mm) > 1:
+            continue
         heading = float(arc.mean())
         way = direction(heading)
         for start in centre + (reach_mm + BEYOND[:, None] * view.width_mm) * way:
             seen = view.feel(start, heading, view.leg_mm)
-            if len(seen) < 4:
+            if len(seen) < FEWEST:
                 continue
+            if _widens(view, seen):
+                break
             leg = leg_of(seen, False, view.leg_mm)
             back = view.feel(leg.end_mm, leg.heading_rad + math.pi, reach_mm + view.width_mm)
             last = max(1, len(back) - round(view.width_mm / view.step_mm))
@@ -257,15 +211,16 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
     return None
 
 
-def _crossing(one: Array, other: Array) -> Array:
-    """Where the straight lines through two strokes' places (n, 2) cross."""
-    return meeting(*_straight(one), *_straight(other))
+def _round(along_mm: Array, circle_mm: float) -> Array:
+    """Distances along a circle, the shorter way round, with their sign."""
+    half_mm = 0.5 * circle_mm
+    return (along_mm + half_mm) % circle_mm - half_mm
 
 
-def _straight(places: Array) -> tuple[Array, Array]:
-    """Middle and direction of the straight line through places (n, 2), least squares."""
-    middle = places.mean(axis=0)
-    return middle, np.linalg.svd(places - middle)[2][0]
+def _widens(view: View, seen: Array) -> bool:
+    """Whether a line that is clean for less than a leg has grown wider until then: two lines part there."""
+    is_short = (len(seen) - 1) * view.step_mm < view.leg_mm - view.step_mm
+    return is_short and median(seen[-FEWEST:, 2]) > WIDENED * view.width_mm
 
 
 def _ring(view: View, place: Array) -> Reference | None:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from morfax.motion.median import median
 from morfax.tracer.drawing.enclosure import NONE
 from morfax.tracer.drawing.holes import holes
+from morfax.tracer.drawing.inked import is_filled
 from morfax.tracer.drawing.inner_rings import LEAST_PX, LEAST_WIDTHS
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
@@ -33,10 +34,11 @@ MOST_RINGS = 500  # patches that are looked at, the largest first: sheets of tex
 
 
 class SmallPatch(NamedTuple):
-    """Ink that is left out: its middle, and how far it reaches across, mm."""
+    """Ink that is left out: its middle, how far it reaches across, mm, and whether it is a filled shape."""
 
     place_mm: tuple[float, float]
     across_mm: float
+    is_filled: bool = False
 
     @classmethod
     def of(cls, sheet: Sheet, patch: int) -> SmallPatch:
@@ -44,7 +46,8 @@ class SmallPatch(NamedTuple):
         top, bottom, left, right = sheet.patches.boxes[patch].tolist()
         rows, pitch_mm = sheet.drawing.darkness.shape[0], sheet.drawing.pitch_mm
         middle_mm = 0.5 * (left + right) * pitch_mm, (rows - 0.5 * (top + bottom)) * pitch_mm
-        return cls(middle_mm, max(bottom - top, right - left) * pitch_mm)
+        across_mm = max(bottom - top, right - left) * pitch_mm
+        return cls(middle_mm, across_mm, is_filled(sheet.drawing, sheet.patches, patch))
 
 
 def small_rings(sheet: Sheet, laid: Collection[int] = ()) -> tuple[SmallPatch, ...]:

@@ -22,6 +22,7 @@ WITHIN_MM = 50 * UM
 CIRCLE = arc((36, 14), 9)
 JOIN = (27.0, 14.0)
 AT = (7.0, 14.0)
+UP = np.array([0.0, 6.0])
 
 
 def lead_line(*lines: np.ndarray, width_mm: float = 0.5) -> Line:
@@ -141,6 +142,51 @@ NONE = {
 def test_what_is_no_reference_point(other: np.ndarray) -> None:
     line = lead_line(polyline((14, 14), JOIN), tick((22, 14)), other)
     assert line.reference_mm is None and line.is_lead  # by its tick
+
+
+def heart(radius_mm: float) -> np.ndarray:
+    """A heart whose two bows touch each other at the cusp, at 36,14."""
+    x, y = 36.0, 14.0
+    return np.vstack(
+        [
+            arc((x - radius_mm, y), radius_mm, 180, 0),
+            arc((x + radius_mm, y), radius_mm, 180, 0),
+            [(x, y - 9), (x - 2 * radius_mm, y)],
+        ]
+    )
+
+
+@pytest.mark.parametrize("width_mm", [0.3, 0.5])
+@pytest.mark.parametrize(
+    "outline",
+    [
+        heart(6.0),
+        heart(12.0),
+        polyline((36, 14), (30, 28), (42, 28), (36, 14)),
+        polyline((36, 14), (34, 28), (38, 28), (36, 14)),
+    ],
+    ids=["bows of 6 mm", "bows of 12 mm", "46 degrees", "16 degrees"],
+)
+def test_a_hole_at_the_cusp_of_an_outline_is_no_reference_point(
+    outline: np.ndarray, width_mm: float
+) -> None:
+    """Two lines part there, and a lead line is one: the outline closes, and begins nowhere else."""
+    drawing = inked(outline + UP, arc((36, 17.5), 2.5), width_mm=width_mm, seed=3)
+    line = trace(drawing, operator=Operator()).lines[0]
+    assert line.ending == "closed" and line.reference_mm is None
+
+
+@pytest.mark.parametrize("across_mm", [7.0, 8.5])
+def test_a_cross_in_a_circle_is_a_symbol_unless_a_program_is_drawn(across_mm: float) -> None:
+    """A symbol whose arm points to the contour, and a line from there: a lead line only if that is said."""
+    drawing = inked(
+        CIRCLE, arc(AT, 2.0), *cross(AT, across_mm), polyline((AT[0] + 6, 14), JOIN), seed=3
+    )
+    found = trace(drawing, operator=Operator()).lines
+    assert all(line.reference_mm is None for line in found)
+    meant = trace(drawing).lines[0]
+    assert meant.reference_mm is not None
+    assert math.dist(meant.reference_mm, AT) < WITHIN_MM
 
 
 def test_of_many_holes_each_line_asks_only_those_next_to_it(
