@@ -133,7 +133,7 @@ class SmallLoops:
         """
         patch = self.sheet.patch_at(way[0])
         if not self._may_be(patch, width_mm):
-            return None
+            return self._narrow(patch, way)
         ink = self._ink(patch, width_mm)
         return self._laid(ink, ink.misfit_along(one_in(way, THINNED)))
 
@@ -141,6 +141,10 @@ class SmallLoops:
         """The loop that a patch of ink is, along which the head has found no closed way, but an open one."""
         if self._may_be(patch, width_mm):
             return self._laid(self._ink(patch, width_mm), math.inf)
+        return self._narrow(patch, way)
+
+    def _narrow(self, patch: int, way: Array | None) -> Loop | None:
+        """The loop within which hardly any paper is seen, if it explains more than the head's way."""
         return self._with_seam(patch, way) if self._is_broad(patch, NO_BROADER) else None
 
     @cached_property
@@ -178,7 +182,7 @@ class SmallLoops:
 
     def _with_seam(self, patch: int, way: Array | None = None) -> Loop | None:
         """The loop that a broad patch is, if its ink shows the seam between two lines, and it explains more
-        than the head's open way.
+        than the head's way.
         """
         ink = self._ink(patch, self.pen_mm)
         core = explained(ink)

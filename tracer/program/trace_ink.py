@@ -102,7 +102,8 @@ def _slots_left(setup: Setup, lines: Sequence[Line]) -> Iterator[Unexplained]:
     laid = {sheet.patch_at(line.xy_mm[0]) for line in lines if line.ending == "closed"}
     for patch in filled_up(sheet):
         if patch not in laid:
-            yield Unexplained(*SmallPatch.of(sheet, patch), "broad")
+            place_mm, across_mm, *_ = SmallPatch.of(sheet, patch)
+            yield Unexplained(place_mm, across_mm, "broad")
 
 
 def _strokes(
