@@ -33,6 +33,7 @@ from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import deepened, deepened_note
 from morfax.tracer.drawing.levelling import levelled
+from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
@@ -41,7 +42,6 @@ from morfax.tracer.drawing.tiles import Tiles
 
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
-    from morfax.tracer.drawing.narrow import Strips
     from morfax.tracer.drawing.strokes import Sheet
     from morfax.tracer.flatten.flat import Flattening
 
@@ -101,6 +101,7 @@ class Drawing:
     is_hard: bool = False
     grainy: bool = False
     paper_noise: float | None = None
+    narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
 
     def times_at(self, place_mm: NDArray[np.float64]) -> float:
         """How many times enlarged the head follows the edge nearest to a place; 1 on a drawing of lines.
@@ -168,13 +169,6 @@ class Drawing:
     def noise(self) -> Noise:
         """What the picture is like: noise of paper and ink, softness of edges, width of the pen."""
         return measured(self.darkness, self.pitch_mm, self.paper_noise)
-
-    @cached_property
-    def narrow_strips(self) -> Strips:
-        """Its narrow strips of paper between lines; none are looked for on a large sheet."""
-        from morfax.tracer.drawing.narrow import Strips
-
-        return Strips.of(self)
 
     @classmethod
     def open(
