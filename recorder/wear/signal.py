@@ -111,10 +111,10 @@ class Dropouts:
     ) -> None:
         self._every_s, self._length_s, self._left = 60 / per_minute, length_s, left
         self._all, self._random = all_tracks, np.random.default_rng(seed)
-        self._next = self._drawn(0.0, 1)
+        self._next = self._drawn(0.0)
         self.met: list[Dropout] = []
 
-    def _drawn(self, after_s: float, tracks: int) -> Dropout:
+    def _drawn(self, after_s: float) -> Dropout:
         """The next dropout after a moment."""
         start_s = after_s + self._random.exponential(self._every_s)
         length_s = self._length_s * float(np.exp(self._random.normal(0, SPREAD)))
@@ -126,7 +126,7 @@ class Dropouts:
         last_s = first_s + count / rate_hz
         while self._next.start_s < last_s:
             self.met.append(self._next)
-            self._next = self._drawn(self._next.start_s + self._next.length_s, tracks)
+            self._next = self._drawn(self._next.start_s + self._next.length_s)
         near = [d for d in self.met[-1000:] if d.start_s + d.length_s + FLANK_S > first_s]
         if not near:
             return None

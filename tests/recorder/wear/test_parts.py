@@ -181,3 +181,24 @@ def test_a_header_holds_a_rate_of_31_bits() -> None:
     check(Wear(stamped_hz=2**31 - 1), 4)
     with pytest.raises(ValueError, match="2147483647"):
         check(Wear(stamped_hz=2**31), 4)
+
+
+def test_hum_is_of_the_mains_with_a_third_harmonic_at_a_third_of_it() -> None:
+    """A second of 50 Hz, from any frame on: lines at 50 and 150 Hz, a peak as it is set."""
+    told = signal.hum(0, RATE_HZ, RATE_HZ, 50.0, 0.2)
+    lines = 2 * np.abs(np.fft.rfft(told)) / RATE_HZ
+    assert lines[[50, 150]] == pytest.approx([0.15, 0.05], abs=1e-6)
+    assert np.delete(lines, [50, 150]).max() < 1e-9
+    assert signal.hum(700, 100, RATE_HZ, 50.0, 0.2) == pytest.approx(told[700:800], abs=1e-12)
+
+
+@pytest.mark.parametrize(("scrape", "is_refused"), [(0.009, False), (0.011, True)])
+def test_wow_flutter_and_scrape_are_a_twentieth_together_at_the_most(
+    scrape: float, is_refused: bool
+) -> None:
+    wear = Wear(wow=0.03, flutter=0.011, scrape=scrape)
+    if is_refused:
+        with pytest.raises(ValueError, match=r"more than 0\.05 together"):
+            check(wear, 4)
+    else:
+        check(wear, 4)
