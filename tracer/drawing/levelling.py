@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
 from morfax.motion.median import ROBUST, median, percentile
-from morfax.tracer.drawing.blocks import runs_behind_spot, runs_in
+from morfax.tracer.drawing.blocks import ABOUT, runs_behind_spot, runs_in
 from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
@@ -29,6 +29,8 @@ from morfax.tracer.drawing.paper_noise import every_px, paper_noise
 from morfax.tracer.drawing.scan import Grey
 
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
+# of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen
+STEP = 0.1
 EVERY = 4  # pixels of a noisy sheet that tell its noise
 FEWEST_SAMPLES = 1 << 22  # pixels that tell the darkness of the ink
 
@@ -64,20 +66,34 @@ def _in_even_light(contrast: Contrast, pitch_mm: float) -> Contrast:
         return contrast
     try:
         # shapes are known by how dark the lines are, and that by the light: all that is dark is in a shadow
-        ink, _ = _ink_contrast(_lit(contrast, paper.light(lighting), pitch_mm), pitch_mm)
+        ink, _ = _ink_contrast(
+            _lit(contrast, paper.light(lighting), lighting.white, pitch_mm), pitch_mm
+        )
     except DrawingFault:
         return contrast
-    return _lit(contrast, paper.light(lighting, ink), pitch_mm)
+    return _lit(contrast, paper.light(lighting, ink), lighting.white, pitch_mm)
 
 
-def _lit(contrast: Contrast, light: Darkness, pitch_mm: float) -> Contrast:
+def _lit(contrast: Contrast, light: Darkness, white: float, pitch_mm: float) -> Contrast:
     """The same of the picture divided by the light on it, which is given on the reduced picture."""
-    by, (rows, columns) = contrast.blocks.by, contrast.grey.shape
-    large = cv2.resize(light, None, fx=by, fy=by, interpolation=cv2.INTER_LINEAR)
-    lit = cv2.divide(
-        contrast.grey.astype(np.float32), np.ascontiguousarray(large[:rows, :columns])
-    )
-    return Contrast.of(np.asarray(np.clip(np.rint(lit), 0, 255), np.uint8), pitch_mm)
+    by, shape = contrast.blocks.by, contrast.grey.shape
+    grey = contrast.grey.astype(np.float32)
+    large = _enlarged(light, by, shape, cv2.INTER_LINEAR)
+    # beside a sharp step a pixel's own level tells the light on it: a line would be left along the step
+    low, high = (np.asarray(f(light, ABOUT), np.float32) for f in (cv2.erode, cv2.dilate))
+    steps = np.asarray(high - low > STEP, np.float32)
+    at = _enlarged(steps, by, shape, cv2.INTER_NEAREST) > 0
+    least, most = (_enlarged(each, by, shape, cv2.INTER_NEAREST)[at] for each in (low, high))
+    large[at] = np.clip(grey[at] / white, least, most)
+    lit = np.clip(np.rint(cv2.divide(grey, large)), 0, 255)
+    return Contrast.of(np.asarray(lit, np.uint8), pitch_mm)
+
+
+def _enlarged(reduced: Darkness, by: int, shape: tuple[int, ...], way: int) -> Darkness:
+    """A picture that was reduced by a whole number, in its own size."""
+    rows, columns = shape
+    large = cv2.resize(reduced, None, fx=by, fy=by, interpolation=way)
+    return np.ascontiguousarray(large[:rows, :columns], np.float32)
 
 
 def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness | None]:

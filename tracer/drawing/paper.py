@@ -105,7 +105,7 @@ class Paper:
         stroke_px = WIDEST_STROKE_MM / 2 / self.pitch_mm
         if ink is not None:
             sharp_px = round(SHARP_MM / self.pitch_mm)
-            darker = BLACK * ink / lighting.white
+            darker = SHAPE * ink / lighting.white
             lighting = lighting.beneath_shapes(darker, sharp_px, stroke_px)
         return lighting.light(stroke_px)
 

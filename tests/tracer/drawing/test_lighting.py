@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.drawing.deepening import LEAST
 from morfax.tracer.drawing.levelling import levelled
 from morfax.tracer.drawing.lighting import Lighting
 from morfax.tracer.drawing.scale import Scale
@@ -125,3 +126,19 @@ def test_a_disc_of_pencil_under_a_lamp_stays_dark() -> None:
     _, shapes, _ = levelled(np.asarray(np.round(grey), np.uint8), 25.4 / 300)
     by = round(945 / shapes.shape[1])
     assert shapes[236 // by, 236 // by] and not shapes[236 // by, 708 // by]
+
+
+def test_along_the_edge_of_grey_paper_no_line_is_left() -> None:
+    """A pale line, half as wide as those that are drawn, made pens of these. (Fails without a pixel's own
+    light beside a step.)
+    """
+    grey = np.full((472, 945), 240.0)
+    cv2.rectangle(grey, (203, 101), (741, 370), 150.0, -1)
+    cv2.line(grey, (240, 140), (700, 330), 20.0, 7, cv2.LINE_AA)
+    darkness, _, _ = levelled(np.asarray(np.round(grey), np.uint8), 25.4 / 300)
+    drawn = np.zeros(grey.shape, np.uint8)
+    cv2.line(drawn, (240, 140), (700, 330), 1, 15)
+    for corner in ((203, 101), (741, 101), (203, 370), (741, 370)):
+        cv2.circle(drawn, corner, 36, 1, -1)  # 3 mm: a closing rounds them, and leaves specks
+    assert np.abs(np.asarray(darkness)[drawn == 0]).max() < LEAST
+    assert np.asarray(darkness)[235, 470] > 0.9
