@@ -59,7 +59,7 @@ class CheckJob:
         from morfax.player.gcode.check.checked import check_program
 
         if medium.kind_of(self.program) in ("tape", "drawing") or (
-            self.program.suffix.lower() in OTHER_MEDIA
+            self.program.suffix.lower() in (*OTHER_MEDIA, *medium.PATHS)
         ):
             raise WrongUse(
                 f"{self.program} is no G-code; check reads {', '.join(medium.BLOCKS)} "

@@ -83,7 +83,7 @@ def kind_of(file: FilePath) -> Kind:
     return kind or "path"
 
 
-def refuse_drawing(file: FilePath, kind: Kind) -> None:
+def refuse_drawing(file: FilePath, kind: Kind | None) -> None:
     """Raise WrongUse for a scan or a photo where a program or a path is wanted."""
     if kind == "drawing":
         raise WrongUse(

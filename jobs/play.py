@@ -146,7 +146,7 @@ class PlayJob:
         medium.outgoing_together((*self.outputs, *self.charts, self.picture), self.tape)
         is_live = str(self.tape) == PIPE
         if not is_live:
-            medium.refuse_drawing(self.tape, medium.kind_of(self.tape))
+            medium.refuse_drawing(self.tape, medium.kind_by_name(self.tape))
             outlines.check_unit(self.drawn_unit, self.tape)
         settings = self.control.for_file(self.tape, self.by_hand)
         is_charted = bool(self.charts) or self.picture is not None

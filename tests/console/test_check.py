@@ -114,6 +114,7 @@ def test_a_program_without_z_has_no_side_view(morfax: Morfax, here: Path) -> Non
         (("part.nc", "--picture", "a.txt"), 2, "must end in .png, .svg, .pdf"),
         (("part.nc", "--picture", "no/a.png"), 8, "there is no folder no; make it first"),
         (("a.steps",), 2, "a.steps is no G-code; check reads .ngc, .nc"),
+        (("a.csv",), 2, "a.csv is no G-code; check reads .ngc, .nc"),
         (("binary.nc",), 5, "binary.nc is no text; a program is lines such as G1 X10 Y5 F600"),
     ],
 )
@@ -121,6 +122,7 @@ def test_what_cannot_be_checked_is_refused(
     words: tuple[str, ...], exit_code: int, says: str, morfax: Morfax, part: Path, here: Path
 ) -> None:
     (here / "a.steps").write_text("steps\n")
+    (here / "a.csv").write_text("x_mm,y_mm\n0,0\n5,5\n")
     (here / "binary.nc").write_bytes(b"G0 X1\0\n")
     answer = morfax("check", *words)
     assert answer.exit_code == exit_code and says in answer.fault

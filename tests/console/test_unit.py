@@ -58,7 +58,7 @@ def test_mirror_turn_and_scale_of_a_path(morfax: Morfax, here: Path) -> None:
         "90deg",
         "--json",
     )
-    assert "cutter must be 2 times as thick" in answer.err
+    assert "a cutter's radius that the path allows for is scaled too" in answer.err
     assert answer.figures["end_place_mm"] == pytest.approx([6, -3, 0], abs=1e-9)
     assert morfax("play", "l.wav", "-o", "played.csv", "-q").exit_code == 0
     assert read_path("played.csv").positions_mm[-1] == pytest.approx(
@@ -70,7 +70,10 @@ def test_a_scaled_program_names_the_tool_that_it_needs(morfax: Morfax, here: Pat
     answer = morfax(
         "trace", SAMPLES / "cam.png", "--cutter", "3mm", "--scale", "2", "-o", "cam.ngc"
     )
-    assert "cutter must be 2 times as thick; leads and tabs are 2 times as long" in answer.err
+    assert (
+        "scaled by 2: the program is for a cutter of 6 mm, X and Y run 2 times as fast"
+        in answer.err
+    )
     assert "(tool: 6 mm wide, outside)\n" in Path("cam.ngc").read_text()
 
 
