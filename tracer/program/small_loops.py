@@ -25,7 +25,6 @@ from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import evenly, length_mm
-from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
@@ -36,9 +35,9 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.program.own_ink import MOST_SPECKS, OVER
 from morfax.tracer.program.selection import lines_of
 from morfax.tracer.program.small_rings import MAYBE_BROAD, paper_within_px, pen_mm
-from morfax.tracer.sensing.photocell import darkness_along, without_aperture
 from morfax.tracer.tangles.compass import Core, explained, filled_misfit
 from morfax.tracer.tangles.seen_ink import SeenInk
 
@@ -59,7 +58,9 @@ BROADEST, SHORT_WIDTHS, MOST_BROAD = 2.7, 2.0, 100
 NO_BROADER = 0.9  # times as broad as a line: in the mean a seam may make up for it
 # for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
 SEAM = 0.002
-BARE = 0.5  # widths: of a way over paper, less is a speck; a side that was not drawn is longer
+# widths between places of a way, and about each: there a pen draws no more on paper than that of a long line
+# (see `own_ink`); of 22 right slots 21 leave 0.01 at most and one 0.08, lines that are open at one end 0.1
+STATION, ABOUT_STATION = 0.25, 0.75
 ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
@@ -193,14 +194,7 @@ class SmallLoops:
         own = math.inf if way is None else ink.misfit_along(one_in(way, THINNED))
         has_seam = filled_misfit(ink, core) - core.misfit > least
         is_better = core.misfit < min(own - GAIN * widths, LIKE * widths)
-        return self._run(core) if has_seam and is_better and self._is_inked(core) else None
-
-    def _is_inked(self, core: Core) -> bool:
-        """Whether there is ink all along a core's way, but for specks of paper."""
-        step_mm = 0.5 * self.sheet.drawing.pitch_mm
-        way = evenly(np.vstack(core.stretches()), step_mm)
-        bare = darkness_along(without_aperture(self.sheet.drawing, INK), way) < INK
-        return bool(np.count_nonzero(bare) * step_mm < BARE * 2 * core.half_mm)
+        return self._run(core) if has_seam and is_better and _is_drawn(ink, core) else None
 
     def _may_be(self, patch: int, width_mm: float) -> bool:
         """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""
@@ -236,13 +230,14 @@ class SmallLoops:
         return SeenInk.of(drawing, i, j, known_mm, width_mm, every)
 
     def _laid(self, ink: SeenInk, own: float) -> Loop | None:
-        """The loop that explains some ink, if it leaves less unexplained than the head's own way."""
+        """The loop that explains some ink, if it leaves less unexplained than the head's own closed way."""
         core = explained(ink) if len(ink.places_mm) else None
         if core is None:
             return None
         widths = core.length_mm / ink.width_mm
-        is_better = core.misfit < own - GAIN * widths
-        return self._run(core) if is_better and core.misfit < LIKE * widths else None
+        is_better = core.misfit < min(own - GAIN * widths, LIKE * widths)
+        is_line = math.isfinite(own) or _is_drawn(ink, core)
+        return self._run(core) if is_better and is_line else None
 
     def _run(self, core: Core) -> Loop:
         """The head's run along a core's way from memory."""
@@ -253,3 +248,15 @@ class SmallLoops:
         carriage = Carriage(stance, self.settings, MOTION_RATE_HZ)
         carriage.run(stretches, leader=REDRAWN)
         return Loop(carriage.positions_mm, carriage.led, 2 * core.half_mm)
+
+
+def _is_drawn(ink: SeenInk, core: Core) -> bool:
+    """Whether there is ink wherever a pen along a core's way would leave it, but for specks of paper: a line
+    that goes round but for its last side is no loop.
+    """
+    way = evenly(np.vstack(core.stretches()), STATION * ink.width_mm)
+    drawn = ink.drawn_along(np.vstack(core.stretches()), core.half_mm)
+    paper = np.maximum(drawn - ink.darkness, 0.0) ** 2 * ink.area_mm2 / ink.width_mm**2
+    away_mm = np.hypot(*(way[:, None] - ink.places_mm[None]).transpose(2, 0, 1))
+    most = float(((away_mm < ABOUT_STATION * ink.width_mm) @ paper).max())
+    return most < max(OVER, MOST_SPECKS * ink.area_mm2 / ink.width_mm**2)

@@ -102,3 +102,14 @@ def test_holes_of_several_sizes_in_a_row_are_no_letters() -> None:
     trace = trace_lines(inked(PLATE, *rings, width_mm=0.4, seed=1))
     assert trace.letters == ()
     assert [line.ending for line in trace.lines] == ["closed"] * 6
+
+
+@pytest.mark.parametrize("apart_mm", [0.7, 0.8, 0.9])
+def test_a_narrow_line_that_is_open_at_one_end_is_no_slot(apart_mm: float) -> None:
+    """Paper shows between its ends, 0.2 to 0.4 mm of it: a last side that is drawn there would be cut."""
+    bent = polyline((17, 20), (11, 20), (11, 20 + apart_mm), (17, 20 + apart_mm))
+    for trace in (trace_lines, trace_ink):
+        closed = [
+            line for line in trace(inked(PLATE, bent, seed=1)).lines if line.ending == "closed"
+        ]
+        assert len(closed) == 1
