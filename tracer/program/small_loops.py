@@ -146,7 +146,10 @@ class SmallLoops:
 
     def _narrow(self, patch: int, way: Array | None) -> Loop | None:
         """The loop within which hardly any paper is seen, if it explains more than the head's way."""
-        return self._with_seam(patch, way) if self._is_broad(patch, NO_BROADER) else None
+        may_be = (
+            self._is_broad(patch, NO_BROADER) and paper_within_px(self.sheet, patch) < LEAST_PX
+        )
+        return self._with_seam(patch, way) if may_be else None
 
     @cached_property
     def slots(self) -> dict[int, Loop]:
