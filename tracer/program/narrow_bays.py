@@ -48,8 +48,8 @@ MOST_PLACES = 1500  # of ink: enough to place a corner within 10 um
 LIKE = 0.035
 GAIN = 0.001  # and by how much more the head's own way must leave
 FURTHER = 0.01  # the same, of a width more of a way that runs out and back on one line
-# and of what a way leaves, where the rule draws otherwise, that does not come beside itself: less is a blot, or
-# what a rubber left
+# and of what a way leaves that does not come beside itself, where the rule draws otherwise: less is a blot,
+# or what a rubber left
 MOST_LEFT = 0.3
 DOUBTFUL = 0.3  # of the limit above which a way is beside its ink: it may be wrong
 ROUNDS = 3  # a bay may come to light when another is mended
