@@ -15,40 +15,39 @@ Source: our own. Questions: a patch with a bay beside other lines that are long 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
-from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program import selection
-from morfax.tracer.program.bars import THICK
+from morfax.tracer.program.bars import THICK, bars_along
 from morfax.tracer.program.narrow_bays import GAIN, LIKE, explained, is_clear, with_bars
 from morfax.tracer.program.one_of_each import one_of_each
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.small_rings import pen_mm
 from morfax.tracer.program.unexplained import Unexplained
+from morfax.tracer.program.window import Window
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.pen import NOWHERE_MM
 from morfax.tracer.tangles.seen_ink import SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-STEP = 0.1  # between the places of a way
-NARROW, ROUND_END = (
-    2.6,
-    6.0,
-)  # sides so near to each other, with so much way between them, have a narrow end
+STEP, COARSE_STEP = (
+    0.1,
+    0.25,
+)  # between the places of a way; where its narrow ends are looked for
+# sides so near to each other, with so much way between them, have a narrow end
+NARROW, ROUND_END = 2.6, 6.0
 END = 5.0  # of a stroke: shows whether it ends in a bar
-OTHERS = 0.3  # of the longest stroke: a shorter one is no part of the contour, ...
-MOST_PARTS = 4  # ... which has so many at the most
+OTHERS = 0.3  # of the longest stroke: a shorter one is no part of the contour, nor are all those together
+MOST_PARTS, MOST_OTHERS = 4, 40  # strokes; a patch with more is a net
 DIFFER = 0.1  # between the ways: more is another way
 REACH = 1.5  # from where they differ, the ink is looked at
 MOST_PLACES = 6000  # of ink
@@ -88,7 +87,7 @@ def _is_folded(strokes: list[Line]) -> bool:
     if line.ending != "closed":
         near_mm, round_mm = NARROW * line.width_mm, ROUND_END * line.width_mm
         return line.passes_its_end(near_mm, round_mm) is not None
-    step_mm = STEP * line.width_mm
+    step_mm = COARSE_STEP * line.width_mm
     way = evenly(line.loop_mm, step_mm)
     return bool(beside_itself.stretches(way, step_mm, line.width_mm, NARROW, ROUND_END))
 
@@ -104,11 +103,12 @@ def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> list[Unexp
     others_mm = sum(stroke.length_mm for stroke in strokes[len(parts) :])
     if len(strokes) == 1 or len(parts) > MOST_PARTS or others_mm > least_mm:
         return None
+    if len(others) > MOST_OTHERS:
+        return None
     # 2. the bars that the others lie within, or in which the parts end
     end_mm, short_mm = END * width_mm, THICK[1] * width_mm
     ends = [end for way in parts for end in (_up_to(way, end_mm), _up_to(way[::-1], end_mm))]
-    within = [others] if others else [[end] for end in ends]
-    bars = [bar for ways in within for bar in _bars(sheet, ways, width_mm)]
+    bars = list(bars_along(sheet, others or ends, width_mm))
     thick = [Unexplained(bar.place_mm, bar.long_mm, "broad") for bar in bars if bar.is_thick]
     if others:
         return thick if all(bar.is_thick or bar.long_mm < short_mm for bar in bars) else None
@@ -118,41 +118,6 @@ def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> list[Unexp
 def _up_to(way: Array, length_mm: float) -> Array:
     """The first places of a way (n, 2) mm, up to a length."""
     return way[: 2 + int(np.searchsorted(lengths_mm(way), length_mm))]
-
-
-class _Bar(NamedTuple):
-    """A bar of ink: its middle; how long it is, mm; whether it is thicker than a line, and no thicker than a
-    narrow bay between two.
-    """
-
-    place_mm: tuple[float, float]
-    long_mm: float
-    is_thick: bool
-
-
-def _bars(sheet: Sheet, ways: list[Array], width_mm: float) -> Iterator[_Bar]:
-    """The bars of ink within which ways (n, 2) mm run."""
-    pitch_mm = sheet.drawing.pitch_mm
-    window = _Window.about(sheet, np.vstack(ways), 2 * width_mm)
-    # 1. ways that lie together are one bar
-    drawn = np.zeros(window.shape, np.uint8)
-    for way in ways:
-        px = window.pixels(way).reshape(-1, 1, 2).astype(np.int32)
-        cv2.polylines(drawn, [px], False, 1, round(width_mm / pitch_mm))
-    count, bars = cv2.connectedComponents(drawn)
-    # 2. the ink in the narrowest box about each
-    ink = np.asarray(window.of(sheet.drawing.darkness), float) > INK
-    least, most = (times * width_mm for times in THICK)
-    for number in range(1, count):
-        box = cv2.minAreaRect(
-            np.column_stack(np.nonzero(bars == number)[::-1]).astype(np.float32)
-        )
-        within = np.zeros(drawn.shape, np.uint8)
-        cv2.fillConvexPoly(within, np.round(cv2.boxPoints(box)).astype(np.int32), 1)
-        across_mm, long_mm = (pitch_mm * (side_px + 1) for side_px in sorted(box[1]))
-        inked_mm2 = np.count_nonzero((within > 0) & ink) * pitch_mm**2
-        is_thick = across_mm < most and float(inked_mm2) > least * long_mm
-        yield _Bar(window.place_mm(*box[0]), long_mm, bool(is_thick))
 
 
 def _contour(setup: Setup, number: int, strokes: list[Line]) -> Line | None:
@@ -186,7 +151,7 @@ def _is_better(sheet: Sheet, line: Line, strokes: list[Line]) -> bool:
 def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     """The ink about some places (n, 2) mm."""
     drawing, reach_mm = sheet.drawing, REACH * width_mm
-    window = _Window.about(sheet, places, reach_mm)
+    window = Window.about(sheet.drawing, places, reach_mm)
     near = np.zeros(window.shape, np.uint8)
     column, row = window.pixels(places).T
     near[row, column] = 1
@@ -197,45 +162,3 @@ def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     i, j = i[::every] + window.top, j[::every] + window.left
     nothing_mm = np.full(len(i), NOWHERE_MM)
     return SeenInk.of(drawing, i, j, nothing_mm, width_mm, every)
-
-
-class _Window(NamedTuple):
-    """A part of a sheet: its first row and column, the one after its last, and what makes pixels of mm."""
-
-    top: int
-    left: int
-    bottom: int
-    right: int
-    rows: int
-    pitch_mm: float
-
-    @classmethod
-    def about(cls, sheet: Sheet, places: Array, reach_mm: float) -> _Window:
-        """About some places (n, 2) mm, as far as that."""
-        pitch_mm, (rows, columns) = sheet.drawing.pitch_mm, sheet.drawing.darkness.shape
-        low, high = places.min(axis=0) - reach_mm, places.max(axis=0) + reach_mm
-        left, top = max(int(low[0] / pitch_mm), 0), max(int(rows - high[1] / pitch_mm), 0)
-        right = min(int(high[0] / pitch_mm) + 2, columns)
-        bottom = min(int(rows - low[1] / pitch_mm) + 2, rows)
-        return cls(top, left, bottom, right, rows, pitch_mm)
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
-        return self.bottom - self.top, self.right - self.left
-
-    def of(self, pixels: NDArray[np.generic]) -> NDArray[np.generic]:
-        """The part of all pixels of the sheet."""
-        return pixels[self.top : self.bottom, self.left : self.right]
-
-    def pixels(self, places: Array) -> NDArray[np.int64]:
-        """Column and row (n, 2) within it of places (n, 2) mm on the sheet."""
-        column = (places[:, 0] / self.pitch_mm).astype(int) - self.left
-        row = (self.rows - places[:, 1] / self.pitch_mm).astype(int) - self.top
-        rows, columns = self.shape
-        return np.column_stack([np.clip(column, 0, columns - 1), np.clip(row, 0, rows - 1)])
-
-    def place_mm(self, column: float, row: float) -> tuple[float, float]:
-        """The place on the sheet of the middle of a pixel within it."""
-        x_px, y_px = self.left + column + 0.5, self.rows - self.top - row - 0.5
-        return x_px * self.pitch_mm, y_px * self.pitch_mm

@@ -1,22 +1,27 @@
-"""Bars of ink beside lines: what is joined to a line, and along which no line runs.
+"""Bars of ink: what is joined to a line and along which no line runs, and what strokes run within.
 
 Signals: the drawing, the lines on it, and a place on ink beside them in; places (n, 2) mm of the bar out.
+Ways of strokes in; the bars of ink that they run within out, and whether they are as thick as a narrow bay.
 
 Source: our own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.unexplained import Unexplained
+from morfax.tracer.program.window import Window
 from morfax.tracer.tangles.seen_ink import middles_mm
 
 OF_WIDTH = 1.3  # about a way ink is the line's own
@@ -67,3 +72,59 @@ def _is_thick(bar: Array, pitch_mm: float, width_mm: float) -> bool:
     thick_mm = len(bar) * pitch_mm**2 / (max(sides_mm) + pitch_mm)
     least, most = THICK
     return least * width_mm < thick_mm < most * width_mm
+
+
+class Bar(NamedTuple):
+    """A bar of ink: its middle; how long it is, mm; whether it is thicker than a line, and no thicker than a
+    narrow bay between two.
+    """
+
+    place_mm: tuple[float, float]
+    long_mm: float
+    is_thick: bool
+
+
+def bars_along(sheet: Sheet, ways: Sequence[Array], width_mm: float) -> Iterator[Bar]:
+    """The bars of ink within which ways (n, 2) mm run; those that lie together run within one."""
+    drawing, pitch_mm = sheet.drawing, sheet.drawing.pitch_mm
+    pen_px = max(1, round(width_mm / pitch_mm))
+    for together in _together(ways, width_mm):
+        window = Window.about(drawing, np.vstack(together), 2 * width_mm)
+        drawn = np.zeros(window.shape, np.uint8)
+        for way in together:
+            px = window.pixels(way).reshape(-1, 1, 2).astype(np.int32)
+            cv2.polylines(drawn, [px], False, 1, pen_px)
+        ink = np.asarray(window.of(drawing.darkness), float) > INK
+        count, bars = cv2.connectedComponents(drawn)
+        for number in range(1, count):
+            yield _bar(window, bars == number, ink, width_mm)
+
+
+def _bar(
+    window: Window, bar: NDArray[np.bool_], ink: NDArray[np.bool_], width_mm: float
+) -> Bar:
+    """A bar, by the ink in the narrowest box about it."""
+    pitch_mm, (least, most) = window.pitch_mm, THICK
+    box = cv2.minAreaRect(np.column_stack(np.nonzero(bar)[::-1]).astype(np.float32))
+    within = np.zeros(window.shape, np.uint8)
+    cv2.fillConvexPoly(within, np.round(cv2.boxPoints(box)).astype(np.int32), 1)
+    across_mm, long_mm = (pitch_mm * (side_px + 1) for side_px in sorted(box[1]))
+    inked_mm2 = float(np.count_nonzero((within > 0) & ink)) * pitch_mm**2
+    is_thick = across_mm < most * width_mm and inked_mm2 > least * width_mm * long_mm
+    return Bar(window.place_mm(*box[0]), long_mm, bool(is_thick))
+
+
+def _together(ways: Sequence[Array], width_mm: float) -> list[list[Array]]:
+    """Ways in groups: those whose boxes come nearer to each other than a width."""
+    groups = list[tuple[Array, Array, list[Array]]]()
+    for way in ways:
+        low, high, group = way.min(axis=0) - width_mm, way.max(axis=0) + width_mm, [way]
+        apart = list[tuple[Array, Array, list[Array]]]()
+        for first, last, others in groups:
+            if np.all(first < high) and np.all(last > low):
+                low, high = np.minimum(low, first), np.maximum(high, last)
+                group = others + group
+            else:
+                apart.append((first, last, others))
+        groups = [*apart, (low, high, group)]
+    return [group for _, _, group in groups]

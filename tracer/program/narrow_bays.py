@@ -29,6 +29,7 @@ from morfax.tracer.program.bars import bar_at
 from morfax.tracer.program.bay_run import Bay, laid
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.unexplained import Unexplained, beside_ink, ink_beside, unexplained
+from morfax.tracer.program.window import Window
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
 from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
@@ -227,19 +228,15 @@ class _Bays:
     def _ink(self, about: Array, rest: Array) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
         drawing, width_mm = self.setup.sheet.drawing, self.line.width_mm
-        pitch_mm, (rows, columns) = drawing.pitch_mm, drawing.darkness.shape
         # 1. the pixels within reach
         reach_mm = REACH * width_mm
-        low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
-        left, top = max(int(low[0] / pitch_mm), 0), max(int(rows - high[1] / pitch_mm), 0)
-        right = min(int(high[0] / pitch_mm) + 1, columns)
-        bottom = min(int(rows - low[1] / pitch_mm) + 1, rows)
-        i, j = np.mgrid[top:bottom, left:right].reshape(2, -1)
+        i, j = Window.about(drawing, about, reach_mm).grid()
         within = np.flatnonzero(pen.away_from(middles_mm(drawing, i, j), about) < reach_mm)
         every = 1 + len(within) // MOST_PLACES
         i, j = i[within[::every]], j[within[::every]]
         # 2. how far they are from what is drawn anyway
         places = middles_mm(drawing, i, j)
+        low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = pen.away_from(places, rest)
         for line in self.lines:
             if line is not self.line and _reaches(line.places_mm, low, high):
