@@ -30,6 +30,9 @@ ABOUT_WIDTHS = 3.0  # ... so much more, its bar is looked for about its furthest
 # widths: the ink of a bay is two lines thick at the least; it may come to a point, and a part of it at the
 # mouth counts as the line's own
 THICK = 1.2, 4.0
+THICK_BESIDE = (
+    1.5  # the same with half a width on either side; a line that a tick stands on counts there
+)
 NOTHING = np.empty((0, 2))
 
 
@@ -105,13 +108,22 @@ def _bar(
 ) -> Bar:
     """A bar, by the ink in the narrowest box about it."""
     pitch_mm, (least, most) = window.pitch_mm, THICK
-    box = cv2.minAreaRect(np.column_stack(np.nonzero(bar)[::-1]).astype(np.float32))
-    within = np.zeros(window.shape, np.uint8)
-    cv2.fillConvexPoly(within, np.round(cv2.boxPoints(box)).astype(np.int32), 1)
-    across_mm, long_mm = (pitch_mm * (side_px + 1) for side_px in sorted(box[1]))
-    inked_mm2 = float(np.count_nonzero((within > 0) & ink)) * pitch_mm**2
-    is_thick = across_mm < most * width_mm and inked_mm2 > least * width_mm * long_mm
-    return Bar(window.place_mm(*box[0]), long_mm, bool(is_thick))
+    places_px = np.column_stack(np.nonzero(bar)[::-1]).astype(np.float32)
+    middle_px, (side_px, other_px), degrees = cv2.minAreaRect(places_px)
+    across_mm, long_mm = (pitch_mm * (side + 1) for side in sorted((side_px, other_px)))
+    # one stroke in the middle of a bar: there is ink beside it, too
+    more_px = width_mm / pitch_mm
+    wider_px = (
+        (side_px + more_px, other_px) if side_px < other_px else (side_px, other_px + more_px)
+    )
+    is_thick = False
+    for sides_px, times in (((side_px, other_px), least), (wider_px, THICK_BESIDE)):
+        within = np.zeros(window.shape, np.uint8)
+        corners = cv2.boxPoints((middle_px, sides_px, degrees))
+        cv2.fillConvexPoly(within, np.round(corners).astype(np.int32), 1)
+        inked_mm2 = float(np.count_nonzero((within > 0) & ink)) * pitch_mm**2
+        is_thick |= inked_mm2 > times * width_mm * long_mm
+    return Bar(window.place_mm(*middle_px), long_mm, is_thick and across_mm < most * width_mm)
 
 
 def _together(ways: Sequence[Array], width_mm: float) -> list[list[Array]]:
