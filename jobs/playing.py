@@ -1,7 +1,6 @@
 """A tape or program played, for every job that plays one: the machine's path, and what ended it early.
 
-What the machine ran before a fault is kept: the path holds the motion up to there, and the result has the
-fault.
+What the machine ran before a fault is kept: the path has it up to there, and the result has the fault.
 """
 
 from __future__ import annotations

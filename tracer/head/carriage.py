@@ -2,8 +2,7 @@
 
 Signals: a leg to follow from, or a course (mm, mm/s) in; positions (n, 2) mm at the motion rate out.
 
-The carriage keeps every position of its screws (`positions_mm`; in a file, beyond some metres of line), and
-the trail of them by which the head knows where it has been.
+It keeps all positions of its screws (`positions_mm`; beyond some metres in a file), and a trail of them.
 
 Source: patent ES 361967, figure 1: lead screws 111 with their motors 17 and 12, and the head that they carry.
 """

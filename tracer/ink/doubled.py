@@ -53,10 +53,8 @@ ALIKE = 0.15  # of its width: a piece of the same two lines is about as broad, a
 STRAIGHT_COS = 0.98  # 11 degrees
 PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the same two lines
 # the width of a line as the head wants it: of a narrower one pixels make the width swell; and where they are
-LEAST_PX = (
-    3.0,
-    7.0,
-)  # ink or paper alone, and tell a width to one of them: `SHARED` is more then
+# ink or paper alone, and tell a width to one of them: `SHARED` is more then
+LEAST_PX = 3.0, 7.0
 # of the stations where ink lies still: of two lines more lie together, between flares. Ink that swells and
 # shrinks on the way is a line that is broader at its bends, as a printed letter's (0.2 to 0.7; a pen's loop
 # 0.83); by trial
