@@ -33,12 +33,8 @@ from morfax.tracer.program.trace_lines import trace_lines
 
 Points = NDArray[np.float64]
 
-SIDE_MM, PEN_MM, FINER, NOISE = (
-    90.0,
-    0.5,
-    3,
-    5.0,
-)  # of the sheet as it is; pixels; levels of 255
+# of the sheet as it is; pixels; levels of 255
+SIDE_MM, PEN_MM, FINER, NOISE = 90.0, 0.5, 3, 5.0
 CLEAR_MM, DIFFER = 3.0, 1.04
 SIZES, ANGLES_DEG, RESOLUTIONS = (0.5, 0.75, 1.4, 2.0), (15, 33, 45, 90, 137, 200), (150, 600)
 

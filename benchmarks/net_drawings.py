@@ -35,10 +35,8 @@ LETTERS = {
     "X": ("00 69", "09 60"),
     "Z": ("09 69 00 60",),
 }
-LETTER_UNITS, UNIT_MM = (
-    (11, 19),
-    1 / 16,
-)  # exact, so that the ends of strokes lie on other strokes
+# exact, so that the ends of strokes lie on other strokes
+LETTER_UNITS, UNIT_MM = (11, 19), 1 / 16
 CURVE = 60  # places of a curve
 
 

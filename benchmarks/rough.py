@@ -50,10 +50,8 @@ from morfax.motion.units import MM_PER_INCH
 
 Random = np.random.Generator
 PX_PER_MM = DPI / MM_PER_INCH
-EVERY_MM, SKIPS_MM = (
-    25.0,
-    (0.2, 0.8),
-)  # from one skip of the ballpoint to the next, and their lengths
+# from one skip of the ballpoint to the next, and their lengths
+EVERY_MM, SKIPS_MM = 25.0, (0.2, 0.8)
 BALLPOINT, GROOVE = 0.7, 0.35  # of ink's darkness; how much lighter the groove is
 RUNS_OUT_MM = 0.08
 SWELLS_MM = 8.0

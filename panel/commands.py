@@ -76,12 +76,8 @@ OFFERED: dict[str, tuple[str, ...]] = {
     ),
 }
 OF_DRAWING = (*OFFERED["Drawing"], "--line-width", "--gap")  # that `morfax lines` takes as well
-FOR_MACHINES = (
-    "--machine",
-    "--feed",
-    "--plunge",
-    "--rapid",
-)  # that only G-code and plotters take
+# that only G-code and plotters take
+FOR_MACHINES = "--machine", "--feed", "--plunge", "--rapid"
 FOR_TAPES = ("--pickup", "--plain")
 FOR_FITS = ("--fit-tolerance", "--lines-only")
 PAIRS = ("--known",)  # several words in one field

@@ -24,10 +24,8 @@ if TYPE_CHECKING:
     from morfax.player.monitor.chart import Chart
 
 MOST = 40_000  # rows of a curve on the page: a browser draws these within a frame
-WORST, APART_MM = (
-    6,
-    3.0,
-)  # places of the largest error that are listed, and how far apart they are
+# places of the largest error that are listed, and how far apart they are
+WORST, APART_MM = 6, 3.0
 DECIMALS = 4  # 0.1 um, 0.1 ms
 
 

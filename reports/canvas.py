@@ -28,17 +28,8 @@ FLATTEST, TALLEST = 0.2, 1.4  # height to width of what is drawn
 DPI = 130
 LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
 REFERENCE = "#555555"
-GREYS = (
-    255,
-    240,
-    217,
-    189,
-    150,
-    115,
-    82,
-    37,
-    0,
-)  # from no darkness to all: "Greys" of matplotlib
+# from no darkness to all: "Greys" of matplotlib
+GREYS = 255, 240, 217, 189, 150, 115, 82, 37, 0
 COMPRESSION = 3  # of zlib: a fifth larger than with 6, in two fifths of the time
 
 

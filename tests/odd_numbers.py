@@ -31,10 +31,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from tests.rooms import ROOMS
+
 ROOT = Path(__file__).parents[1]
-PACKAGES = (
-    "motion", "tracer", "recorder", "player", "jobs", "reports", "panel", "batch", "console", "samples",
-)  # fmt: skip
 PLAIN = {0.0, 0.5, 1.0, 2.0, 25.4, 180.0, 255.0, 256.0, 360.0, 3600.0}
 BITS = {8.0, 16.0, 24.0, 32.0, 64.0, 32767.0, 32768.0}
 IN_BODIES = PLAIN | BITS | {3.0, 4.0, 60.0, 90.0, 10.0, 100.0, 1e3, 1e4, 1e6, 1e9, 1e-3, 1e-6}
@@ -137,7 +136,7 @@ def _function(function: ast.FunctionDef | ast.AsyncFunctionDef, text: _Text) -> 
 def rooms() -> dict[str, list[Odd]]:
     """The numbers of each room, by its folder."""
     found: dict[str, list[Odd]] = {}
-    for package in PACKAGES:
+    for package in ROOMS:
         for file in sorted((ROOT / package).rglob("*.py")):
             place = file.relative_to(ROOT)
             found.setdefault(str(place.parent), []).extend(

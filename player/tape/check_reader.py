@@ -53,9 +53,8 @@ from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import Stored, full_scale
 
 LEAST_FRAMES = 2.2  # of the check signal, among which two are whole
-MOST_AHEAD = (
-    1 << 20
-)  # frames of the tape: four times what 192 kHz and a reference of 5 kHz need
+# frames of the tape: four times what 192 kHz and a reference of 5 kHz need
+MOST_AHEAD = 1 << 20
 # of the power of 24 symbols: noise as strong as the symbols has a share of 1/24
 SYNC_LIKENESS = 0.5
 CENTRING = 6  # times: 7 us are left after three, 4 us after six

@@ -34,9 +34,8 @@ from morfax.recorder.gcode.plan import Feeds, Writing
 from morfax.recorder.gcode.running_time import running_time_s
 from morfax.recorder.gcode.tooling import without_z
 
-LARGEST_MM = (
-    32767 * 0.025
-)  # HP-GL's plotter units are numbers of 16 bit; those of HP-GL/2 are longer
+# HP-GL's plotter units are numbers of 16 bit; those of HP-GL/2 are longer
+LARGEST_MM = 32767 * 0.025
 
 
 def record_hpgl(

@@ -16,9 +16,8 @@ from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
 
 CURVE = SAMPLES / "curve.png"
-ODD = os.fsdecode(
-    b"b\xff\xfed$^$x"
-)  # no UTF-8, and what a formula would be in a picture's title
+# no UTF-8, and what a formula would be in a picture's title
+ODD = os.fsdecode(b"b\xff\xfed$^$x")
 
 
 # pipes and devices

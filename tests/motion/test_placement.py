@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from morfax.motion.motion import Motion, Path, join
 from morfax.motion.placement import Placement
 
-L_SHAPE = np.array(
-    [[10.0, 5, 2, 7], [14, 5, -3, 8], [14, 7, -3, 9]]
-)  # X, Y, Z and a further axis, mm
+# X, Y, Z and a further axis, mm
+L_SHAPE = np.array([[10.0, 5, 2, 7], [14, 5, -3, 8], [14, 7, -3, 9]])
 WHOLE = st.floats(-1e3, 1e3, allow_nan=False)
 
 

@@ -16,17 +16,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-PACKAGES = (
-    "motion",
-    "tracer",
-    "recorder",
-    "player",
-    "jobs",
-    "reports",
-    "panel",
-    "batch",
-    "console",
-)
+from tests.rooms import PACKAGES
+
 FUNCTION = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 

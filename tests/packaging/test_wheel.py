@@ -18,20 +18,9 @@ from pathlib import Path
 import pytest
 
 from morfax.motion import machine_code
+from tests.rooms import ROOMS
 
 ROOT = Path(__file__).parents[2]
-ROOMS = (
-    "motion",
-    "tracer",
-    "recorder",
-    "player",
-    "jobs",
-    "reports",
-    "panel",
-    "batch",
-    "console",
-    "samples",
-)
 # of a checkout, what makes the wheel; the links in morfax/ are copied as links
 SOURCES = ("morfax", *ROOMS, "pyproject.toml", "README.md", "LICENSE")
 

@@ -23,10 +23,8 @@ from morfax.tracer.drawing.components import INK, Patches, runs_of, strips
 from morfax.tracer.drawing.tiles import Tiles, paper_like
 
 # All limits below were chosen by trial on framed and badly cropped pictures.
-AT_EDGE_PX, AT_EDGE = (
-    3,
-    0.005,
-)  # so near to an edge ink is at it: the larger; a share of the shorter side
+# so near to an edge ink is at it: the larger; a share of the shorter side
+AT_EDGE_PX, AT_EDGE = 3, 0.005
 ALONG = 0.6  # of an edge along which there is ink: it is a border's
 MARGIN = 0.05  # of the shorter side: a border reaches no further into the picture
 FRINGE_PX = 3  # beyond the border's ink its soft edge ends

@@ -37,10 +37,8 @@ FEWEST_PX = 3.0  # of the line's width: see `jobs.scale_doubts`
 TIMES = 2  # three times finer is no better: the same details, 1 um more RMS
 # of a pixel: standard deviation of the aperture; at 0.35 the gaps of small engravings stay open; by trial
 APERTURE_PX = 0.6
-FULL, BETWEEN = (
-    0.75,
-    0.03,
-)  # darkness; share of pixels that are neither paper nor ink, on a hard picture
+# darkness; share of pixels that are neither paper nor ink, on a hard picture
+FULL, BETWEEN = 0.75, 0.03
 MOST_PX = 1 << 22  # of a sheet, before: large sheets are no coarse scans, and need the memory
 # pixels, as `noise.Within` says: a line of 1.5 looks 1.8 to 2.12 wide, one of 2 looks 2.16 or more; by trial
 SEEN_PX = 2.14

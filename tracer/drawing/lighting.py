@@ -37,9 +37,8 @@ LEAST = 0.5  # a place is made at most twice as bright: its noise is, too
 NOISE = 0.02  # of the brightest paper: by so much a paper's level differs from place to place
 LINES = 0.4  # of the ink's darkness: so dark a line of a few tenths of a millimetre is on the reduced picture
 FEW = 0.002  # of an area: specks; a single line across 50 mm covers more
-ABOUT = np.ones(
-    (3, 3), np.uint8
-)  # a pixel of the reduced picture may be half on a shape's edge
+# a pixel of the reduced picture may be half on a shape's edge
+ABOUT = np.ones((3, 3), np.uint8)
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,9 +28,8 @@ from morfax.motion.arrays import Array
 ALIKE = 0.015  # lengths within this share are equal
 AS_NEAR = 0.04  # of the ink's reach from its middle: distances within this are equal
 LOPSIDED = 0.02  # of the ink's third moment without signs: less shows no side
-BEFORE = math.radians(
-    15
-)  # the way round begins so far before the lopsided side: no line lies on the cut
+# the way round begins so far before the lopsided side: no line lies on the cut
+BEFORE = math.radians(15)
 
 
 class Ink(NamedTuple):

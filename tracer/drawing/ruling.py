@@ -56,15 +56,8 @@ EDGE_LOST = 0.25  # of them may leave the sheet at a side, or lie under a shadow
 TILES, INK_OVER, INK_IN = 8, 0.9, 0.01
 EXCESS = 0.35  # of ink's darkness: noise is no ink on a printed line
 SAMPLES = 50_000  # pixels of ink that tell the tilt
-FILL_DEG = (
-    -55.0,
-    -35.0,
-    -15.0,
-    0.0,
-    15.0,
-    35.0,
-    55.0,
-)  # of strokes, from square to the printed line
+# of strokes, from square to the printed line
+FILL_DEG = -55.0, -35.0, -15.0, 0.0, 15.0, 35.0, 55.0
 
 
 class Family(NamedTuple):

@@ -36,10 +36,8 @@ SEEN_SHARE = 0.6  # of the outline: that must show an edge
 CLEAR_LIGHT = 0.04  # of white: between paper and table, where an edge is seen
 EVERY_PX, AVERAGED = 4.0, 5  # between the places on a side; so many are averaged
 END = 0.02  # of a side, at both ends
-WIDE, NARROW_PX = (
-    0.008,
-    6.0,
-)  # how far from the outline an edge is looked for: of the diagonal; then px
+# how far from the outline an edge is looked for: of the diagonal; then px
+WIDE, NARROW_PX = 0.008, 6.0
 SMOOTH_DEGREE = 4  # of the curve of a side: lenses draw no more bends
 STRAY = 4.0  # robust standard deviations: what is further off is no edge of the sheet
 LEAST_STRAY_PX = 0.5

@@ -26,9 +26,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 
-HALF_DIAGONAL_35MM = (
-    math.hypot(36.0, 24.0) / 2
-)  # of the film that focal lengths are compared with, mm
+# of the film that focal lengths are compared with, mm
+HALF_DIAGONAL_35MM = math.hypot(36.0, 24.0) / 2
 # of phones' main cameras, 23 to 28 mm on film of 35 mm: the middle, and the spread of its logarithm
 USUAL_FOCAL_MM, USUAL_SPREAD = 26.0, 0.15
 STATED_SPREAD = 0.03  # of a focal length that the file states: it is rounded to whole mm

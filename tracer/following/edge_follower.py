@@ -21,11 +21,8 @@ from morfax.tracer.junctions.edge_ahead import EdgeAhead
 
 # Chosen by trial on filled shapes.
 BACK_LEGS = 1.0  # legs behind the axis from which on the edge is felt
-AHEAD_LEGS = (
-    1.5,
-    4.0,
-    10.0,
-)  # legs beyond the guard cells: further, while the edge is tight there
+# legs beyond the guard cells: further, while the edge is tight there
+AHEAD_LEGS = 1.5, 4.0, 10.0
 CLEAR_LEADS = 1.3  # of a plain edge, before the cell leads again
 FEWEST_STATIONS = 20
 

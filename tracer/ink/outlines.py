@@ -27,9 +27,8 @@ from morfax.tracer.sensing.leg import turn
 # of the way round the net's outside: two lines that overlap each make half of it or more, and a closed chain
 # that is shorter is a detail of the drawing
 MOST_OF_IT = 0.5
-STRAIGHT_ON = math.radians(
-    35
-)  # legs of a line that goes on over a junction turn by no more; by trial
+# legs of a line that goes on over a junction turn by no more; by trial
+STRAIGHT_ON = math.radians(35)
 
 
 class Outline(NamedTuple):

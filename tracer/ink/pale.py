@@ -32,10 +32,8 @@ LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white 
 STRIP_PX = 24  # high: strips of the sheet that tell its noise
 # percentiles one standard deviation apart; ink and its rims are above the middle
 LOW_AND_MIDDLE = 15.87, 50.0
-RIM_PX, SPOTS = (
-    3,
-    3.0,
-)  # pixels, and spots of the picture's softness: so near to ink is its own rim
+# pixels, and spots of the picture's softness: so near to ink is its own rim
+RIM_PX, SPOTS = 3, 3.0
 LEAST_MM = 5.0  # a shorter pale line is a smudge
 # of the length of all its branches that the box about it measures: on a grained paper what is more branched
 # is grain, which thins to a web; by trial on photographs of paper and boards

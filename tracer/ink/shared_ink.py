@@ -34,10 +34,8 @@ from morfax.tracer.sensing.parabola import FEWEST
 ALONG_COS = 0.94  # 20 degrees: a stretch that goes another way is not this line's
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
 ABREAST = 0.25  # widths: a station further before or behind a place tells nothing of it
-APART, LONG = (
-    1.3,
-    6.0,
-)  # widths: ink as broad, for as long, is that of two lines beside each other
+# widths: ink as broad, for as long, is that of two lines beside each other
+APART, LONG = 1.3, 6.0
 AVERAGED, FADES = 2.0, 1.0  # widths of the line
 SLACK = 0.12  # of the line's width: where two lines cross, the rims of their ink are felt so much too near
 # widths: nearer to the middle of its ink a line crosses another, and its rim is none

@@ -42,10 +42,8 @@ AVERAGED_RAD = (
 )
 LEAST_AVERAGED_PX = 1.6  # half of that length at least
 NODES = 3  # within that half
-TIP_STATIONS, TIP_RAD = (
-    4,
-    math.radians(100),
-)  # stations to either side of a tip, that turn by so much
+# stations to either side of a tip, that turn by so much
+TIP_STATIONS, TIP_RAD = 4, math.radians(100)
 STEEPEST = 0.55  # of the fundamental: no edge is steeper behind an aperture
 
 

@@ -46,9 +46,8 @@ JUMP = 0.25  # of the width, from station to station: the far edge is no longer 
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
 FEWEST_BACK = 6  # stations that make a way to a tip, or back from it
 
-PASSED = np.array(
-    [0.4, 0.6, 0.8, 1.0]
-)  # of the way clear of a vertex: a line that passes is seen there
+# of the way clear of a vertex: a line that passes is seen there
+PASSED = np.array([0.4, 0.6, 0.8, 1.0])
 CLEAR_WIDTHS, CLEAR_ACROSS, LEAST_SINE = 1.5, 1.2, 0.1  # that way: beyond the other leg's ink
 FARTHEST_CLEAR = 4.0  # widths; if it is longer, the legs are too nearly in line to tell
 # of the width: by so much a line that passes may be wider, and off the leg's line

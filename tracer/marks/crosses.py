@@ -27,10 +27,8 @@ from morfax.tracer.sensing.probe import is_tip, lines_on
 from morfax.tracer.sensing.view import View
 
 LEAST_MM, LARGEST_MM = CROSS_MM
-CIRCLED_FROM, CIRCLED_STEP = (
-    1.5,
-    0.3,
-)  # widths from a cross's middle: the rings of cells that seek a circle
+# widths from a cross's middle: the rings of cells that seek a circle
+CIRCLED_FROM, CIRCLED_STEP = 1.5, 0.3
 CIRCLED = 0.9  # share of a ring of cells that is ink, on a circle; the arms alone leave 0.43
 
 

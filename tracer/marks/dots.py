@@ -36,9 +36,8 @@ from morfax.tracer.sensing.spokes import ANGLES, WAYS, changes_along, spokes
 from morfax.tracer.sensing.view import View
 
 AT_FIRST = 2.5  # times as much a spoke may differ: the place may be off the middle
-AHEAD = np.arange(
-    0.25, DOT_LARGEST_WIDTHS, 0.25
-)  # widths beyond a leg's end at which a dot is sought
+# widths beyond a leg's end at which a dot is sought
+AHEAD = np.arange(0.25, DOT_LARGEST_WIDTHS, 0.25)
 
 
 def disc(view: View, place: Array, along: Array) -> Array | None:

@@ -18,10 +18,8 @@ from morfax.tracer.operator.zunit import COUNTS_PER_MM
 # the first count above IN_WORK_BELOW_MM, where the tool is out of the work
 LEAST_START_COUNTS = 6
 TABS_KEYS = ("count", "width", "height")
-LEAST_RAMP_DEG, MOST_RAMP_DEG = (
-    1.5,
-    45.0,
-)  # flatter is lost in the noise of Z, steeper is a plunge
+# flatter is lost in the noise of Z, steeper is a plunge
+LEAST_RAMP_DEG, MOST_RAMP_DEG = 1.5, 45.0
 
 
 def start_mm(field: Field) -> float:

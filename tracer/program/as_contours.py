@@ -28,7 +28,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program import selection
 from morfax.tracer.program.bars import THICK, bars_along
-from morfax.tracer.program.narrow_bays import GAIN, LIKE, explained, is_clear, with_bars
+from morfax.tracer.program.narrow_bays import explained, is_clear, with_bars
 from morfax.tracer.program.one_of_each import one_of_each
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.small_rings import pen_mm
@@ -36,13 +36,11 @@ from morfax.tracer.program.unexplained import Unexplained
 from morfax.tracer.program.window import Window
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.pen import NOWHERE_MM
-from morfax.tracer.tangles.seen_ink import SeenInk
+from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-STEP, COARSE_STEP = (
-    0.1,
-    0.25,
-)  # between the places of a way; where its narrow ends are looked for
+# between the places of a way; where its narrow ends are looked for
+STEP, COARSE_STEP = 0.1, 0.25
 # sides so near to each other, with so much way between them, have a narrow end
 NARROW, ROUND_END = 2.6, 6.0
 END = 5.0  # of a stroke: shows whether it ends in a bar
@@ -72,8 +70,11 @@ def as_contours(setup: Setup, lines: Sequence[Line]) -> tuple[list[Line], list[U
             bars = _broken_at(setup.sheet, strokes, width_mm)
             if bars is not None or _is_folded(strokes):
                 line = _contour(setup, numbers[patch], strokes)
-        kept += strokes if line is None else [line]
-        left += bars or [] if line is None else []
+        if line is not None:
+            kept.append(line)
+        else:
+            kept += strokes
+            left += bars or []
     kept.sort(key=lambda line: -line.length_mm)
     return [replace(line, number=number) for number, line in enumerate(kept, 1)], left
 

@@ -34,9 +34,8 @@ from morfax.motion.speed_limits import reachable
 
 _NOTHING_S = 1e-12  # so that no time is divided by zero
 ROUNDED = 1e-6  # of a period: what rounding adds
-CORNER = np.radians(
-    20
-)  # a sharper turn is a corner, at which the head stops to swivel; by trial
+# a sharper turn is a corner, at which the head stops to swivel; by trial
+CORNER = np.radians(20)
 RUN_MM = 0.1  # from node to node of a way that is run from memory
 BRAKED_ROWS = 600  # looked at first, back from a halt: from 10 mm/s the axis brakes in 120
 SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept

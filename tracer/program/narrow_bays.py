@@ -32,7 +32,7 @@ from morfax.tracer.program.unexplained import Unexplained, beside_ink, ink_besid
 from morfax.tracer.program.window import Window
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
 from morfax.tracer.tangles.folding_rule import Rule
-from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
+from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk, middles_mm
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
 STEP = 0.1  # between the places of a way
@@ -45,11 +45,8 @@ EDGE, OWN = 0.2, 0.8
 LONGEST = 80.0  # a longer stretch is no bay
 OF_LOOP = 0.8  # nor is one that is so much of its line
 MOST_PLACES = 1500  # of ink: enough to place a corner within 10 um
-# for each width of the rule's length: what it leaves of lines that it explains, at most (see `small_loops`),
-LIKE = 0.035
-GAIN = 0.001  # and by how much more the head's own way must leave
-FURTHER = 0.01  # the same, of a width more of a way that runs out and back on one line
-# and of what a way leaves that does not come beside itself, where the rule draws otherwise: less is a blot,
+FURTHER = 0.01  # as much more must be left for each width more of a way that runs out and back on one line
+# of what a way leaves that does not come beside itself, where the rule draws otherwise: less is a blot,
 # or what a rubber left
 MOST_LEFT = 0.3
 DOUBTFUL = 0.3  # of the limit above which a way is beside its ink: it may be wrong

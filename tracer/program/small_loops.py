@@ -39,19 +39,13 @@ from morfax.tracer.program.own_ink import MOST_SPECKS, OVER
 from morfax.tracer.program.selection import lines_of
 from morfax.tracer.program.small_rings import MAYBE_BROAD, paper_within_px, pen_mm
 from morfax.tracer.tangles.compass import Core, explained, filled_misfit
-from morfax.tracer.tangles.seen_ink import SeenInk
+from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 SMALL_WIDTHS = 16.0  # a longer loop has sides as long as a leg, ...
 # ... but one whose sides are no further apart than this, in the mean, has ends too narrow for the head; that
 # is looked for on loops up to this long; chosen
 NARROW_WIDTHS, LONG_WIDTHS = 3.0, 60.0
 ONCE = 1.5  # of the length of its ink: a way that is longer goes round twice
-# for each width of the loop's length: what the compass leaves of lines that it explains, at most. Scans leave
-# 0.013 of a circle of 0.5 mm at 150 dpi, and 0.027 of a slot of 0.35 mm at 200
-LIKE = 0.035
-# the same: the compass lays a loop if it leaves so much less than the head's own way. Noise of a scan is a
-# fifth of that; a corner that is cut short by 40 um leaves as much
-GAIN = 0.001
 # two lines whose ink runs together: times as broad as a line at the most, and how long at the least; so many
 # are tried
 BROADEST, SHORT_WIDTHS, MOST_BROAD = 2.7, 2.0, 100
@@ -257,9 +251,10 @@ def _is_drawn(ink: SeenInk, core: Core) -> bool:
     """Whether there is ink wherever a pen along a core's way would leave it, but for specks of paper: a line
     that goes round but for its last side is no loop.
     """
-    way = evenly(np.vstack(core.stretches()), STATION * ink.width_mm)
-    drawn = ink.drawn_along(np.vstack(core.stretches()), core.half_mm)
+    way = np.vstack(core.stretches())
+    drawn = ink.drawn_along(way, core.half_mm)
     paper = np.maximum(drawn - ink.darkness, 0.0) ** 2 * ink.area_mm2 / ink.width_mm**2
-    away_mm = np.hypot(*(way[:, None] - ink.places_mm[None]).transpose(2, 0, 1))
+    stations = evenly(way, STATION * ink.width_mm)
+    away_mm = np.hypot(*(stations[:, None] - ink.places_mm[None]).transpose(2, 0, 1))
     most = float(((away_mm < ABOUT_STATION * ink.width_mm) @ paper).max())
     return most < max(OVER, MOST_SPECKS * ink.area_mm2 / ink.width_mm**2)

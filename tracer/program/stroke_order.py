@@ -20,10 +20,8 @@ from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM
 
 SPAN = 2000  # strokes in a stretch that is turned at most; by trial: the time stays that of the ink
-FIRSTS, SOME = (
-    16,
-    4000,
-)  # strokes tried as the first: fewer, if there are many strokes; by trial
+# strokes tried as the first: fewer, if there are many strokes; by trial
+FIRSTS, SOME = 16, 4000
 PASSES = 60  # over all stretches; most orders need ten
 
 

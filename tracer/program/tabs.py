@@ -40,12 +40,10 @@ MOVED_SHARE = 0.25  # of its share of the line: neighbours stay half a share apa
 CLEAR_MM = 1.0  # from a tab to a corner, a halt, the beginning of the line
 APART_MM = 0.1  # between the places that are tried
 FELT_MM = 0.5  # to either side of a place: shows the heading there
-TIGHT_RAD = math.radians(
-    20
-)  # turned over twice that: a corner, or a bend of less than 3 mm radius
-STRAIGHT_RAD = np.radians(
-    [20, 45, 90]
-)  # turned over a tab: the first of these that it stays in counts
+# turned over twice that: a corner, or a bend of less than 3 mm radius
+TIGHT_RAD = math.radians(20)
+# turned over a tab: the first of these that it stays in counts
+STRAIGHT_RAD = np.radians([20, 45, 90])
 BESIDE_MM = 0.2  # beside the cut: there must be something that the tab can hold
 CUT_AWAY_MM = 0.05  # nearer to the path than the cutter's radius by more: cut away
 

@@ -21,9 +21,8 @@ from morfax.tracer.sensing.photocell import STEP_PX, darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
 from morfax.tracer.sensing.view import View
 
-SPOKE = np.linspace(
-    0.2, 1.0, 17
-)  # of the way from a place to a stroke: where it has to be inked
+# of the way from a place to a stroke: where it has to be inked
+SPOKE = np.linspace(0.2, 1.0, 17)
 BESIDE = np.array([0.0, -0.25, 0.25])  # widths: a way in the middle and one on each side of it
 PAPER = 0.6  # of the level: lighter is paper for certain
 SPECK_PX = 4.0  # a speck of two pixels of paper, seen through an aperture

@@ -24,10 +24,8 @@ LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
 LEG_PX = 12  # and at least so many pixels
 LEG_WIDTHS = 1.5  # and so many widths of a wide line
 FEWEST = 4  # stations that a line is felt along at the least
-SPECK_MM, SPECK_PX = (
-    0.16,
-    2.5,
-)  # along the line, that a speck spoils: two pixels through the aperture
+# along the line, that a speck spoils: two pixels through the aperture
+SPECK_MM, SPECK_PX = 0.16, 2.5
 
 
 @njit(cache=True)

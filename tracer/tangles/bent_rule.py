@@ -20,9 +20,8 @@ import numpy as np
 from morfax.motion.compiled import njit
 from morfax.tracer.tangles import pen
 
-ARC_RAD = math.radians(
-    6.0
-)  # between the places of an arc: they lie within 1 um of one of 0.7 mm
+# between the places of an arc: they lie within 1 um of one of 0.7 mm
+ARC_RAD = math.radians(6.0)
 MOST_OF_ARC = 2 + math.ceil(math.pi / ARC_RAD)
 STRAIGHT = 1e-3  # tangent of half a turn: a smaller one is not rounded
 # of a piece: an arc takes half of it at the most, and all but this of one that ends where it is sharp

@@ -55,9 +55,8 @@ LEG_MM = np.linspace(0, 1.2, 7)  # of each leg is drawn
 FARTHEST_MEETING_MM = 5.0  # legs that meet further ahead do not meet within a tangle
 
 SOFTNESSES_PX = np.geomspace(0.2, 4.0, 24)  # that the pen is tried with
-ACROSS = np.linspace(
-    -0.5, 0.5, 25
-)  # of the width and some paper, where a leg's darkness is seen
+# of the width and some paper, where a leg's darkness is seen
+ACROSS = np.linspace(-0.5, 0.5, 25)
 PAPER_MM = 0.6  # of paper, half on either side
 STATIONS_EVERY = 3  # of a leg's stations one is looked at
 

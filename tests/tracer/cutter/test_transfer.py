@@ -33,10 +33,8 @@ FOLLOWED_MM = 25 * UM  # as the head follows a circle or a corner on a scan
 STANDS_WITHIN_MM = 50 * UM  # the issue's, of a stop
 SAMPLE_MM = FEED_MM_S / 6000  # from one position to the next
 
-LEFT_TO = (
-    14.0,
-    8.0,
-)  # where the guide line leaves the square's upper side, for a drill point inside
+# where the guide line leaves the square's upper side, for a drill point inside
+LEFT_TO = 14.0, 8.0
 WAY = run_through(
     (0, 4),
     (10, 4),

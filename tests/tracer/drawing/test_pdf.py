@@ -238,9 +238,8 @@ def test_pages(tmp_path: Path) -> None:
         opened(tmp_path / "a.pdf", page=3)
 
 
-LOCKED = (
-    "<</Filter/Standard/V 1/R 2/P -4/O<" + "28" * 32 + ">/U<" + "41" * 32 + ">>>"
-)  # a password that nobody knows
+# a password that nobody knows
+LOCKED = "<</Filter/Standard/V 1/R 2/P -4/O<" + "28" * 32 + ">/U<" + "41" * 32 + ">>>"
 
 
 def test_a_locked_page_is_refused(tmp_path: Path) -> None:

@@ -25,9 +25,8 @@ from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import DPI, SOFTNESS_MM, UM, Points, arc, polyline
 
 CIRCLE = arc((16, 16), 10)
-STEPPED = polyline(
-    (8, 8), (28, 8), (28, 18), (18, 18), (18, 26), (8, 26), (8, 8)
-)  # five corners outward, one inward
+# five corners outward, one inward
+STEPPED = polyline((8, 8), (28, 8), (28, 18), (18, 18), (18, 26), (8, 26), (8, 8))
 
 
 def star(turned_deg: float = 7) -> Points:

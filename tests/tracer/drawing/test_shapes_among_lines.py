@@ -21,10 +21,8 @@ from morfax.tracer.program.trace_ink import trace_ink
 DPI, FINE = 200.0, 4
 WIDTH_MM, WIDE_MM, HIGH_MM = 0.6, 110.0, 90.0
 BLACK, WHITE, NOISE = 30.0, 240.0, 4.0
-FACE = (
-    (55.0, 30.0),
-    25.0,
-)  # centre and radius of a ring whose upper part is covered by the shape, mm
+# centre and radius of a ring whose upper part is covered by the shape, mm
+FACE = (55.0, 30.0), 25.0
 
 
 def read(shape_mm: NDArray[np.float64], *, lines: bool, light: float = 0.0) -> Drawing:

@@ -21,9 +21,8 @@ from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.sensing.leg import Leg
 from tests.tracer.inked import UM, WIDTH_MM, arc, corner, dot, inked, polyline
 
-ON_IT_MM = (
-    8 * UM
-)  # on clean ink, as a parabola through what was felt has it; 5 um on a line along the pixels
+# on clean ink, as a parabola through what was felt has it; 5 um on a line along the pixels
+ON_IT_MM = 8 * UM
 
 
 # lines

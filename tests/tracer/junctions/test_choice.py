@@ -17,9 +17,8 @@ from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
-VERTEX_MM = (
-    10 * UM
-)  # to which straight legs, 5 um aside on clean ink, meet at 45 degrees and more
+# to which straight legs, 5 um aside on clean ink, meet at 45 degrees and more
+VERTEX_MM = 10 * UM
 X_MM = 14.0
 WAY_IN = polyline((4, 10), (X_MM, 10))
 Seen = tuple[View, Leg, Trail]

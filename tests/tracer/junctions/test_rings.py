@@ -90,9 +90,8 @@ def legs_seen(drawing: Drawing, centre: tuple[float, float], trail: Array) -> li
     return sorted((math.degrees(leg.heading_rad) + 1) % 360 - 1 for leg in legs)
 
 
-WEST = np.column_stack(
-    [np.arange(4, 9.5, 0.05), np.full(110, 10.0)]
-)  # the way in, along X to the middle
+# the way in, along X to the middle
+WEST = np.column_stack([np.arange(4, 9.5, 0.05), np.full(110, 10.0)])
 CENTRE = (10.0, 10.0)
 
 

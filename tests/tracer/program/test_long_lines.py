@@ -32,9 +32,8 @@ from tests.tracer.inked import arc, dot, inked, polyline
 POSITIONS = np.array([[0.0, 0.0], [1.0, 2.0]])
 CIRCLE = inked(arc((14, 14), 8), seed=1)
 OPEN = inked(polyline((4, 4), (24, 4), (24, 12)), seed=1)  # ends at both ends
-STEM = inked(
-    arc((20, 14), 7), polyline((4, 14), (13, 14)), seed=1
-)  # a line that runs into a loop
+# a line that runs into a loop
+STEM = inked(arc((20, 14), 7), polyline((4, 14), (13, 14)), seed=1)
 DASHED = inked(polyline((4, 4), (16, 4)), polyline((18, 4), (30, 4)), seed=1)
 MARKED = inked(arc((14, 14), 8), dot((14, 22), 0.8), polyline((20, 14), (24, 14)), seed=1)
 DRAWINGS = {"circle": CIRCLE, "open": OPEN, "stem": STEM, "dashed": DASHED, "marked": MARKED}

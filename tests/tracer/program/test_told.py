@@ -13,9 +13,8 @@ from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, dot, inked, polyline, tick
 
 BOX = polyline((6, 6), (40, 6), (40, 26), (6, 26), (6, 6))
-TAIL = inked(
-    BOX, polyline((40, 6), (70, 6)), seed=5
-)  # the lower line goes on beyond the corner
+# the lower line goes on beyond the corner
+TAIL = inked(BOX, polyline((40, 6), (70, 6)), seed=5)
 START = (20.0, 6.0)
 
 

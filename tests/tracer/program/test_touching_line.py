@@ -21,9 +21,8 @@ from morfax.tracer.program.unexplained import unexplained
 from tests.tracer.inked import WIDTH_MM, Points, inked
 
 SIZE_MM, EDGE_MM, ROUGH = 22.0, 1.6, 0.5
-AWAY_MM = (
-    1.5 * WIDTH_MM
-)  # in a tuft of spikes the ink of one line is that of the next; further off is told
+# in a tuft of spikes the ink of one line is that of the next; further off is told
+AWAY_MM = 1.5 * WIDTH_MM
 
 
 def ragged(seed: int) -> Points:
