@@ -110,14 +110,14 @@ class Run:
 def smooth(run: Run) -> Run:
     """A run whose places lie on the parabolas through the stations about each, with headings and bends."""
     half_mm = FELT_LEGS * run.view.leg_mm
-    places, headings, bends = _parabolas(run.places_mm, half_mm, run.view.step_mm)
+    places, headings, bends = parabolas(run.places_mm, half_mm, run.view.step_mm)
     # a speck within a run has no width of its own
     widths = np.where(np.isfinite(run.widths_mm), run.widths_mm, run.view.width_mm)
     return Run(places, headings, bends, widths, run.view, run.legs_mm, run.is_strand)
 
 
 @njit(cache=True)
-def _parabolas(places, half_mm, step_mm):  # type: ignore[no-untyped-def]
+def parabolas(places, half_mm, step_mm):  # type: ignore[no-untyped-def]
     """Places, headings and bends of the parabolas through the places about each, weighted to the middle.
 
     They solve for y = p0 + p1·x + p2·x² as the head's kernel does; few places make a straight line.
