@@ -175,10 +175,7 @@ def _recirculate(end, centre, settings, weights, true_norm, state, pulses):  # t
     weight = weights.copy()
     for row in range(len(pulses)):
         # 1. the errors, and whether their gate opens
-        largest = 0
-        for axis in range(3):
-            error[axis] = end[axis] - state[axis]
-            largest = max(largest, abs(error[axis]))
+        largest = _largest_error(end, state, error)
         if largest == 0:
             return row
         state[_RECIRCULATION] += 1
@@ -211,6 +208,16 @@ def _recirculate(end, centre, settings, weights, true_norm, state, pulses):  # t
             state[_COUNTER] -= weight[axis]
             pulses[row, axis] = pulse
     return len(pulses)
+
+
+@njit(cache=True, inline="always")
+def _largest_error(end, state, error):  # type: ignore[no-untyped-def]
+    """Write the error of each axis; the largest of their sizes."""
+    largest = 0
+    for axis in range(3):
+        error[axis] = end[axis] - state[axis]
+        largest = max(largest, abs(error[axis]))
+    return largest
 
 
 @njit(cache=True, inline="always")
