@@ -106,7 +106,7 @@ def _wav(format_chunk: bytes, frames: bytes, *between: tuple[bytes, bytes]) -> i
 
 @pytest.mark.parametrize(("kind", "bits"), [(1, 24), (1, 32), (3, 32)])
 def test_the_extensible_format_names_its_kind_in_its_second_part(kind: int, bits: int) -> None:
-    """Recording programs write it for three tracks and more, and for 24 bit: RFC 2361's GUID begins with it."""
+    """Recording programs write it for three tracks and more, and for 24 bit; a GUID begins with the kind."""
     frame = 3 * bits // 8
     plain = struct.pack("<HHIIHH", kind, 3, 48_000, 48_000 * frame, frame, bits)
     guid = struct.pack("<H", kind) + b"\0\0\0\0\x10\0\x80\0\0\xaa\0\x38\x9b\x71"

@@ -60,7 +60,7 @@ def test_neither_a_line_too_far_nor_one_far_aside_is_caught() -> None:
 
 
 def test_the_line_is_looked_for_no_further_than_is_said() -> None:
-    """Behind a blot as long as the heading is held, the leg is felt to its end, and nothing beyond matters."""
+    """Behind a blot as long as the heading is held, the leg is felt to its end; nothing beyond matters."""
     blot = [polyline((12, y), (14.0, y)) for y in np.arange(Y_MM - 1.5, Y_MM + 1.6, 0.25)]
     drawing = inked(polyline((4, Y_MM), (24, Y_MM)), *blot)
     view, incoming = _leg(drawing, 11.3)

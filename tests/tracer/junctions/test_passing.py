@@ -42,7 +42,7 @@ def _comes_in() -> tuple[View, Leg]:
 def test_two_legs_pass_if_they_are_on_one_line(
     aside_widths: float, bent_deg: float, passes: bool
 ) -> None:
-    """A pen that was put down anew goes on up to a third of its width beside the line, and 14 degrees off it."""
+    """A pen put down anew goes on up to a third of its width beside the line, and 14 degrees off it."""
     view, incoming = _comes_in()
     aside_mm = aside_widths * WIDTH_MM * left_of(direction(PASSES))
     middle = np.array([16.0, 10.0])
