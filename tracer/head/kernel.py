@@ -55,7 +55,7 @@ BEND_FOLLOWS = 0.1  # share by which the usual bend follows the bend, sweep by s
 GUARD_FOLLOWS = 0.5  # share by which a guard cell follows what it sees, sweep by sweep
 SINGULAR = 1e-9  # of the moments' product: too few places on the drum for a parabola
 HOME_ASIDE = 0.3  # of the lead: home is on the line
-HOME_COSINE = 0.8  # of the angle between the heading and home's
+HOME_COSINE = 0.8  # of the angle between the heading and home's: 37 degrees; by trial
 SHORTEST = 0.2  # of the distance to the point: the axis may have come so near to it
 
 
