@@ -145,7 +145,7 @@ def _read(playback: TapePlayback) -> Iterator[tuple[int, Array]]:
     for read in playback.reader.read(lambda: place_mm.tolist()):
         fault = read.first_fault(fmt.motion_rate_hz, place_mm.tolist())
         if fault is not None:
-            raise fault[1]
+            raise fault.fault
         phases, zero_cycles = read.rows, read.bearings.zero_cycles
         places_mm = playback.start_mm + (phases.cycles - zero_cycles) * fmt.mm_per_cycle
         if len(places_mm):

@@ -203,7 +203,7 @@ class TapePlayback(Supervised):
             phases = read.rows
             self.notes = self.reader.notes
             found = read.first_fault(fmt.motion_rate_hz, self.end_mm.tolist())
-            sound = len(phases) if found is None else min(found[0], len(phases))
+            sound = len(phases) if found is None else min(found.row, len(phases))
             zero_cycles = self._zero_mm * fmt.cycles_per_mm - read.bearings.zero_cycles
             monitor.rows_seen = phases.first_row
             places_mm, demands_mm = drives.run(phases.cycles[:sound], zero_cycles, rest_mm)
@@ -217,7 +217,7 @@ class TapePlayback(Supervised):
             if rows < sound:
                 raise self._out_of_range(drives, phases.first_row + rows)
             if found is not None:
-                raise found[1]
+                raise found.fault
         self._check_end()
 
     def _read(self) -> Iterator[Read]:
