@@ -27,6 +27,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from morfax.motion.faults import ProgramFault
+from morfax.motion.pathtable import LONGEST_S
 from morfax.motion.units import MM_PER_INCH
 from morfax.player.gcode.arc_words import OURS, ArcWords, Place, WordError
 from morfax.player.gcode.gcode_text import COMMENT, WORD
@@ -41,7 +42,7 @@ from morfax.player.gcode.moves import (
     Program,
 )
 
-LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
+LONGEST_DWELL_S = LONGEST_S  # more is a mistake of the unit
 
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")

@@ -13,7 +13,8 @@ from PIL import Image
 from morfax.motion.contour import distance
 from morfax.motion.pathfile import read_path
 from tests.console.conftest import SAMPLES, Morfax
-from tests.tracer.drawing.test_shapes import CIRCLE, STEPPED, filled
+from tests.tracer.drawing.filled import CIRCLE, filled
+from tests.tracer.drawing.test_shapes import STEPPED
 from tests.tracer.inked import UM, arc, inked, polyline
 
 

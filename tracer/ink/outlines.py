@@ -22,13 +22,11 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.numbering import Ink, longest_first
 from morfax.tracer.ink.areas import Edge, ways_round
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
-from morfax.tracer.sensing.leg import turn
+from morfax.tracer.sensing.leg import FACING, turn
 
 # of the way round the net's outside: two lines that overlap each make half of it or more, and a closed chain
 # that is shorter is a detail of the drawing
 MOST_OF_IT = 0.5
-# legs of a line that goes on over a junction turn by no more; by trial
-STRAIGHT_ON = math.radians(35)
 
 
 class Outline(NamedTuple):
@@ -86,7 +84,7 @@ def _is_straight_on(chain: Chain, junctions: Junctions) -> bool:
         if len(there.sides) == 2:
             continue
         turned = turn(there.leg(far).heading_rad, there.leg(near).heading_rad + math.pi)
-        if abs(turned) > STRAIGHT_ON:
+        if abs(turned) > FACING:
             return False
     return True
 

@@ -40,7 +40,7 @@ from morfax.tracer.program.one_of_each import (
     with_least_numbers,
 )
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.selection import Contour, Which
+from morfax.tracer.program.selection import COVERED, Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.small_lines import small_lines
 from morfax.tracer.program.small_rings import (
@@ -50,8 +50,6 @@ from morfax.tracer.program.small_rings import (
     unclear_patches,
 )
 from morfax.tracer.program.trace import followed
-
-SAME = 0.8  # of a line's way along another: they are one line; by trial
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +141,7 @@ def trace_places(
         line = followed(setup, start_mm, number)
         for other in lines:
             near = nearest_mm(line.places_mm, other.places_mm) < line.width_mm
-            if near.mean() > SAME:
+            if near.mean() > COVERED:
                 raise _one_line(starts_mm[other.number - 1], start_mm)
         lines.append(line)
         if progress is not None and not alone:

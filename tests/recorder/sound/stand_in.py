@@ -148,3 +148,19 @@ class _Stream:
     def close(self) -> None:
         """Wait for the thread."""
         self._thread.join(timeout=1)
+
+
+class Still:
+    """A device that calls back after so long, by the waits counted; none of it takes time."""
+
+    def __init__(self, still_s: float) -> None:
+        self.left_s = still_s
+
+    def wait(self, seconds: float) -> bool:
+        """One wait is over, without a call."""
+        self.left_s -= seconds
+        return False
+
+    def is_set(self) -> bool:
+        """It goes on."""
+        return False

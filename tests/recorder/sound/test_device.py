@@ -21,7 +21,7 @@ from morfax.recorder.sound.programme import between_silences
 from morfax.recorder.tape.recording import record_live
 from morfax.recorder.tape.tape import TapeFormat
 from tests.player.worn import program
-from tests.recorder.sound.stand_in import Cable
+from tests.recorder.sound.stand_in import Cable, Still
 
 CHECKED = TapeFormat(checked=True)
 BY_HAND = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
@@ -170,6 +170,20 @@ def test_without_sounddevice_a_line_says_what_to_install(
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(DeviceFault, match=r'pip install "morfax\[sound\]"'):
         devices.devices()
+
+
+@pytest.mark.parametrize(("still_s", "has_stopped"), [(4.0, False), (6.0, True)])
+def test_a_device_that_does_not_call_for_5_s_has_stopped(
+    monkeypatch: pytest.MonkeyPatch, still_s: float, has_stopped: bool
+) -> None:
+    monkeypatch.setattr(devices, "sounddevice", lambda: Cable())
+    out, still = sink(), Still(still_s)
+    out._done = still  # type: ignore[assignment]
+    if has_stopped:
+        with pytest.raises(DeviceFault, match="stopped"):
+            out._wait(lambda: still.left_s <= 0)
+    else:
+        out._wait(lambda: still.left_s <= 0)
 
 
 def carriers(seconds: float) -> np.ndarray:
