@@ -49,7 +49,7 @@ PLACES_PX = (
     1.0  # between the places that stand for a way: near its edge they are 0.04 px off it
 )
 TILE_PX = 128  # of what is judged in one
-QUICK_PX = 384  # of what is looked through first
+QUICK_PX = 256  # of what is looked through first
 
 
 class Beside(NamedTuple):
