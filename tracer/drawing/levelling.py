@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
 from morfax.motion.median import ROBUST, median, percentile
-from morfax.tracer.drawing.blocks import ABOUT, runs_behind_spot, runs_in
-from morfax.tracer.drawing.components import Patches
+from morfax.tracer.drawing.blocks import ABOUT, MUCH_PX, runs_behind_spot, runs_in
+from morfax.tracer.drawing.components import FEW_PX, Patches, strips
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
     DARKER,
@@ -25,6 +25,7 @@ from morfax.tracer.drawing.contrast import (
     Contrast,
     strokes_of,
 )
+from morfax.tracer.drawing.memory import give_back
 from morfax.tracer.drawing.paper_noise import every_px, paper_noise
 from morfax.tracer.drawing.scan import Grey
 
@@ -55,6 +56,8 @@ def levelled(
     shapes = contrast.paper.shapes(ink)
     if everywhere is None:
         return contrast.darkness(ink), shapes, noise_of_paper
+    if grey.size > MUCH_PX:
+        give_back()
     return contrast.in_parts_of(ink, everywhere), shapes, noise_of_paper
 
 
@@ -76,24 +79,22 @@ def _in_even_light(contrast: Contrast, pitch_mm: float) -> Contrast:
 
 def _lit(contrast: Contrast, light: Darkness, white: float, pitch_mm: float) -> Contrast:
     """The same of the picture divided by the light on it, which is given on the reduced picture."""
-    by, shape = contrast.blocks.by, contrast.grey.shape
-    grey = contrast.grey.astype(np.float32)
-    large = _enlarged(light, by, shape, cv2.INTER_LINEAR)
+    by, grey = contrast.blocks.by, contrast.grey
+    large = cv2.resize(light, None, fx=by, fy=by, interpolation=cv2.INTER_LINEAR)
     # beside a sharp step a pixel's own level tells the light on it: a line would be left along the step
     low, high = (np.asarray(f(light, ABOUT), np.float32) for f in (cv2.erode, cv2.dilate))
-    steps = np.asarray(high - low > STEP, np.float32)
-    at = _enlarged(steps, by, shape, cv2.INTER_NEAREST) > 0
-    least, most = (_enlarged(each, by, shape, cv2.INTER_NEAREST)[at] for each in (low, high))
-    large[at] = np.clip(grey[at] / white, least, most)
-    lit = np.clip(np.rint(cv2.divide(grey, large)), 0, 255)
-    return Contrast.of(np.asarray(lit, np.uint8), pitch_mm)
-
-
-def _enlarged(reduced: Darkness, by: int, shape: tuple[int, ...], way: int) -> Darkness:
-    """A picture that was reduced by a whole number, in its own size."""
-    rows, columns = shape
-    large = cv2.resize(reduced, None, fx=by, fy=by, interpolation=way)
-    return np.ascontiguousarray(large[:rows, :columns], np.float32)
+    steps = high - low > STEP
+    lit = np.empty(grey.shape, np.uint8)
+    # strip by strip: of a sheet as floats only the light is held
+    for top, bottom, _ in strips(grey.shape, pixels=FEW_PX):
+        seen = grey[top:bottom].astype(np.float32)
+        light_there = np.ascontiguousarray(large[top:bottom, : grey.shape[1]], np.float32)
+        block = np.arange(top, bottom) // by
+        row, column = np.nonzero(steps[block].repeat(by, axis=1)[:, : grey.shape[1]])
+        at = block[row], column // by
+        light_there[row, column] = np.clip(seen[row, column] / white, low[at], high[at])
+        lit[top:bottom] = np.clip(np.rint(cv2.divide(seen, light_there)), 0, 255)
+    return Contrast.of(lit, pitch_mm)
 
 
 def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness | None]:

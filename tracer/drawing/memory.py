@@ -14,6 +14,7 @@ fault then comes from the system.
 
 from __future__ import annotations
 
+import ctypes
 import os
 from pathlib import Path
 
@@ -26,6 +27,16 @@ PER_PIXEL = 9.0
 PER_INKED_PIXEL = 5.0
 FIXED_BYTES = 0.3 * GB  # strips in work, libraries
 SMALL_PX = 16e6  # a sheet below this is tried in any case
+
+
+def give_back() -> None:
+    """Have the C library give memory that is free back to the system, where it can (glibc).
+
+    It keeps what sheets as floats were in on the way, which most of a trace does not need again.
+    """
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if os.name == "posix" else None
+    if trim is not None:
+        trim(0)
 
 
 def make_sure(

@@ -38,12 +38,13 @@ Grey = NDArray[np.uint8] | NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """The level of the paper on a picture reduced by a whole number to a pitch.
+    """The level of the paper on a picture reduced by a whole number to a pitch, and before it was smoothed.
 
     And the columns of the picture itself, and whether the strokes are darker than the paper.
     """
 
     reduced: Levels
+    closed: Levels
     by_px: int
     columns: int
     is_light: bool
@@ -69,7 +70,7 @@ class Paper:
         is_light = float((relief * relief * relief).sum()) <= 0
         level = _closed(small, is_light, across)
         smooth = np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32)
-        return cls(smooth, by, columns, is_light, by * pitch_mm)
+        return cls(smooth, level, by, columns, is_light, by * pitch_mm)
 
     def rows(self, top: int, bottom: int) -> Levels:
         """The paper of some rows of the picture."""
@@ -97,8 +98,7 @@ class Paper:
 
     def lighting(self, small: Levels) -> Lighting | None:
         """How the sheet of the reduced picture is lit; None if evenly, and for light strokes on dark."""
-        across = _stroke_px(self.by_px, self.pitch_mm / self.by_px)
-        return Lighting.of(_closed(small, True, across), small) if self.is_light else None
+        return Lighting.of(self.closed, small) if self.is_light else None
 
     def light(self, lighting: Lighting, ink: float | None = None) -> Levels:
         """The light on the reduced picture, filled shapes as dark as ink of a contrast apart."""

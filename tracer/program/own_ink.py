@@ -34,6 +34,7 @@ from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.pen_on_ink import Pen, Room, Ways, over_at
+from morfax.tracer.program.surely_on_ink import may_be_over
 
 # Limits chosen by trial on 625 right ways of parts, holes, slots, notches and tongues, none of which comes
 # above them. Of 25 wrong ones 12 do, and of those that are more than 0.4 mm off all but two.
@@ -47,7 +48,8 @@ STATION_WIDTHS = 0.25  # between the places at which a way is judged
 PLACES_PX = (
     1.0  # between the places that stand for a way: near its edge they are 0.04 px off it
 )
-TILE_PX = 128
+TILE_PX = 128  # of what is judged in one
+QUICK_PX = 256  # of what is looked through first
 
 
 class Beside(NamedTuple):
@@ -61,19 +63,22 @@ class Beside(NamedTuple):
 
 
 class _Tiles(NamedTuple):
-    """In which tile each place of the ways is, the places in the order of these, and tiles in a row."""
+    """In which tile of a side each place of the ways is, the places in the order of these, and tiles in a
+    row.
+    """
 
+    side_px: int
     of_place: NDArray[np.int32]
     order: NDArray[np.int64]
     across: int
 
     @classmethod
-    def of(cls, ways: Ways) -> _Tiles:
+    def of(cls, ways: Ways, side_px: int) -> _Tiles:
         """The tiles of some ways; the last of each row is empty."""
-        column, row = np.maximum(ways.places_px.T / TILE_PX, 0).astype(np.int32)
+        column, row = np.maximum(ways.places_px.T / side_px, 0).astype(np.int32)
         across = 2 + int(column.max())
         of_place = row * across + column
-        return cls(of_place, np.argsort(of_place, kind="stable"), across)
+        return cls(side_px, of_place, np.argsort(of_place, kind="stable"), across)
 
     def about(self, row: int, column: int) -> NDArray[np.int64]:
         """The numbers of the places in a tile and in the eight about it."""
@@ -90,14 +95,15 @@ def beside(drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0) -> It
     if not drawing.noise.softness_px > 0 or drawing.grainy:
         return
     ways = _ways(drawing, lines)
-    judged = list(_judged(drawing, ways, of_limit)) if ways.closed.any() else []
+    doubtful = _doubtful(drawing, ways, of_limit) if ways.closed.any() else ways.closed
+    judged = list(_judged(drawing, ways, of_limit, doubtful)) if doubtful.any() else []
     if not judged:
         return
     line, station, over = (np.concatenate(column) for column in zip(*judged, strict=True))
-    for number in np.flatnonzero(ways.closed):
+    for number in np.flatnonzero(doubtful):
         own = np.flatnonzero(line == number)
         order = own[np.argsort(station[own], kind="stable")]
-        least = max(OVER, MOST_SPECKS / (2 * ways.half_px[number]) ** 2)
+        least = float(_least(ways.half_px[number]))
         if len(order):
             least = max(least, OF_MOST * percentile(over[order], MOST))
         for first, last in _stretches(over[order] > of_limit * least):
@@ -107,6 +113,11 @@ def beside(drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0) -> It
             place_mm = _mm(drawing, ways.places_px[station[worst]])
             long_mm = float(places * PLACES_PX * drawing.pitch_mm)
             yield Beside(place_mm, long_mm, bool(over[worst] > least))
+
+
+def _least(half_px: Array) -> Array:
+    """What is over by no more is noise or specks; of lines of half a width in pixels."""
+    return np.maximum(OVER, MOST_SPECKS / (2 * half_px) ** 2)
 
 
 def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
@@ -122,27 +133,60 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
     )
 
 
+def _doubtful(drawing: Drawing, ways: Ways, of_limit: float) -> NDArray[np.bool_]:
+    """Which closed lines are not surely on their ink: most are, and need not be judged."""
+    doubtful = np.zeros(len(ways.closed), bool)
+    limits = of_limit * _least(ways.half_px)
+    for part in _parts(drawing, ways, ways.closed, QUICK_PX, of_limit):
+        line = ways.line[part.stations]
+        is_over = np.empty(len(line), bool)
+        may_be_over(part.seen, part.ways, part.at, limits[line], part.pen, part.room, is_over)
+        doubtful[line[is_over]] = True
+    return doubtful
+
+
 def _judged(
-    drawing: Drawing, ways: Ways, of_limit: float
+    drawing: Drawing, ways: Ways, of_limit: float, which: NDArray[np.bool_]
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
-    """The stations of closed lines, tile by tile: line, number of the place, and what is over."""
-    tiles, pen = _Tiles.of(ways), _pen(drawing, ways, of_limit * OVER)
-    is_station = ways.closed[ways.line] & (np.arange(len(ways.line)) % _every(ways) == 0)
+    """The stations of some closed lines, tile by tile: line, number of the place, and what is over."""
+    for part in _parts(drawing, ways, which, TILE_PX, of_limit):
+        over = np.empty(len(part.at))
+        over_at(part.seen, part.ways, part.at, part.pen, part.room, over)
+        yield ways.line[part.stations], part.stations, over
+
+
+class _Part(NamedTuple):
+    """A tile of the sheet with what lies about it: the darkness, the ways as they are seen from its corner,
+    the numbers of the stations in the tile and their pixels, the pen, and room to work in.
+    """
+
+    seen: NDArray[np.float32]
+    ways: Ways
+    stations: NDArray[np.int64]
+    at: NDArray[np.int64]
+    pen: Pen
+    room: Room
+
+
+def _parts(
+    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], side_px: int, of_limit: float
+) -> Iterator[_Part]:
+    """The tiles of a side in which some of the closed lines have stations."""
+    tiles, pen = _Tiles.of(ways, side_px), _pen(drawing, ways, of_limit * OVER)
+    is_station = which[ways.line] & (np.arange(len(ways.line)) % _every(ways) == 0)
     margin = math.ceil(2 * (REACH_WIDTHS + 1) * pen.half_px) + 1
-    room = Room.of((TILE_PX + 2 * margin) ** 2)
+    room = Room.of((side_px + 2 * margin) ** 2, pen.reach_px)
     for number in sorted(set(tiles.of_place[is_station].tolist())):
         row, column = divmod(number, tiles.across)
         near = tiles.about(row, column)
         stations = near[is_station[near] & (tiles.of_place[near] == number)]
-        top, left = max(row * TILE_PX - margin, 0), max(column * TILE_PX - margin, 0)
-        down, along = (row + 1) * TILE_PX + margin, (column + 1) * TILE_PX + margin
+        top, left = max(row * side_px - margin, 0), max(column * side_px - margin, 0)
+        down, along = (row + 1) * side_px + margin, (column + 1) * side_px + margin
         seen = np.ascontiguousarray(drawing.darkness[top:down, left:along])
         corner = np.array([left, top], np.float32)
         at = np.round(ways.places_px[stations] - corner).astype(int)
         at = np.clip(at, 0, np.array(seen.shape)[::-1] - 1)
-        over = np.empty(len(at))
-        over_at(seen, ways.seen_from(corner, near), at, pen, room, over)
-        yield ways.line[stations], stations, over
+        yield _Part(seen, ways.seen_from(corner, near), stations, at, pen, room)
 
 
 def _pen(drawing: Drawing, ways: Ways, over: float) -> Pen:

@@ -56,26 +56,29 @@ class Ways(NamedTuple):
 
 class Room(NamedTuple):
     """Room to work in, for as many pixels (n,) as the largest part of a sheet has: squares of distances,
-    lines, and two rows of values, of which the first is zero before and after.
+    numbers, rows and columns of pixels that have one (2, n), and two rows of values; the first, second and
+    fourth are as empty after each part as before it.
     """
 
     away2: NDArray[np.float32]
-    owner: NDArray[np.int32]
+    number: NDArray[np.int32]
+    numbered: NDArray[np.int32]
     spread: Array
     boxes: Array
 
     @classmethod
-    def of(cls, pixels: int) -> Room:
-        """Room for so many pixels: made once, as the system wipes what it gives out."""
-        away2, owner = np.empty(pixels, np.float32), np.empty(pixels, np.int32)
-        return cls(away2, owner, np.zeros(pixels), np.empty(pixels))
+    def of(cls, pixels: int, reach_px: float) -> Room:
+        """Room for so many pixels within a reach: made once, as the system wipes what it gives out."""
+        away2 = np.full(pixels, reach_px**2, np.float32)
+        number, numbered = np.zeros(pixels, np.int32), np.empty((2, pixels), np.int32)
+        return cls(away2, number, numbered, np.zeros(pixels), np.empty(pixels))
 
 
-class _Band(NamedTuple):
+class Band(NamedTuple):
     """Pixels nearest to closed ways: rows and columns, how far the way is, half its width, the darkness."""
 
-    row: NDArray[np.int64]
-    column: NDArray[np.int64]
+    row: NDArray[np.int32]
+    column: NDArray[np.int32]
     away_px: Array
     half_px: Array
     dark: Array
@@ -84,7 +87,8 @@ class _Band(NamedTuple):
 @njit(cache=True)
 def over_at(seen, ways, stations, pen, room, out):  # type: ignore[no-untyped-def]
     """Fill `out` (m,) with what is over in the worst box about each station, in widths of the pen squared."""
-    band = _band(seen, ways, pen, room)
+    band = band_of(seen, ways, pen, room)
+    clear(seen, band, room)
     shape, side = seen.shape, 2 * round(pen.half_px) + 1
     spread, boxes = (
         room.spread[: seen.size].reshape(shape),
@@ -96,16 +100,19 @@ def over_at(seen, ways, stations, pen, room, out):  # type: ignore[no-untyped-de
     for k in range(len(values)):
         wrong = ink_at(band.away_px[k], pen.half_px, pen.softness_px) - band.dark[k]
         values[k] = wrong * wrong - 2 * pen.noise
-    most = _in_boxes(band, values, side, spread, boxes)
+    most = in_boxes(band, values, side, spread, boxes)
     if most < pen.over * width2:
         for k in range(len(stations)):
-            out[k] = _most(boxes, stations[k], side) / width2
+            out[k] = most_about(boxes, stations[k], side) / width2
         return
     # 2. the best of some pens
     on_paper, on_ink = np.zeros(shape), np.zeros(shape)
     _best(band, pen, spread, on_paper, on_ink)
     for k in range(len(stations)):
-        paper, left = _most(on_paper, stations[k], side), _most(on_ink, stations[k], side)
+        paper, left = (
+            most_about(on_paper, stations[k], side),
+            most_about(on_ink, stations[k], side),
+        )
         out[k] = min(paper, left) / width2
 
 
@@ -122,8 +129,8 @@ def _best(band, pen, spread, on_paper, on_ink):  # type: ignore[no-untyped-def]
             wrong = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
             paper[k] = max(wrong, 0.0) ** 2 - pen.noise
             left[k] = max(-wrong, 0.0) ** 2 - pen.noise
-        _in_boxes(band, paper, side, spread, papers)
-        _in_boxes(band, left, side, spread, lefts)
+        in_boxes(band, paper, side, spread, papers)
+        in_boxes(band, left, side, spread, lefts)
         for i in range(len(spread)):
             for j in range(spread.shape[1]):
                 both = papers[i, j] + lefts[i, j]
@@ -132,38 +139,46 @@ def _best(band, pen, spread, on_paper, on_ink):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _band(seen, ways, pen, room):  # type: ignore[no-untyped-def]
-    """The pixels of a part of the sheet that are nearest to closed ways."""
-    rows, columns = seen.shape
+def band_of(seen, ways, pen, room):  # type: ignore[no-untyped-def]
+    """The pixels of a part of the sheet that are nearest to closed ways; their numbers, from 1, are left in
+    the room until it is cleared.
+    """
     away2 = room.away2[: seen.size].reshape(seen.shape)
-    owner = room.owner[: seen.size].reshape(seen.shape)
-    away2[:], owner[:] = pen.reach_px**2, -1
-    _nearest(ways.places_px, ways.line, pen.reach_px, away2, owner)
-    count = 0
-    for i in range(rows):
-        for j in range(columns):
-            count += owner[i, j] >= 0 and ways.closed[owner[i, j]]
-    row, column = np.empty(count, np.int64), np.empty(count, np.int64)
+    number = room.number[: seen.size].reshape(seen.shape)
+    count = _nearest(ways.places_px, ways.line, pen.reach_px, away2, number, room.numbered)
+    row, column = np.empty(count, np.int32), np.empty(count, np.int32)
     away, half, dark = np.empty(count), np.empty(count), np.empty(count)
     n = 0
-    for i in range(rows):
-        for j in range(columns):
-            line = owner[i, j]
-            if line >= 0 and ways.closed[line]:
-                row[n], column[n] = i, j
-                away[n], half[n] = math.sqrt(away2[i, j]), ways.half_px[line]
-                dark[n] = min(float(seen[i, j]), DARKEST)
-                n += 1
-    return _Band(row, column, away, half, dark)
+    for k in range(count):
+        i, j = room.numbered[0, k], room.numbered[1, k]
+        line = number[i, j] - 1
+        number[i, j] = 0
+        if ways.closed[line]:
+            row[n], column[n] = i, j
+            away[n], half[n] = math.sqrt(away2[i, j]), ways.half_px[line]
+            dark[n] = min(float(seen[i, j]), DARKEST)
+            n += 1
+            number[i, j] = n
+        away2[i, j] = pen.reach_px**2
+    return Band(row[:n], column[:n], away[:n], half[:n], dark[:n])
 
 
 @njit(cache=True)
-def _nearest(places, lines, reach_px, away2, owner):  # type: ignore[no-untyped-def]
+def clear(seen, band, room):  # type: ignore[no-untyped-def]
+    """Take the numbers of a band's pixels out of the room."""
+    number = room.number[: seen.size].reshape(seen.shape)
+    for k in range(len(band.row)):
+        number[band.row[k], band.column[k]] = 0
+
+
+@njit(cache=True)
+def _nearest(places, lines, reach_px, away2, number, numbered):  # type: ignore[no-untyped-def]
     """For each pixel the square of how far the nearest of some places (n, 2) is, if less than what is there,
-    and of which line it is; no place changes a pixel out of reach.
+    and the number, from 1, of which line it is; no place changes a pixel out of reach. Fill in which pixels
+    have got a number, and give how many.
     """
     rows, columns = away2.shape
-    across2 = np.empty(2 * math.ceil(reach_px) + 2, np.float32)
+    across2, count = np.empty(2 * math.ceil(reach_px) + 2, np.float32), 0
     for k in range(len(places)):
         x, y, line = places[k, 0], places[k, 1], lines[k]
         left = max(0, math.ceil(x - reach_px))
@@ -176,11 +191,15 @@ def _nearest(places, lines, reach_px, away2, owner):  # type: ignore[no-untyped-
                 square = across2[j] + down2
                 if square < away2[row, left + j]:
                     away2[row, left + j] = square
-                    owner[row, left + j] = line
+                    if number[row, left + j] == 0:
+                        numbered[0, count], numbered[1, count] = row, left + j
+                        count += 1
+                    number[row, left + j] = line + 1
+    return count
 
 
 @njit(cache=True)
-def _in_boxes(band, values, side, spread, sums):  # type: ignore[no-untyped-def]
+def in_boxes(band, values, side, spread, sums):  # type: ignore[no-untyped-def]
     """Fill in sums of the values of the band's pixels over a box about each pixel; give the largest sum.
 
     `spread` is room to work in: zeros before and after.
@@ -210,7 +229,7 @@ def _in_boxes(band, values, side, spread, sums):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _most(boxes, pixel, side):  # type: ignore[no-untyped-def]
+def most_about(boxes, pixel, side):  # type: ignore[no-untyped-def]
     """The most that is in the boxes about a pixel (column and row)."""
     half, most = side // 2, -np.inf
     for row in range(max(0, pixel[1] - half), min(len(boxes), pixel[1] + half + 1)):

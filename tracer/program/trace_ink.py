@@ -15,7 +15,9 @@ import numpy as np
 
 from morfax.motion.faults import LineFault
 from morfax.motion.long_array import filed
+from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.memory import give_back
 from morfax.tracer.drawing.shapes_among_lines import has_lines
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
@@ -65,15 +67,13 @@ def _of_strokes(
 ) -> Trace:
     """Follow every stretch of the ink that is left for strokes."""
     # 1. the lines and their junctions, and the head along each
-    letters = None
-    if left.lettering.any():
-        rows, columns = left.ink.shape
-        letters = sheet.patches.painted(left.lettering, 0, rows, 0, columns)
-    felt = FeltSheet.of(left.drawing, settings, left.ink, letters)
+    felt = FeltSheet.of(left.drawing, settings, left.ink, _letters(sheet, left))
+    give_back()
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt), settings, progress)
     strokes = _long_enough(_kept(_mended(loops, run)))
     felt = felt.without_cells()
+    give_back()
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
@@ -92,6 +92,14 @@ def _of_strokes(
     return Trace(
         in_order, Operator(), left_out_mm=ink.left_mm, ink=ink, unexplained=tuple(left_over)
     )
+
+
+def _letters(sheet: Sheet, left: InkLeft) -> Mask | None:
+    """The lettering of a sheet; None if there is none."""
+    if not left.lettering.any():
+        return None
+    rows, columns = left.ink.shape
+    return sheet.patches.painted(left.lettering, 0, rows, 0, columns)
 
 
 def _slots_left(setup: Setup, lines: Sequence[Line]) -> Iterator[Unexplained]:

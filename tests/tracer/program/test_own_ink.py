@@ -14,13 +14,13 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.own_ink import beside
 from morfax.tracer.program.pen_on_ink import (
+    Band,
     Pen,
     Room,
     Ways,
-    _Band,
-    _in_boxes,
-    _most,
     _nearest,
+    in_boxes,
+    most_about,
     over_at,
 )
 from morfax.tracer.program.program import Trace
@@ -106,12 +106,14 @@ def test_what_is_found_is_told_once_with_its_place() -> None:
 
 
 def test_the_nearest_of_some_places_within_reach() -> None:
-    away2, owner = np.full((3, 5), 1.6**2, np.float32), np.full((3, 5), -1)
-    places = np.array([(0.0, 1.0), (3.0, 1.5)], np.float32)
-    _nearest.py_func(places, np.array([7, 8]), 1.6, away2, owner)
-    assert owner[1].tolist() == [7, 7, 8, 8, 8]
+    away2, number = np.full((3, 5), 1.6**2, np.float32), np.zeros((3, 5), np.int32)
+    places, numbered = np.array([(0.0, 1.0), (3.0, 1.5)], np.float32), np.empty((2, 15), int)
+    count = _nearest.py_func(places, np.array([7, 8]), 1.6, away2, number, numbered)
+    assert number[1].tolist() == [8, 8, 9, 9, 9]
     assert away2[1].tolist() == [0, 1, 1.25, 0.25, 1.25]
-    assert owner[0, 4] == -1
+    assert number[0, 4] == 0 and count == np.count_nonzero(number)
+    # the nearest place of the second line takes a pixel of the first over, which is listed once
+    assert len(set(zip(*numbered[:, :count].tolist(), strict=True))) == count
 
 
 def test_sums_over_boxes_and_the_most_of_them_about_a_pixel() -> None:
@@ -119,8 +121,8 @@ def test_sums_over_boxes_and_the_most_of_them_about_a_pixel() -> None:
     spread, sums = np.zeros((4, 6)), np.empty((4, 6))
     values = {(0, 0): 1.0, (1, 1): 2.0, (3, 5): -4.0, (2, 5): 8.0}
     at = np.array(list(values))
-    band = _Band(at[:, 0], at[:, 1], np.empty(4), np.empty(4), np.empty(4))
-    most = _in_boxes.py_func(band, np.array(list(values.values())), 3, spread, sums)
+    band = Band(at[:, 0], at[:, 1], np.empty(4), np.empty(4), np.empty(4))
+    most = in_boxes.py_func(band, np.array(list(values.values())), 3, spread, sums)
     expected = [
         sum(v for (i, j), v in values.items() if abs(i - row) <= 1 and abs(j - column) <= 1)
         for row in range(4)
@@ -128,7 +130,11 @@ def test_sums_over_boxes_and_the_most_of_them_about_a_pixel() -> None:
     ]
     assert sums.ravel().tolist() == expected and not spread.any()
     assert most == 8.0
-    assert [_most.py_func(sums, place, 3) for place in ((0, 3), (2, 2), (5, 0))] == [2, 3, 8]
+    assert [most_about.py_func(sums, place, 3) for place in ((0, 3), (2, 2), (5, 0))] == [
+        2,
+        3,
+        8,
+    ]
 
 
 def test_a_pen_of_its_own_width_explains_its_line_and_a_bare_way_is_over() -> None:
@@ -139,7 +145,7 @@ def test_a_pen_of_its_own_width_explains_its_line_and_a_bare_way_is_over() -> No
     ways = Ways(places, np.zeros(40, np.int32), np.array([2.0]), np.array([True]))
     pen = Pen(2.0, 0.3, 5.0, 0.0, (0.8, 1.0), 0.05)
     over = np.empty(2)
-    stations, room = np.array([(8, 10), (33, 10)]), Room.of(seen.size)
+    stations, room = np.array([(8, 10), (33, 10)]), Room.of(seen.size, 5.0)
     over_at.py_func(seen.astype(np.float32), ways, stations, pen, room, over)
     assert over[0] < 0.05
     # beyond its end the pen draws all of the box, but leaves no ink: a gap
