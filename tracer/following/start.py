@@ -66,9 +66,12 @@ def _catch_mm(sheet: Sheet) -> float:
 
 
 def _stroke_at(sheet: Sheet, start_mm: tuple[float, float] | None) -> Stroke:
-    """The line nearest to a place, or the longest; raises LineFault if none is near."""
+    """The line nearest to a place, or the longest; raises LineFault if there is none, or none is near."""
     if start_mm is None:
-        return sheet.longest()
+        stroke = sheet.longest()
+        if sheet.are_solid[stroke.patch]:
+            raise _filled(sheet, stroke)
+        return stroke
     return sheet.nearest(start_mm, _catch_mm(sheet))
 
 

@@ -1,6 +1,7 @@
 """One line of each patch: the first line that is followed on each patch of ink that is asked for.
 
-Signals: contours in; a line of each out, and the contours on which the head can nowhere be put down.
+Signals: contours in; a line of each out, and the contours that are no lines: rims of filled shapes, and those
+on which the head can nowhere be put down.
 
 The head is put down at an open end of the patch, or at the plainest of its places. A patch along which a line
 was followed before is a piece of that line, which has gaps. A line that is lost is cut as far as it was
@@ -44,8 +45,9 @@ ENDLESS_ABOUT_MM = 1.5 * LARGEST_MM
 
 
 class OneOfEach(NamedTuple):
-    """One line of each patch; the patches on which the head can nowhere be put down; and of the patches whose
-    junctions showed all their strokes the others of these, by the patch's number.
+    """One line of each patch; the patches that are rims of filled shapes, or on which the head can nowhere be
+    put down; and of the patches whose junctions showed all their strokes the others of these, by the patch's
+    number.
     """
 
     lines: list[Line]
@@ -72,6 +74,9 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
         if _is_done(contour, [lines[k] for k in _near(contour, boxes_mm)], begins_mm):
             continue
         if which == "outer" and _is_inner(contour, lines):
+            continue
+        if isinstance(which, str) and setup.sheet.are_solid[contour.stroke.patch]:
+            unclear.append(contour)
             continue
         is_letter = contour.stroke.patch in letters
         found = _found(setup.after(come_mm, total_mm), loops, contour, is_letter)
