@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -436,3 +438,21 @@ def test_an_svg_without_height_or_place_is_refused(
     """Found by fuzzing: a division by zero, and a place that is no number."""
     with pytest.raises(DrawingFault, match=says):
         read_outline(svg(tmp_path / "a.svg", '<path d="M0 0L7 7"/>', head))
+
+
+def test_what_the_library_meets_in_a_file_does_not_stand_on_the_terminal(
+    tmp_path: Path,
+) -> None:
+    """Two lines of one handle: both are read, and nothing is said. (Fails without the NullHandler.)"""
+    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    for y in (0, 10):
+        document.modelspace().add_line((0, y), (20, y))
+    file = tmp_path / "twice.dxf"
+    document.saveas(file)
+    first, second = (f"  5\n{line.dxf.handle}\n" for line in document.modelspace())
+    file.write_text(file.read_text().replace(second, first))
+    code = f"from morfax.recorder.media import read_outline; read_outline({str(file)!r})"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stderr == ""
