@@ -16,9 +16,9 @@ layer of its INSERT.
 
 from __future__ import annotations
 
+import logging
 import math
 from collections import Counter
-import logging
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise

@@ -123,6 +123,20 @@ def test_a_filled_disc_in_a_frame_is_named_and_the_advice_works(
     assert lengths_mm == pytest.approx([math.pi * across_mm, 4 * 600 / 300 * 25.4], rel=0.01)
 
 
+def test_an_outline_that_hangs_together_with_a_filled_bar_is_lost_and_not_left_out(
+    morfax: Morfax, here: Path
+) -> None:
+    """(Ends with 0, and a note only, where `is_shape` does not look for lines inside.)"""
+    grey = np.full((945, 1181), 245, np.uint8)  # 100 x 80 mm
+    cv2.rectangle(grey, (120, 120), (1060, 825), 30, 6)
+    cv2.rectangle(grey, (120, 120), (1060, 260), 30, -1)
+    cv2.circle(grey, (400, 560), 118, 30, 6, cv2.LINE_AA)
+    Image.fromarray(grey).save("bar.png", dpi=(300, 300))
+    lost = morfax("trace", "bar.png", "-o", "bar.csv", "--lines", "contours", "--json")
+    assert lost.exit_code == 4 and "--lines all --edge" in lost.fault
+    assert [row["ending"] for row in lost.figures["lines"]].count("closed") == 1
+
+
 def test_a_dark_area_up_to_the_border_is_not_sent_to_edge(morfax: Morfax, here: Path) -> None:
     """A ramp of grey: --edge would refuse it, since it is cut by the border."""
     grey = np.tile(np.linspace(0, 255, 400).astype(np.uint8), (400, 1))
