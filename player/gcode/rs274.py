@@ -72,14 +72,18 @@ def parse_rs274(
             line=reader.number,
         )
     x_mm, y_mm, z_mm = (0.0 if place is None else place for place in reader.start)
-    return Program((x_mm, y_mm, z_mm), reader.moves_from((x_mm, y_mm, z_mm)))
+    notes = (reader.unended,) if reader.unended and not reader.ended else ()
+    return Program((x_mm, y_mm, z_mm), reader.moves_from((x_mm, y_mm, z_mm)), notes=notes)
 
 
 class GcodeReader:
     """The modal state of a program, and the moves so far."""
 
     is_whole = False  # whether the end of the file may be the end of the program
-    ending = "M2, M30 or % (for Marlin, with --machine marlin, anywhere)"
+    ending = (
+        "M2, M30 or % (for Grbl and Marlin, with --machine grbl-router or marlin, anywhere)"
+    )
+    unended = ""  # the note on a program without an end, where its control takes that, and ends as a rule
 
     def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:
         self.name, self.number, self.ended = name, 0, False

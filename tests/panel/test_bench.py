@@ -7,6 +7,7 @@ import json
 import shlex
 from typing import Any
 
+import numpy as np
 import pytest
 from starlette.testclient import TestClient
 
@@ -164,6 +165,27 @@ def test_undo_and_redo_go_all_the_way(page: TestClient, bench: Bench) -> None:
     for _ in range(40):
         does(page, bench, do="redo")
     assert bench.history.now.options == {"--cutter": "29mm"} and not bench.history.can_redo
+
+
+def test_undo_of_the_first_drawing_leaves_the_bench_bare(
+    page: TestClient, bench: Bench
+) -> None:
+    """(Fails without `_clear`: the sheet and its lines stay, beneath "lay a drawing on the bench"; and where
+    lines that were looked at meanwhile are taken in.)"""
+    seen = {"numbers": np.zeros((4, 4), np.uint8), "picture": np.zeros((4, 4), np.uint8)}
+    looked = {"kind": "lines", "result": {**seen, "figures": {"drawing": "cam.png"}}}
+    bench.look()
+    bench.heard({"say": "done", "number": bench._job, **looked})
+    assert page.get("/state").json()["state"]["picture"]
+    while bench.history.can_undo:
+        does(page, bench, do="undo")
+    bench.heard({"say": "done", "number": bench._job, **looked})
+    state = page.get("/state").json()["state"]
+    assert state["drawing"] is state["picture"] is state["sheet"] is None
+    sent = len(bench.workshop.sent)  # type: ignore[attr-defined]
+    does(page, bench, do="redo")
+    assert page.get("/state").json()["state"]["drawing"] == "cam.png"
+    assert len(bench.workshop.sent) > sent  # type: ignore[attr-defined]
 
 
 def test_of_two_pages_the_one_that_has_not_seen_the_others_change_is_refused(

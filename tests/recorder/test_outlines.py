@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import ezdxf
@@ -161,3 +163,21 @@ def test_a_block_that_holds_itself_is_refused(tmp_path: Path) -> None:
 
     with pytest.raises(DrawingFault, match="blocks in one another, more than 16 deep"):
         read_outline(dxf(tmp_path / "a.dxf", draw))
+
+
+def test_what_the_library_meets_in_a_file_does_not_stand_on_the_terminal(
+    tmp_path: Path,
+) -> None:
+    """Two lines of one handle: both are read, and nothing is said. (Fails without the NullHandler.)"""
+    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    for y in (0, 10):
+        document.modelspace().add_line((0, y), (20, y))
+    file = tmp_path / "twice.dxf"
+    document.saveas(file)
+    first, second = (f"  5\n{line.dxf.handle}\n" for line in document.modelspace())
+    file.write_text(file.read_text().replace(second, first))
+    code = f"from morfax.recorder.media import read_outline; read_outline({str(file)!r})"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stderr == ""

@@ -68,9 +68,12 @@ def _catch_mm(sheet: Sheet) -> float:
 
 
 def _stroke_at(sheet: Sheet, start_mm: tuple[float, float] | None) -> Stroke:
-    """The line nearest to a place, or the longest; raises LineFault if none is near."""
+    """The line nearest to a place, or the longest; raises LineFault if there is none, or none is near."""
     if start_mm is None:
-        return sheet.longest()
+        stroke = sheet.longest()
+        if sheet.are_solid[stroke.patch]:
+            raise a_dark_area(sheet, stroke)
+        return stroke
     return sheet.nearest(start_mm, _catch_mm(sheet))
 
 
@@ -190,7 +193,7 @@ def _nowhere_clean(
     """The fault of a line on which the head can nowhere be put down."""
     drawing, why, edge = sheet.drawing, "", ""
     if is_filled(drawing, sheet.patches, stroke.patch):
-        return _filled(sheet, stroke)
+        return a_dark_area(sheet, stroke)
     gap = narrow_strip_of(drawing, stroke.middles_mm, width_mm)
     if gap is not None:
         (x, y), dpi = gap.place_mm, finer_dpi(drawing.pitch_mm * drawing.finer, PARTED)
@@ -206,7 +209,7 @@ def _nowhere_clean(
     )
 
 
-def _filled(sheet: Sheet, stroke: Stroke) -> LineFault:
+def a_dark_area(sheet: Sheet, stroke: Stroke) -> LineFault:
     """The fault of a filled shape where a line is asked for; an edge needs paper all round."""
     x, y = stroke.middles_mm[0]
     top, bottom, left, right = sheet.patches.boxes[stroke.patch].tolist()

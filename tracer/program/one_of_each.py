@@ -1,6 +1,6 @@
 """One line of each patch: the first line that is followed on each patch of ink that is asked for.
 
-Signals: contours in; a line of each out, and the contours on which the head can nowhere be put down.
+Signals: contours in; a line of each out, and the contours that are filled shapes, or give the head no place.
 
 The head is put down at an open end of the patch, or at the plainest of its places. A patch along which a line
 was followed before is a piece of that line, which has gaps. A line that is lost is cut as far as it was
@@ -26,6 +26,7 @@ from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
+from morfax.tracer.following.start import a_dark_area
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
 from morfax.tracer.program.best_run import SHORT
@@ -44,8 +45,8 @@ ENDLESS_ABOUT_MM = 1.5 * LARGEST_MM
 
 
 class OneOfEach(NamedTuple):
-    """One line of each patch; the patches on which the head can nowhere be put down; and of the patches whose
-    junctions showed all their strokes the others of these, by the patch's number.
+    """One line of each patch; the patches that are filled shapes, or nowhere a place for the head; and of the
+    patches whose junctions showed all their strokes the others of these, by the patch's number.
     """
 
     lines: list[Line]
@@ -73,6 +74,9 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
             continue
         if which == "outer" and _is_inner(contour, lines):
             continue
+        if isinstance(which, str) and selection.is_shape(setup.sheet, contour, asked):
+            unclear.append(contour)
+            continue
         is_letter = contour.stroke.patch in letters
         found = _found(setup.after(come_mm, total_mm), loops, contour, is_letter)
         line = found.line
@@ -86,7 +90,7 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
         elif isinstance(which, str) or contour.number not in which:
             unclear.append(contour)
         else:
-            raise _a_letter(contour)
+            raise selection.a_letter(contour)
     lines = [line for line in lines if not _is_reference(line, begins_mm)]
     return OneOfEach(lines, unclear, others)
 
@@ -152,6 +156,8 @@ def _is_inner(contour: Contour, lines: list[Line]) -> bool:
 def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -> _Found:
     """A line of a patch as the head follows it, as the outline of a net, or as the small loop that it is."""
     stroke = contour.stroke
+    if setup.sheet.are_solid[stroke.patch]:
+        return _Found(_lost(contour, a_dark_area(setup.sheet, stroke)))
     loop = loops.slot(stroke.patch)
     if loop is None:
         found = _follow_in_window(setup, contour, is_letter)
@@ -231,8 +237,13 @@ def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
         return about if is_better else _Found(from_end)
     if from_end is not None or contour.reach_mm < selection.LETTER_MM:
         return _Found(from_end)
+    return _Found(_lost(contour, about))
+
+
+def _lost(contour: Contour, fault: LineFault) -> Line:
+    """The line of a patch that was never begun."""
     place_mm = np.array(contour.starts_mm()[:1])
-    return _Found(Line(place_mm, "lost", contour.stroke.width_mm, 0.0, about, contour.number))
+    return Line(place_mm, "lost", contour.stroke.width_mm, 0.0, fault, contour.number)
 
 
 def _can_stand(setup: Setup, contour: Contour) -> bool:
@@ -287,14 +298,3 @@ def _follow_from_plain_places(setup: Setup, contour: Contour) -> _Found | LineFa
         in_vain.append(start_mm)
         passed.append(line.own_mm)
     return _Found(followed(setup, in_vain[0], contour.number)) if in_vain else fault
-
-
-def _a_letter(contour: Contour) -> LineFault:
-    """The fault of a patch that was asked for by number, and on which the head can nowhere be put down."""
-    x, y = contour.stroke.middles_mm.mean(axis=0)
-    return LineFault(
-        f"line {contour.number}, about {x:.1f},{y:.1f} mm, is taken for a letter: the head can be put down"
-        " nowhere on it; give the other numbers, or --start X,Y at a plain stretch of it",
-        x_mm=float(x),
-        y_mm=float(y),
-    )

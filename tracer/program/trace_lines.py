@@ -46,6 +46,7 @@ from morfax.tracer.program.small_lines import small_lines
 from morfax.tracer.program.small_rings import (
     SmallPatch,
     filled_up,
+    none_begun,
     small_rings,
     unclear_patches,
 )
@@ -86,7 +87,7 @@ def trace_lines(
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     found = found_lines(setup, which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
-    _refuse_none_begun(lines)
+    _refuse_none_begun(lines, found.unclear)
     lines, left = explained(setup, lines)
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
@@ -244,15 +245,12 @@ def _of_numbers(lines: list[Line], numbers: tuple[int, ...]) -> list[Line]:
     return [line for line in lines if line.number in numbers]
 
 
-def _refuse_none_begun(lines: list[Line]) -> None:
+def _refuse_none_begun(lines: list[Line], unclear: Sequence[SmallPatch] = ()) -> None:
     """Raise LineFault for a sheet on which no line could be begun."""
     if any(len(line.xy_mm) > 1 for line in lines):
         return
     fault = lines[0].fault if lines else None
-    raise fault or LineFault(
-        "no line can be begun: the ink on the sheet is too short, or is letters; give --start X,Y at a plain"
-        " stretch, or, if dots are to be drilled, the --line-width of their pen"
-    )
+    raise fault or none_begun(unclear)
 
 
 def _one_line(first_mm: tuple[float, float], second_mm: tuple[float, float]) -> LineFault:

@@ -219,6 +219,17 @@ def test_a_comment_cannot_end_itself_nor_hide_a_line() -> None:
     assert len(machine("grbl-pen").comment("x" * 500)) <= 79
 
 
+def test_a_comment_writes_letters_of_other_languages_as_people_write_them_in_ascii() -> None:
+    """(Fails without `WRITTEN`, or without the accents taken off: "B?gel", "pi?ce".)"""
+    named = "Bügel Größe 2–3 µm, pièce łańcuch, Ⅳ, 部.png"
+    assert (
+        machine("linuxcnc").comment(named)
+        == "(Buegel Groesse 2-3 um, piece lancuch, IV, ?.png)"
+    )
+    decomposed = "Bu\u0308gel"  # as file names of macOS are
+    assert machine("linuxcnc").comment(decomposed) == "(Buegel)"
+
+
 @pytest.mark.skipif(
     shutil.which("rs274") is None, reason="rs274 of linuxcnc-uspace is not installed"
 )
