@@ -60,6 +60,7 @@ BROADEST, SHORT_WIDTHS, MOST_BROAD = 2.7, 2.0, 100
 NO_BROADER = 0.9  # times as broad as a line: in the mean a seam may make up for it
 # for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
 SEAM = 0.002
+GOES_BACK = 1.2  # widths: a closed way that is so much longer runs a piece of its line twice
 RIM_PLACES = 40  # for each width of the way round, of a loop of any shape
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
 
@@ -205,10 +206,14 @@ class SmallLoops:
             return None
         widths = length_mm(outline) / self.pen_mm
         ink = ink_of(self.sheet, patch, self.pen_mm, round(RIM_PLACES * widths))
-        own = math.inf if way is None else ink.misfit_along(one_in(way, THINNED))
         core = core_within(self._pen_view, outline, self._felt_pen_mm)
         if core is None or not is_single(core) or not leaves_none(ink, core):
             return None
+        own = math.inf
+        if way is not None:
+            thinned = one_in(way, THINNED)
+            goes_back = length_mm(thinned) > core.length_mm + GOES_BACK * self.pen_mm
+            own = math.inf if goes_back else ink.misfit_along(thinned)
         return self._run_if_two_lines(ink, with_misfit(ink, core), own)
 
     def _run_if_two_lines(self, ink: SeenInk, core: Core | None, own: float) -> Loop | None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import nearest_mm, with_places
+from morfax.motion.polyline import length_mm, nearest_mm, with_places
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.settings import Settings
@@ -154,6 +154,20 @@ def test_a_narrow_loop_of_any_shape_is_cut_true_and_once(
         line = small_line(trace)
         assert off_mm(line, drawn) < (100 if drawn is HOOK else 50) * UM
         assert line.length_mm == pytest.approx(once_mm, rel=0.02)
+
+
+def test_a_way_that_runs_a_piece_of_a_narrow_loop_twice_gives_place_to_one_that_does_not() -> (
+    None
+):
+    """Its pen would leave the same ink; the way as it was drawn stays."""
+    drawn = around(arc((22, 8), 12.0, 50, 130), 1.0)
+    loops = SmallLoops(inked(PLATE, drawn, seed=1).sheet, Settings())
+    way = with_places(drawn, 2 * UM)
+    assert loops.of_way(way, 0.5) is None
+    back = way[3000:3400]
+    twice = loops.of_way(np.vstack([way[:3400], back[::-1], way[3000:]]), 0.5)
+    assert twice is not None
+    assert twice.length_mm == pytest.approx(length_mm(drawn), rel=0.02)
 
 
 @pytest.mark.parametrize("wide_mm", [0.8, 1.0, 1.2])
