@@ -17,6 +17,8 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+import numpy as np
+
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.neighbours import pairs_within
@@ -59,6 +61,11 @@ class FeltLine:
     width_mm: float
     length_mm: float
     stretch: int = -1
+
+    @property
+    def places_mm(self) -> Array:
+        """Places along its clean runs, (n, 2) mm."""
+        return np.vstack([run.places_mm for run in self.runs])
 
 
 class Inner(NamedTuple):

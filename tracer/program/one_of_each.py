@@ -30,7 +30,8 @@ from morfax.tracer.following.start import a_dark_area
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
 from morfax.tracer.program.best_run import SHORT
-from morfax.tracer.program.net_outline import ABOUT_WIDTHS, may_solve, outline_of
+from morfax.tracer.program.net_lines import net_of, or_outline
+from morfax.tracer.program.net_outline import ABOUT_WIDTHS, may_solve
 from morfax.tracer.program.open_ink import is_of_several, is_open, strokes_of
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
@@ -160,10 +161,16 @@ def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -
         return _Found(_lost(contour, a_dark_area(setup.sheet, stroke)))
     loop = loops.slot(stroke.patch)
     if loop is None:
+        net = net_of(setup, contour)
+        lines = net.lines() if net is not None and net.is_clear else []
+        if lines and lines[0].ending == "closed":
+            return _Found(loops.mended(lines[0]), [loops.mended(line) for line in lines[1:]])
         found = _follow_in_window(setup, contour, is_letter)
-        own = _or_outline(setup, contour, found.line)
+        own = or_outline(setup, contour, found.line)
         if own is not None:
             line = loops.mended(own)
+            if net is not None and not line.is_lead:
+                return _Found(line, net.besides(line))
             return _Found(line, found.others if line is own else None)
         loop = loops.of_patch(stroke.patch, stroke.width_mm)
     return _Found(None if loop is None else loop.line(contour.number))
@@ -197,18 +204,6 @@ def _keeps_to(contour: Contour, line: Line | None) -> bool:
     width_mm = contour.stroke.width_mm
     is_within = (line_low_mm > low_mm - width_mm) & (line_high_mm < high_mm + width_mm)
     return bool(is_within.all())
-
-
-def _or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:
-    """A line that was followed on a patch; where it is a smaller part of a net, the net's outline."""
-    if line is None or line.reference_mm is not None or line.is_lead:
-        return line
-    if line.ending == "closed" and line.length_mm > SHORT * line.ink_mm:
-        return line
-    outline = outline_of(setup, contour.stroke.patch)
-    if outline is None or (line.ending == "closed" and outline.length_mm < line.length_mm):
-        return line
-    return replace(outline, number=contour.number)
 
 
 def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
