@@ -31,9 +31,9 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.tracer.ink.chains import Chain, Junction, Junctions, Link, Side
-from morfax.tracer.ink.outlines import STRAIGHT_ON, Outline, as_outline, parts, straight_chains
+from morfax.tracer.ink.outlines import Outline, as_outline, parts, straight_chains
 from morfax.tracer.ink.partners import CORNERED, turnings
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import FACING, Leg, turn
 
 # Chosen by trial on synthetic nets: what leaving a partner costs, and what a way may cost in all
 # (smoothly also between two legs of which neither goes on elsewhere)
@@ -194,7 +194,7 @@ class _Search:
         go_on = self._goes_on(far) + self._goes_on(near)
         if near == there.partner(far):
             return _Onward(0.0 if go_on else CORNER, False, near)
-        if turned < STRAIGHT_ON:
+        if turned < FACING:
             return _Onward(SMOOTHLY if go_on else ALONE, False, near)
         return (_Onward(CORNER, False, near), _Onward(END, True, near), None)[go_on]
 
@@ -204,7 +204,7 @@ class _Search:
         partner = there.partner(side)
         if partner is None:
             return False
-        return _turned(there.leg(side), there.leg(partner).turned_round()) < STRAIGHT_ON
+        return _turned(there.leg(side), there.leg(partner).turned_round()) < FACING
 
 
 def _far(link: Link) -> Side:
