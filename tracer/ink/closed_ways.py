@@ -25,15 +25,17 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
-from itertools import combinations
 from typing import NamedTuple
 
-import numpy as np
-
 from morfax.tracer.ink.chains import Chain, Junction, Junctions, Link, Side
-from morfax.tracer.ink.outlines import Outline, as_outline, parts, straight_chains
-from morfax.tracer.ink.partners import CORNERED, turnings
-from morfax.tracer.sensing.leg import FACING, Leg, turn
+from morfax.tracer.ink.outlines import (
+    Outline,
+    as_outline,
+    parts,
+    straight_chains,
+    turned_by,
+)
+from morfax.tracer.sensing.leg import FACING
 
 # Chosen by trial on synthetic nets: what leaving a partner costs, and what a way may cost in all
 # (smoothly also between two legs of which neither goes on elsewhere)
@@ -77,12 +79,7 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
         return True
 
     # 1. straight on
-    straight = (
-        as_outline(chain, junctions)
-        for way in straight_chains(junctions)
-        for chain in _apart(way.chain, junctions)
-    )
-    yield from filter(is_new, straight)
+    yield from filter(is_new, straight_chains(junctions))
     # 2. leaving partners, the least first
     found = [search.way(n) for n in range(len(junctions.net.lines)) if n not in taken]
     by_cost = sorted(filter(None, found), key=lambda it: (it.cost, -it.way.length_mm))
@@ -98,29 +95,6 @@ def share_beside(chain: Chain, taken: set[int], junctions: Junctions) -> float:
     lengths = {link.line: junctions.net.lines[link.line].length_mm for link in chain.links}
     beside_mm = sum(mm for line, mm in lengths.items() if line not in taken)
     return beside_mm / max(sum(lengths.values()), 1e-9)
-
-
-def _apart(chain: Chain, junctions: Junctions) -> list[Chain]:
-    """A closed chain; where it comes by a junction twice and would go on smoothly either way, as where two
-    circles touch, the two that do not cross there.
-    """
-    links, sides_of = chain.links, [junctions.at(_far(link)) for link in chain.links]
-    for i, j in combinations(range(len(links)), 2):
-        there = sides_of[i]
-        if there is not sides_of[j] or len(there.sides) == 2:
-            continue
-        after = links[(j + 1) % len(links)]
-        crossed = (_far(links[i]), Side(*after)), (_far(links[j]), Side(*links[i + 1]))
-        if all(_are_in_line(there, *two) for two in crossed):
-            loops = links[i + 1 : j + 1], links[j + 1 :] + links[: i + 1]
-            return [part for loop in loops for part in _apart(Chain(loop, True), junctions)]
-    return [chain]
-
-
-def _are_in_line(there: Junction, one: Side, other: Side) -> bool:
-    """Whether a way from one side of a junction onto another bends little."""
-    costs = turnings([there.leg(one), there.leg(other)], there.leg(one).width_mm)
-    return bool(costs[0, 1] < CORNERED)
 
 
 @dataclass
@@ -188,7 +162,7 @@ class _Search:
         """How a way goes on from one side at a junction onto another; None if it may not."""
         there = self.junctions.at(far)
         one, other = there.leg(far), there.leg(near).turned_round()
-        turned = _turned(one, other)
+        turned = turned_by(one, other)
         if turned > SHARP or _are_of_two_pens(there, far, near):
             return None
         go_on = self._goes_on(far) + self._goes_on(near)
@@ -204,7 +178,7 @@ class _Search:
         partner = there.partner(side)
         if partner is None:
             return False
-        return _turned(there.leg(side), there.leg(partner).turned_round()) < FACING
+        return turned_by(there.leg(side), there.leg(partner).turned_round()) < FACING
 
 
 def _far(link: Link) -> Side:
@@ -227,13 +201,3 @@ def _are_of_two_pens(there: Junction, one: Side, other: Side) -> bool:
     return all(
         any(max(mm, own) < OTHER_PEN * min(mm, own) for own in others) for mm in widths_mm
     )
-
-
-def _turned(one: Leg, other: Leg) -> float:
-    """By how much a way turns from an incoming leg onto an outgoing one, rad."""
-    whole = abs(turn(one.heading_rad, other.heading_rad))
-    chord = other.end_mm - one.end_mm
-    if float(np.hypot(*chord)) < one.width_mm:
-        return whole
-    along = math.atan2(chord[1], chord[0])
-    return max(whole, abs(turn(one.heading_rad, along)), abs(turn(along, other.heading_rad)))

@@ -23,7 +23,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.numbering import Ink, longest_first
 from morfax.tracer.ink.areas import Edge, ways_round
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
-from morfax.tracer.sensing.leg import FACING, turn
+from morfax.tracer.sensing.leg import FACING, Leg, turn
 
 # of the way round the net's outside: two lines that overlap each make half of it or more, and a closed chain
 # that is shorter is a detail of the drawing
@@ -103,10 +103,27 @@ def _is_straight_on(chain: Chain, junctions: Junctions) -> bool:
         there = junctions.at(far)
         if len(there.sides) == 2:
             continue
-        turned = turn(there.leg(far).heading_rad, there.leg(near).heading_rad + math.pi)
-        if abs(turned) > FACING:
+        if turned_by(there.leg(far), there.leg(near).turned_round()) > FACING:
             return False
     return True
+
+
+def turned_by(one: Leg, other: Leg) -> float:
+    """By how much a way turns from an incoming leg onto an outgoing one, rad, or by how much more than their
+    bends let expect, whichever is less: a bend felt beside other ink is none.
+    """
+    chord, whole = other.end_mm - one.end_mm, turn(one.heading_rad, other.heading_rad)
+    long_mm = float(np.hypot(*chord))
+    if long_mm < one.width_mm:
+        return abs(whole)
+    along = math.atan2(chord[1], chord[0])
+    before, after = turn(one.heading_rad, along), turn(along, other.heading_rad)
+    half = 0.25 * long_mm * (one.bend_per_mm + other.bend_per_mm)
+    most = (
+        max(abs(whole - 2 * bend), abs(before - bend), abs(after - bend))
+        for bend in (0.0, half)
+    )
+    return min(most)
 
 
 def parts(junctions: Junctions, taken: Set[int] = frozenset()) -> list[Outline]:

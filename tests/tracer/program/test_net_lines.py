@@ -74,6 +74,12 @@ def test_circles_that_overlap_are_cut_as_the_pen_drew_them() -> None:
     assert are(cut(*circles), *circles)
 
 
+@pytest.mark.parametrize("apart_mm", [16.3, 16.0, 15.7])
+def test_circles_that_touch_are_two_lines(apart_mm: float) -> None:
+    circles = arc((16, 20), 8), arc((16 + apart_mm, 20), 8)
+    assert are(cut(*circles), *circles)
+
+
 @pytest.mark.usefixtures("no_trials")
 def test_bars_and_a_grid_are_left_out_and_told() -> None:
     bars = [polyline((x, 8), (x, 44)) for x in (18, 30, 45)]
