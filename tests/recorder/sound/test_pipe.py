@@ -95,6 +95,7 @@ def test_the_text_in_front_of_a_pipe_is_read_by_libsndfile(tmp_path: Path, text:
     (tmp_path / "a.wav").write_bytes(head)
     with soundfile.SoundFile(tmp_path / "a.wav") as sound:
         assert sound.comment == text
+        assert (sound.subtype, sound.channels, sound.samplerate) == ("PCM_16", 2, 48_000)
 
 
 def _wav(format_chunk: bytes, frames: bytes, *between: tuple[bytes, bytes]) -> io.BytesIO:
@@ -120,10 +121,9 @@ def test_the_extensible_format_names_its_kind_in_its_second_part(kind: int, bits
             for value in samples
         )
     )
-    frames = [
-        np.vstack(list(PipeSource(_wav(chunk, data)).stored_blocks()))
-        for chunk in (plain, extended)
-    ]
+    sources = [PipeSource(_wav(chunk, data)) for chunk in (plain, extended)]
+    assert {source.sample for source in sources} == {"FLOAT" if kind == 3 else f"PCM_{bits}"}
+    frames = [np.vstack(list(source.stored_blocks())) for source in sources]
     assert np.array_equal(*frames)
     # within a step of the samples
     assert frames[0].ravel() == pytest.approx(samples, abs=2.0 ** (1 - min(bits, 24)))
@@ -133,6 +133,6 @@ def test_a_header_chunk_may_be_a_mebibyte_and_no_more() -> None:
     plain = struct.pack("<HHIIHH", 1, 3, 48_000, 48_000 * 6, 6, 16)
     largest = b"\0" * 2**20
     source = PipeSource(_wav(plain, b"\1\0" * 30, (b"junk", largest)))
-    assert len(np.vstack(list(source.stored_blocks()))) == 10
+    assert len(np.vstack(list(source.stored_blocks(frames=4)))) == source.frames == 10
     with pytest.raises(TapeFault, match=f"chunk of {2**20 + 2} bytes; at most {2**20}"):
         PipeSource(_wav(plain, b"\1\0" * 30, (b"junk", largest + b"\0\0")))
