@@ -52,6 +52,7 @@ def test_other_kinds_are_left_to_libsndfile(
 
 def test_a_file_cut_short_under_way_is_a_fault(tmp_path: Path) -> None:
     source = FileSource(written(tmp_path / "a.wav", "WAV", "PCM_16"))
+    assert source.name == str(tmp_path / "a.wav")  # by which its faults call it
     blocks = source.stored_blocks(500)
     next(blocks)
     os.truncate(source.file, source.file.stat().st_size - 400 * 8 - 3)
