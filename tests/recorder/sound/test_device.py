@@ -75,6 +75,19 @@ def test_every_frame_goes_out_once_and_in_order(cable: Cable) -> None:
     assert [stream.is_closed for stream in cable.streams] == [True]
 
 
+def test_a_second_of_silence_goes_before_the_tape_and_one_behind_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cable = Cable()
+    monkeypatch.setattr(devices, "sounddevice", lambda: cable)
+    monkeypatch.setattr(device_sink, "AHEAD_S", 60.0)
+    with sink() as out:
+        out.put(np.full((RATE_HZ, 4), 0.5, np.float32))
+    heard = np.flatnonzero(np.vstack(cable.heard).any(axis=1))
+    assert (heard[0], heard[-1]) == (RATE_HZ, 2 * RATE_HZ - 1)
+    assert len(np.vstack(cable.heard)) >= 3 * RATE_HZ
+
+
 def silence(seconds: float) -> np.ndarray:
     """Frames of nothing."""
     return np.zeros((round(seconds * RATE_HZ), 4), np.float32)

@@ -84,7 +84,8 @@ def test_samples_of_a_frame() -> None:
 def test_the_text_in_front_of_a_pipe_is_read_by_libsndfile(tmp_path: Path, text: str) -> None:
     stream = io.BytesIO()
     sink = PipeSink(stream, 48_000, 2, text)
-    sink.put(np.zeros((100, 2), np.float32))
+    frames = np.linspace(-1.1, 1.1, 200, dtype=np.float32).reshape(100, 2)
+    sink.put(frames)
     head = stream.getvalue()
     at = head.index(b"ICMT")
     size = int.from_bytes(head[at + 4 : at + 8], "little")
@@ -96,6 +97,8 @@ def test_the_text_in_front_of_a_pipe_is_read_by_libsndfile(tmp_path: Path, text:
     with soundfile.SoundFile(tmp_path / "a.wav") as sound:
         assert sound.comment == text
         assert (sound.subtype, sound.channels, sound.samplerate) == ("PCM_16", 2, 48_000)
+        # half a step of 16 bit, and one by which full scale is 32767 or 32768; beyond it is clipped
+        assert sound.read() == pytest.approx(np.clip(frames, -1, 1), abs=1.5 * 2.0**-15)
 
 
 def _wav(format_chunk: bytes, frames: bytes, *between: tuple[bytes, bytes]) -> io.BytesIO:

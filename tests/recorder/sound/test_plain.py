@@ -73,3 +73,12 @@ def test_a_flac_that_ends_early_is_cut_short(tmp_path: Path) -> None:
     (tmp_path / "a.flac").write_bytes(data[: len(data) // 2])
     with pytest.raises(TapeFault, match="cut short"):
         FileSource(tmp_path / "a.flac")
+
+
+def test_a_file_cut_short_says_how_long_it_is_and_how_long_it_should_be(tmp_path: Path) -> None:
+    file = tmp_path / "a.wav"
+    soundfile.write(file, np.zeros((48_000, 4)), 24_000, "PCM_16")
+    whole = file.stat().st_size
+    os.truncate(file, whole - 36_000 * 8)
+    with pytest.raises(TapeFault, match=r"0\.5\d* s.* 2\.0*"):
+        FileSource(file)
