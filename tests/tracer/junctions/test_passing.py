@@ -64,3 +64,25 @@ def test_a_tip_ends_where_its_ink_does_though_its_legs_meet_far_beyond() -> None
     # 20 um: a round end of 0.25 mm radius through a cell of 0.15 mm, r²/4R off, and the softness of the scan
     assert tip.beyond_mm == pytest.approx(16.0 - incoming.end_mm[0], abs=20 * UM)
     assert tip.before_mm - tip.beyond_mm == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(
+    ("right_deg", "left_deg", "taken_deg"), [(-80.0, 95.0, 95.0), (-70.0, 100.0, -70.0)]
+)
+def test_square_to_another_line_the_head_turns_left_and_else_to_the_straighter_leg(
+    right_deg: float, left_deg: float, taken_deg: float
+) -> None:
+    """Square is within 20 degrees of it, by both legs together."""
+    view, incoming = _comes_in()
+    middle = np.array([16.0, 10.0])
+    legs = [
+        replace(
+            incoming,
+            end_mm=middle + CLEAR_MM * direction(math.radians(deg)),
+            heading_rad=math.radians(deg),
+        )
+        for deg in (right_deg, left_deg)
+    ]
+    survey = _Survey(WayIn(view, incoming, Trail(incoming.end_mm, view.step_mm)), STRAIGHTEST)
+    taken = survey._chosen(legs, legs)
+    assert math.degrees(taken.heading_rad) == pytest.approx(taken_deg)
