@@ -43,6 +43,7 @@ def test_a_guide_line_is_left_for_ends_and_is_come_back_from() -> None:
         and junctions.comes_back(HERE, 1.0)
         and not junctions.comes_back(THERE, 1.0)
     )
+    assert junctions.guides(way) == ()  # it has been to the end, and is not yet back
     junctions.is_back(200, 30.0)
     assert junctions.next(31.0) == -1 + len(junctions.places_mm) or not junctions.places_mm
     assert not junctions.comes_back(HERE, 1.0) and not junctions.turn_round(250)
