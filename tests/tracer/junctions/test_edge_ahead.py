@@ -37,10 +37,23 @@ def test_a_corner_is_where_its_legs_meet_and_not_where_the_lens_has_rounded_it(
     assert np.hypot(*(ahead.felt[corner.first, :2] - VERTEX)) < 1.0
 
 
+def test_nodes_go_from_the_first_station_to_the_last_but_for_the_corner(
+    ahead: EdgeAhead,
+) -> None:
+    at = [node.at for node in ahead.nodes]
+    (corner,) = ahead.corners
+    assert (at[0], at[-1]) == (0, len(ahead.felt) - 1)
+    assert {corner.first, corner.last} <= set(at)
+    apart_mm = np.diff(at) * ahead.view.step_mm
+    # a third of half the length that is averaged, but across the corner
+    assert np.sort(apart_mm)[-2] < ahead.view.leg_mm / 2
+
+
 def test_the_way_past_a_corner_goes_by_its_vertex_up_to_plain_edge(ahead: EdgeAhead) -> None:
     plan = ahead.plan((ahead.felt[5, :2], 0.0), 1.0, 0.5)
     assert plan is not None
     way = np.vstack(plan.stretches)
+    assert way[0] == pytest.approx(ahead.felt[5, :2]) and len(plan.stretches) == 2
     assert np.hypot(*(way - VERTEX).T).min() < 12 * UM
     assert plan.leg.heading_rad == pytest.approx(math.pi / 2, abs=math.radians(0.5))
     assert 4.0 < plan.leg.end_mm[1] < 7.0

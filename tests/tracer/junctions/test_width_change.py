@@ -19,7 +19,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.contour import distance, length_mm
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.junctions.width_change import another_pen
+from morfax.tracer.junctions.width_change import _straight_ahead, another_pen
 from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.photocell import Cells, behind_aperture
@@ -153,3 +153,15 @@ def test_another_pen_s_line_is_as_wide_for_eight_widths(widths: float, is_one: b
         view.leg_mm,
     )
     assert another_pen(view, leg) is is_one
+
+
+@pytest.mark.parametrize(("times", "is_line"), [(3.0, True), (4.2, False)])
+def test_what_is_more_than_three_and_a_half_times_as_wide_ahead_is_no_line(
+    times: float, is_line: bool
+) -> None:
+    drawn = together(
+        (polyline((4, 12), (14, 12)), 0.5), (polyline((14, 12), (30, 12)), 0.5 * times), seed=1
+    )
+    view = View(behind_aperture(drawn, 0.15), 0.5)
+    incoming = leg_of(view.feel(np.array([8.0, 12.0]), 0.0, 4.0), True, view.leg_mm)
+    assert bool(list(_straight_ahead(view, incoming))) is is_line
