@@ -139,3 +139,19 @@ def test_a_header_chunk_may_be_a_mebibyte_and_no_more() -> None:
     assert len(np.vstack(list(source.stored_blocks(frames=4)))) == source.frames == 10
     with pytest.raises(TapeFault, match=f"chunk of {2**20 + 2} bytes; at most {2**20}"):
         PipeSource(_wav(plain, b"\1\0" * 30, (b"junk", largest + b"\0\0")))
+
+
+@pytest.mark.parametrize("begin", [b"RIFF\0\0\0\0AVI ", b"\1\0\2\0\3\0\4\0WAVE"])
+def test_what_is_no_wav_by_both_its_words_is_raw_samples(begin: bytes) -> None:
+    data = begin + b"\5\0" * 6
+    (frames,) = PipeSource(io.BytesIO(data)).stored_blocks()
+    assert np.array_equal(frames, Samples().frames(data[: len(data) // 8 * 8]))
+
+
+@pytest.mark.parametrize("first", [0, 3, 7])
+def test_a_pipe_is_read_from_the_frame_that_is_asked_for(first: int) -> None:
+    data = np.arange(40, dtype="<i2").tobytes()
+    source = PipeSource(io.BytesIO(data))
+    blocks = list(source.stored_blocks(4, first))
+    assert np.array_equal(np.vstack(blocks), Samples().frames(data)[first:])
+    assert source.frames == 10 - first
