@@ -82,3 +82,12 @@ def test_a_file_cut_short_says_how_long_it_is_and_how_long_it_should_be(tmp_path
     os.truncate(file, whole - 36_000 * 8)
     with pytest.raises(TapeFault, match=r"0\.5\d* s.* 2\.0*"):
         FileSource(file)
+
+
+@pytest.mark.parametrize(("sample", "kind"), [("PCM_16", np.int16), ("PCM_24", np.float32)])
+def test_samples_of_16_bit_come_as_they_are_stored_and_others_as_floats(
+    tmp_path: Path, sample: str, kind: type
+) -> None:
+    source = FileSource(written(tmp_path / "a.flac", "FLAC", sample))
+    assert {block.dtype for block in source.stored_blocks(400)} == {np.dtype(kind)}
+    source.close()
