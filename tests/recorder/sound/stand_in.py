@@ -43,6 +43,7 @@ class Cable:
     fails: bool = False
     cable: queue.Queue[Any] = field(default_factory=queue.Queue)
     heard: list[Any] = field(default_factory=list)
+    streams: list[_Stream] = field(default_factory=list)
 
     CallbackStop = CallbackStop
     CallbackAbort = CallbackAbort
@@ -97,7 +98,8 @@ class Cable:
                 self.heard.append(out)
                 self.cable.put(out)
 
-        return _Stream(step, self.stops_at, finished_callback)
+        self.streams.append(_Stream(step, self.stops_at, finished_callback))
+        return self.streams[-1]
 
     def InputStream(self, *, callback: Callable[..., None], **how: Any) -> _Stream:  # noqa: N802
         """A stream that hands frames to its callback: those of the cable, then silence."""
@@ -110,7 +112,8 @@ class Cable:
             status = SimpleNamespace(input_overflow=number == self.overflow_at)
             callback(frames, len(frames), None, status)
 
-        return _Stream(step, self.stops_at, lambda: None)
+        self.streams.append(_Stream(step, self.stops_at, lambda: None))
+        return self.streams[-1]
 
 
 class _Stream:
@@ -121,6 +124,7 @@ class _Stream:
     ) -> None:
         self._step, self._stops_at, self._finished = step, stops_at, finished
         self._ended = threading.Event()
+        self.is_closed = False
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
@@ -148,6 +152,7 @@ class _Stream:
     def close(self) -> None:
         """Wait for the thread."""
         self._thread.join(timeout=1)
+        self.is_closed = True
 
 
 class Still:

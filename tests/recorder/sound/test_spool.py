@@ -43,3 +43,12 @@ def test_a_file_that_holds_another_number_of_frames_than_were_put_is_not_whole(
     ):
         spool.put(FRAMES)
         spool.frames = written
+
+
+def test_a_spool_is_called_as_the_file_that_it_will_be(tmp_path: Path) -> None:
+    kind = ("AIFF", "PCM_16")
+    with Spool(tmp_path / "part", 48_000, 2, kind, "", name=tmp_path / "a.aiff") as spool:
+        spool.frames = LARGEST_AIFF_BYTES
+        with pytest.raises(TapeFault, match=r"cannot write .*a\.aiff: an AIFF ends"):
+            spool.put(FRAMES)
+        spool.frames = 0

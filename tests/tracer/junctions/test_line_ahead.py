@@ -59,19 +59,22 @@ def test_neither_a_line_too_far_nor_one_far_aside_is_caught() -> None:
     assert caught_again(view, incoming, Trail(incoming.end_mm, view.step_mm), 3.5) is None
 
 
-def test_the_line_is_looked_for_no_further_than_is_said() -> None:
+@pytest.mark.parametrize(("gap_mm", "blot_to_mm"), [(0.5, 14.0), (1.0, 14.5)])
+def test_the_line_is_looked_for_no_further_than_is_said(
+    gap_mm: float, blot_to_mm: float
+) -> None:
     """Behind a blot as long as the heading is held, the leg is felt to its end; nothing beyond matters."""
-    blot = [polyline((12, y), (14.0, y)) for y in np.arange(Y_MM - 1.5, Y_MM + 1.6, 0.25)]
+    blot = [polyline((12, y), (blot_to_mm, y)) for y in np.arange(Y_MM - 1.5, Y_MM + 1.6, 0.25)]
     drawing = inked(polyline((4, Y_MM), (24, Y_MM)), *blot)
     view, incoming = _leg(drawing, 11.3)
-    found = straight_on(view, incoming, 0.5)
-    assert found is not None and found.end_mm[0] > 14.0
+    found = straight_on(view, incoming, gap_mm)
+    assert found is not None and found.end_mm[0] > blot_to_mm
     # all that lies further away is ink
     pitch_mm, (rows, columns) = drawing.pitch_mm, drawing.darkness.shape
     x, y = np.meshgrid(np.arange(columns) + 0.5, rows - np.arange(rows) - 0.5)
     away_mm = np.hypot(x * pitch_mm - incoming.end_mm[0], y * pitch_mm - incoming.end_mm[1])
-    darkness = np.where(away_mm > looks_mm(view, 0.5), 1.0, drawing.darkness)
+    darkness = np.where(away_mm > looks_mm(view, gap_mm), 1.0, drawing.darkness)
     view, incoming = _leg(Drawing(darkness.astype(np.float32), pitch_mm), 11.3)
-    again = straight_on(view, incoming, 0.5)
+    again = straight_on(view, incoming, gap_mm)
     assert again is not None
     assert np.array_equal(again.end_mm, found.end_mm) and np.array_equal(again.seen, found.seen)

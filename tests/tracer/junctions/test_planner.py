@@ -10,7 +10,7 @@ import pytest
 from morfax.motion.plane import direction
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.edge_following import EdgeRun
+from morfax.tracer.junctions.edge_following import EdgeRun, _turned_back
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.photocell import behind_aperture
@@ -45,3 +45,15 @@ def test_between_legs_close_together_the_way_leaves_the_first_before_half_way() 
         off_mm[along_mm < 0.2 * apart_mm].max() < 1e-3 < off_mm[along_mm < 0.5 * apart_mm].max()
     )
     assert along_mm[-1] == pytest.approx(apart_mm, abs=1e-3) and np.all(np.diff(along_mm) >= 0)
+
+
+def test_ink_beside_a_line_that_ends_in_a_tip_is_come_back_along_from_there() -> None:
+    """Ink 0.3 mm wide beside the stations from the tenth on narrows to nothing at the fortieth."""
+    x = 0.05 * np.arange(60)
+    seen = np.column_stack([x, np.zeros(60), np.full(60, 0.5)])
+    excess = np.full(60, -0.01)
+    excess[10:41] = np.linspace(0.3, 0.0, 31)
+    run = _turned_back(excess, seen, (10, 39), 1.0)
+    assert run is not None and run.back is not None
+    assert len(run.seen) == 41 and run.back[:, 0] == pytest.approx(x[40:9:-1])
+    assert run.back[:, 1] == pytest.approx(-excess[40:9:-1], abs=1e-12)
