@@ -42,6 +42,7 @@ SAME = SHARED - 1.0  # widths: ink of two lines as near as that is as narrow as 
 BESIDE = 0.5  # widths: a line further from another has ink of its own
 ALONG_COS = 0.97  # 14 degrees: a line that turns off by more crosses the other
 ROUND = 4.0  # widths along one stroke: nearer places of it are the same line
+PAST = 2.0  # places: another line is beside one so little beyond its own end
 MANY = 16  # nearest places, of which some are another line's
 HALF = 0.5  # of a line's darkness: what is darker is ink
 LEAST = 0.5  # widths: so little is not cut off, and so little that is left is no stroke
@@ -129,10 +130,10 @@ class _Struck:
                     best, count = votes, first + k + 1
             if votes < best - some // 2:
                 break
-        if count * self.every_mm < LEAST * width_mm:
+        if (count - 1) * self.every_mm < LEAST * width_mm:
             return 0.0
-        self.are_left[own[:count]] = False
-        return count * self.every_mm
+        self.are_left[own[: count - 1]] = False  # the last one is where it comes there
+        return (count - 1) * self.every_mm
 
     def _votes(self, some: Indices) -> Indices:
         """1 for each of some places that lies in the ink of another line alone, -1 for the others."""
@@ -161,7 +162,7 @@ class _Struck:
         cosines = np.abs(np.sum(self.along[others] * along[:, None], axis=2))
         is_beside = is_other & self.are_left[others] & (cosines > ALONG_COS)
         is_beside &= np.abs(aside) < BESIDE * widths_mm
-        is_beside &= np.abs(ahead) < self.every_mm
+        is_beside &= np.abs(ahead) < PAST * self.every_mm
         apart = np.where(is_beside, np.abs(aside), math.inf)
         rows, nearest = np.arange(len(some)), np.argmin(apart, axis=1)
         return apart[rows, nearest], aside[rows, nearest, None] * normals
