@@ -106,6 +106,7 @@ class MachineReader(GcodeReader):
             takes.arc_mm, takes.arc_share, takes.arc_most_mm, takes.reach_mm
         )
         self.tool, self.share = ToolState(wanted.tool), 1.0
+        self.takes_number = takes.expressions
         self.is_whole = takes.end != "needed"
         if takes.end == "none":
             self.ending = f"the comment {wanted.comment(END)!r}"
