@@ -178,7 +178,7 @@ class SmallLoops:
         """Whether the scan shows seams, and a line whose pen is known; large pixels make seams of letters."""
         drawing = self.sheet.drawing
         is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1
-        return is_clear and len(lines_of(self.sheet)) > 0
+        return is_clear and not drawing.edges_mm and len(lines_of(self.sheet)) > 0
 
     def _is_broad(self, patch: int, least: float = MAYBE_BROAD) -> bool:
         """Whether a patch is as broad as so many lines to two; no longer than a narrow loop, no letter."""
