@@ -187,3 +187,14 @@ def test_a_line_close_to_a_contour_is_a_contour_too() -> None:
     for lines in ("contours", "all"):
         said, endings = said_of(drawing, LineSettings(lines=lines))
         assert endings == ["closed", "closed"] and said == []
+
+
+def test_a_bar_across_a_contour_is_told_and_the_advice_follows_it() -> None:
+    """A ring of 20 mm with a line from side to side."""
+    drawing = inked(arc((24, 24), 20.0), polyline((4, 24), (44, 24)), seed=1)
+    said, endings = said_of(drawing, LineSettings(lines="contours"))
+    (told,) = [text for text in said if "joined to the contours was not followed" in text]
+    assert endings == ["closed"] and "--lines all follows all of it" in told
+    assert float(told.split()[1]) == pytest.approx(40.0, rel=0.1)
+    said, endings = said_of(drawing, LineSettings(lines="all"))
+    assert sorted(endings) == ["closed", "ended"] and said == []
