@@ -33,6 +33,11 @@ def left_of(way: Array) -> Array:
     return np.array([-way[1], way[0]])
 
 
+def left_of_headings(headings_rad: Array) -> Array:
+    """The directions a quarter of a turn to the left of headings (n,), of length 1, (n, 2)."""
+    return np.column_stack([-np.sin(headings_rad), np.cos(headings_rad)])
+
+
 def unit(ways: Array) -> Array:
     """Directions (2,) or (n, 2), of length 1; one of no length stays so."""
     return np.asarray(ways / np.maximum(np.hypot(*ways.T), NO_LENGTH)[..., None])

@@ -100,7 +100,7 @@ def _is_inked(darkness: Picture, band: _Band) -> bool:
 
 def _edges_along(patches: Patches, patch: int, bands: list[_Band]) -> set[str]:
     """The edges along which a patch lies."""
-    alone = np.arange(patches.count) == patch
+    alone = patches.alone(patch)
     return {
         band.edge for band in bands if band.covered(patches.painted(alone, *band[1:5])) >= ALONG
     }

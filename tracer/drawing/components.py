@@ -90,6 +90,10 @@ class Patches:
         first, last = np.searchsorted(self.row, between)
         return slice(int(first), int(last))
 
+    def alone(self, patch: int) -> NDArray[np.bool_]:
+        """One patch as the chosen one of all."""
+        return np.asarray(np.arange(self.count) == patch)
+
     def painted(
         self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
     ) -> Mask:

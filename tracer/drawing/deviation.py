@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
+from morfax.motion.plane import left_of_headings
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.components import (
@@ -139,7 +140,7 @@ def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
         both = darkness_across(drawing, points, headings, np.array([radius_mm, -radius_mm]))
         left, right = both.mean(axis=0)
         arm_mm = radius_mm if left >= right else -radius_mm
-        edge = points + arm_mm * np.column_stack([-np.sin(headings), np.cos(headings)])
+        edge = points + arm_mm * left_of_headings(headings)
         steps = np.hypot(*np.diff(edge, axis=0).T) / TOUCH_MM
         on_line = (steps > STANDS) & (steps < LEAP)
         ends = np.flatnonzero(np.diff(np.r_[False, on_line, False].astype(np.int8)))

@@ -256,7 +256,7 @@ class Sheet:
 
     def _stroke(self, patch: int) -> Stroke:
         """A patch as a line, looked for on its ink."""
-        chosen = np.arange(self.patches.count) == patch
+        chosen = self.patches.alone(patch)
         disc_px = max(4, round(1.5 * self.widths_mm[patch] / self.drawing.pitch_mm))
         top, bottom, left, right = self.patches.box(chosen)
         halo_px = max(disc_px, min(DEEPEST_PX, bottom - top, right - left)) + 1

@@ -71,7 +71,7 @@ def _ink_of(sheet: Sheet, patch: int) -> Weight:
 
 def _weigh(sheet: Sheet, patch: int) -> Weight:
     """Weigh a patch of ink."""
-    chosen = np.arange(sheet.patches.count) == patch
+    chosen = sheet.patches.alone(patch)
     rows, columns = sheet.drawing.darkness.shape
     top, bottom, left, right = sheet.patches.box(chosen)
     top, left = max(0, top - TAIL_PX), max(0, left - TAIL_PX)

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends
 from morfax.tracer.ink.nib import Ink, is_by_heading, seems_two_lines, what_swells
@@ -250,7 +251,7 @@ def strands(stations: Run, width_mm: float) -> list[Run]:
     part, widths = stations.part(first, last), widths[first:last]
     aside = 0.5 * np.maximum(widths - width_mm, 0.0)
     aside *= _sides(aside, width_mm, stations.view.step_mm)
-    normals = np.column_stack([-np.sin(part.headings_rad), np.cos(part.headings_rad)])
+    normals = left_of_headings(part.headings_rad)
     own = replace(part, widths_mm=np.full(len(part), width_mm), is_strand=True)
     return [
         smooth(replace(own, places_mm=part.places_mm + side * aside[:, None] * normals))

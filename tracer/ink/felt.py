@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.median import ROBUST, median
+from morfax.motion.plane import left_of_headings
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.ink.run import Run, smooth
@@ -122,7 +123,7 @@ def feel_along(view: View, guide_mm: Array) -> Run:
         on_it = widths - usual_mm < CLEAN * usual_mm + CLEAN_PX * view.pitch_mm
         on_it &= np.abs(aside) < LEAP * usual_mm + 2 * view.pitch_mm
         aside = np.where(on_it, aside, 0.0)
-        normals = np.column_stack([-np.sin(headings), np.cos(headings)])
+        normals = left_of_headings(headings)
         places = places + aside[:, None] * normals
     return Run(places, headings, np.zeros(len(places)), widths, view)
 

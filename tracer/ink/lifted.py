@@ -27,6 +27,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.neighbours import Neighbours
+from morfax.motion.plane import left_of_headings
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
@@ -137,7 +138,7 @@ def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[
         )
     )
     heading = leg.heading_rad + np.arctan(leg.bend_per_mm * s)
-    places = leg.at(s) + u[:, None] * np.column_stack([-np.sin(heading), np.cos(heading)])
+    places = leg.at(s) + u[:, None] * left_of_headings(heading)
     # 2. what the sheet shows there, and how far the others are, in which direction
     seen = np.minimum(view.darkness_along(places) / (2 * view.level), DARKEST)
     softness_mm = softness_of(view, leg)

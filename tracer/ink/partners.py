@@ -25,6 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
+from morfax.motion.plane import left_of_headings
 from morfax.tracer.head.course import SMOOTH, on_ink, through_nodes
 from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink, off_rims_mm
 from morfax.tracer.junctions.corner import Corner, sharp_corner
@@ -72,7 +73,7 @@ def meeting_place(legs: Sequence[Leg]) -> Array:
     """The place nearest to the lines of all legs, (x, y) mm; the mean of their ends if they are one line."""
     ends = np.array([leg.end_mm for leg in legs])
     headings = np.array([leg.heading_rad for leg in legs])
-    normals = np.column_stack([-np.sin(headings), np.cos(headings)])
+    normals = left_of_headings(headings)
     sums = normals.T @ normals
     middle = ends.mean(axis=0)
     if np.linalg.eigvalsh(sums)[0] < SMOOTH**2:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.plane import cross, direction, meeting
+from morfax.motion.plane import cross, direction, left_of_headings, meeting
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.ink.run import parabolas
 from morfax.tracer.sensing.ray import Ray, crossing_mm
@@ -52,7 +52,7 @@ class Rim(NamedTuple):
 
     def way(self, within_mm: float) -> Array:
         """The closed way (n, 2) mm, not closed up, that lies so far within the rim."""
-        way = self.places_mm + within_mm * _left(self.headings_rad)
+        way = self.places_mm + within_mm * left_of_headings(self.headings_rad)
         width_mm = 2 * within_mm
         tight = self.bends_per_mm * TIGHT * width_mm < -1.0
         if not tight.any() or tight.all():
@@ -85,7 +85,7 @@ def felt_rim(view: View, outline: Array) -> Rim | None:
         off_mm = np.empty(len(places))
         _feel(view.cells, places, headings, REACH * width_mm, off_mm)
         is_felt = np.isfinite(off_mm)
-        places = (places + off_mm[:, None] * _left(headings))[is_felt]
+        places = (places + off_mm[:, None] * left_of_headings(headings))[is_felt]
         if len(places) < FEWEST:
             return None
         felt = parabolas(_round_again(places, about), half_mm, step_mm)
@@ -116,11 +116,6 @@ def _mitred(way: Array, headings: Array, corners: NDArray[np.int64], most_mm: fl
             parts += [way[at : before + 1], corner[None]]
             at = after
     return np.vstack([*parts, way[at:]])
-
-
-def _left(headings: Array) -> Array:
-    """Unit ways (n, 2) to the left of headings (n,)."""
-    return np.column_stack([-np.sin(headings), np.cos(headings)])
 
 
 def _evenly(places: Array, step_mm: float) -> Array:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.plane import SAME_MM, unit
+from morfax.motion.plane import SAME_MM, left_of_headings, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing.parabola import FEWEST
@@ -149,7 +149,7 @@ def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array])
     """How far places of a way are from where the line would lie; 0 in ink that goes another way."""
     away, near = Neighbours(stations[:, :2]).nearest(some)
     middles, headings, widths = stations[near, :2], stations[near, 2], stations[near, 3]
-    normals = np.column_stack([-np.sin(headings), np.cos(headings)])
+    normals = left_of_headings(headings)
     is_its_own = _goes_along(some, np.arange(len(some)), normals) & (away < BESIDE * widths)
     aside = np.sum((some - middles) * normals, axis=1)
     # beyond the ends of what was felt no rim is known

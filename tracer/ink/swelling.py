@@ -18,6 +18,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.hollow import Hollow, hollow
 from morfax.tracer.ink.felt import Ends
 from morfax.tracer.ink.run import Run
@@ -112,7 +113,7 @@ def _hollow(run: Run) -> Hollow | None:
     view = run.view
 
     def seen(places: Array, headings: Array, across: Array) -> Array:
-        left = np.column_stack([-np.sin(headings), np.cos(headings)])
+        left = left_of_headings(headings)
         around = places[:, None] + left[:, None] * across[:, None]
         return view.darkness_along(around.reshape(-1, 2)).reshape(len(places), -1)
 

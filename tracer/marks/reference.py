@@ -163,7 +163,7 @@ def _inside(sheet: Sheet, patch: int) -> Iterator[tuple[Array, float, bool]]:
     """The areas that a patch of ink goes round: middle and longer side, mm, and whether they are about as
     high as wide; smaller ones than a reference point are flaws of the ink.
     """
-    chosen = np.arange(sheet.patches.count) == patch
+    chosen = sheet.patches.alone(patch)
     top, bottom, left, right = sheet.patches.box(chosen)
     if (bottom - top) * (right - left) > MOST_PX:
         return

@@ -13,7 +13,6 @@ from collections.abc import Callable
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
@@ -48,7 +47,7 @@ def ink_of(
     top, bottom = max(top - about, 0), min(bottom + about, rows)
     left, right = max(left - about, 0), min(right + about, columns)
     # what is nearer to this ink than so far, and to no other
-    is_own: NDArray[np.bool_] = np.arange(patches.count) == patch
+    is_own = patches.alone(patch)
     reach = np.ones((2 * about + 1,) * 2, np.uint8)
     own, others = (
         cv2.dilate(patches.painted(chosen, top, bottom, left, right), reach)

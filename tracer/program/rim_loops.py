@@ -11,6 +11,7 @@ Source: our own (see `ink.rim`).
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice
 
 import cv2
@@ -21,9 +22,10 @@ from morfax.motion.median import median
 from morfax.motion.plane import NO_LENGTH
 from morfax.motion.polyline import area_mm2, length_mm
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.plain_places import places_of, plainest_first
+from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
 from morfax.tracer.ink.rim import felt_rim
 from morfax.tracer.program.selection import lines_of
+from morfax.tracer.program.window import Window
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.compass import Core
 
@@ -31,6 +33,8 @@ from morfax.tracer.tangles.compass import Core
 # that are further apart the head follows as any line
 BROAD = 1.6, 4.2
 LONGEST = 800.0  # widths round; chosen
+STRETCH = 20.0  # widths along a line: they show how wide the pen is
+DISTINCT = 0.2  # of a step: places nearer to each other are one corner
 FELT_PLACES = 9  # the pen's width is the middle one of so many of the plainest places
 AS_WIDE = 0.15  # of the pen's width: a line that differs by more is another pen's
 
@@ -42,7 +46,7 @@ def narrow_outline(sheet: Sheet, patch: int, pen_mm: float) -> Array | None:
     if sheet.lengths_mm[patch] > LONGEST * pen_mm:
         return None
     top, bottom, left, right = sheet.patches.boxes[patch].tolist()
-    own = np.arange(sheet.patches.count) == patch
+    own = sheet.patches.alone(patch)
     ink = np.pad(sheet.patches.painted(own, top, bottom, left, right), 1)
     outlines, _ = cv2.findContours(ink, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     column, row = max(outlines, key=len)[:, 0].T.astype(float)
@@ -66,14 +70,22 @@ def core_within(view: View, outline: Array, width_mm: float) -> Core | None:
         return None
     way = rim.way(0.5 * width_mm)
     apart_mm = np.hypot(*np.diff(way, axis=0, prepend=way[-1:]).T)
-    return Core(way[apart_mm > 0.2 * view.step_mm], 0.0, 0.5 * width_mm)
+    return Core(way[apart_mm > DISTINCT * view.step_mm], 0.0, 0.5 * width_mm)
 
 
-def felt_pen_mm(sheet: Sheet, view: View) -> float:
-    """The pen's width as the cells feel it, where the longest of its lines is plain."""
+def felt_pen_mm(sheet: Sheet, aperture_mm: float | None, pen_mm: float) -> float:
+    """The pen's width as the cells feel it, where the longest of its lines is plain; they see no more of the
+    sheet than a stretch of that.
+    """
     lines = lines_of(sheet)
-    of_pen = np.abs(sheet.widths_mm[lines] / view.width_mm - 1) < AS_WIDE
+    of_pen = np.abs(sheet.widths_mm[lines] / pen_mm - 1) < AS_WIDE
     stroke = sheet.stroke(int(lines[of_pen][0]) if of_pen.any() else int(lines[0]))
-    stances = islice(plainest_first(view, places_of(stroke, None)), FELT_PLACES)
+    reach_mm = STRETCH * pen_mm
+    x, y = stroke.middles_mm[0].tolist()
+    places = places_of(stroke, (x, y), reach_mm)
+    window = Window.about(sheet.drawing, places, reach_mm)
+    edges = window.top, window.left, window.bottom, window.right
+    view = view_of(replace(sheet, window=edges), aperture_mm, pen_mm)
+    stances = islice(plainest_first(view, places), FELT_PLACES)
     felt_mm = np.array([stance.view.width_mm for stance in stances])
-    return median(felt_mm) if len(felt_mm) else view.width_mm
+    return median(felt_mm) if len(felt_mm) else pen_mm

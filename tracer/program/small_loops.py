@@ -60,6 +60,7 @@ BROADEST, SHORT_WIDTHS, MOST_BROAD = 2.7, 2.0, 100
 NO_BROADER = 0.9  # times as broad as a line: in the mean a seam may make up for it
 # for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
 SEAM = 0.002
+ABOUT_WIDTHS = 3.0  # from a patch to the edge of what its cells see
 GOES_BACK = 1.2  # widths: a closed way that is so much longer runs a piece of its line twice
 RIM_PLACES = 40  # for each width of the way round, of a loop of any shape
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
@@ -206,7 +207,7 @@ class SmallLoops:
             return None
         widths = length_mm(outline) / self.pen_mm
         ink = ink_of(self.sheet, patch, self.pen_mm, round(RIM_PLACES * widths))
-        core = core_within(self._pen_view, outline, self._felt_pen_mm)
+        core = core_within(self._view(patch, self.pen_mm), outline, self._felt_pen_mm)
         if core is None or not is_single(core) or not leaves_none(ink, core):
             return None
         own = math.inf
@@ -228,15 +229,15 @@ class SmallLoops:
         is_better = core.misfit < min(own - GAIN * widths, LIKE * widths)
         return self._run(core) if has_seam and is_better and is_drawn(ink, core) else None
 
-    @cached_property
-    def _pen_view(self) -> View:
-        """The sheet through cells for the pen."""
-        return view_of(self.sheet, self.settings.aperture_mm, self.pen_mm)
+    def _view(self, patch: int, width_mm: float) -> View:
+        """What is about a patch through cells for a line of a width: of a sheet no more than that is made."""
+        near = self.sheet.about(patch, ABOUT_WIDTHS * width_mm)
+        return view_of(near, self.settings.aperture_mm, width_mm)
 
     @cached_property
     def _felt_pen_mm(self) -> float:
-        """The pen's width as those cells feel it."""
-        return felt_pen_mm(self.sheet, self._pen_view)
+        """The pen's width as cells for it feel it."""
+        return felt_pen_mm(self.sheet, self.settings.aperture_mm, self.pen_mm)
 
     def _may_be(self, patch: int, width_mm: float) -> bool:
         """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""
@@ -264,8 +265,9 @@ class SmallLoops:
         """The head's run along a core's way from memory."""
         stretches = core.stretches()
         heading = math.atan2(*(stretches[0][1] - stretches[0][0])[::-1])
-        view = view_of(self.sheet, self.settings.aperture_mm, 2 * core.half_mm)
-        stance = Stance(stretches[0][0], heading, view)
+        begin, width_mm = stretches[0][0], 2 * core.half_mm
+        view = self._view(self.sheet.patch_at(begin), width_mm)
+        stance = Stance(begin, heading, view)
         carriage = Carriage(stance, self.settings, MOTION_RATE_HZ)
         carriage.run(stretches, leader=REDRAWN)
-        return Loop(carriage.positions_mm, carriage.led, 2 * core.half_mm)
+        return Loop(carriage.positions_mm, carriage.led, width_mm)

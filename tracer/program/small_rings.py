@@ -144,7 +144,5 @@ def none_begun(unclear: Sequence[SmallPatch]) -> LineFault:
 def paper_within_px(sheet: Sheet, patch: int) -> int:
     """The largest area of paper that a patch of ink goes round, pixels."""
     top, bottom, left, right = sheet.patches.boxes[patch].tolist()
-    own: NDArray[np.bool_] = np.zeros(sheet.patches.count, bool)
-    own[patch] = True
-    ink = sheet.patches.painted(own, top, bottom, left, right)
+    ink = sheet.patches.painted(sheet.patches.alone(patch), top, bottom, left, right)
     return max((hole.paper_px for hole in holes(ink)), default=0)

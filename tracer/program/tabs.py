@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
+from morfax.motion.plane import left_of_headings
 from morfax.motion.polyline import area_mm2, at_lengths
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
@@ -184,7 +185,7 @@ def _holds(loop: Way, at_mm: Array, heading: Array, cutter_mm: float) -> NDArray
     if not cutter_mm:
         return np.ones(len(at_mm), bool)
     places = at_lengths(loop.places_mm, at_mm)
-    across = np.column_stack([-np.sin(heading), np.cos(heading)])
+    across = left_of_headings(heading)
     away_mm, tree = 0.5 * cutter_mm + BESIDE_MM, cKDTree(places)
     left, right = (tree.query(places + side * away_mm * across)[0] for side in (1, -1))
     return np.asarray(np.minimum(left, right) >= 0.5 * cutter_mm - CUT_AWAY_MM)
