@@ -26,7 +26,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.plane import cross, direction, left_of_headings, meeting
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.ink.run import parabolas
-from morfax.tracer.sensing.ray import Ray, crossing_mm
+from morfax.tracer.sensing.ray import SPECK_MM, SPECK_PX, Ray, crossing_mm
 from morfax.tracer.sensing.view import View
 
 # In widths of the pen, by trial on slots of all shapes:
@@ -96,10 +96,12 @@ def felt_rim(view: View, outline: Array) -> Rim | None:
 @njit(cache=True)
 def _feel(cells, places, headings, reach_mm, out):  # type: ignore[no-untyped-def]
     """Fill `out` with how far to the left of each place (n, 2) the ink begins, mm; NaN where it does not."""
+    speck_mm = min(SPECK_PX * cells.pitch_mm, SPECK_MM)
     for k in range(len(places)):
         c, s = -np.sin(headings[k]), np.cos(headings[k])
         x, y = places[k, 0] - reach_mm * c, places[k, 1] - reach_mm * s
-        out[k] = crossing_mm(cells, Ray(x, y, c, s, 0.0), 0.0, 2.0 * reach_mm, 0.0) - reach_mm
+        ray = Ray(x, y, c, s, 0.0)
+        out[k] = crossing_mm(cells, ray, 0.0, 2.0 * reach_mm, speck_mm) - reach_mm
 
 
 def _mitred(way: Array, headings: Array, corners: NDArray[np.int64], most_mm: float) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.motion.polyline import area_mm2, length_mm
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.ink import rim as rim_module
 from morfax.tracer.ink.rim import Rim, felt_rim
@@ -37,6 +38,22 @@ def test_the_rim_of_a_disc_is_a_circle() -> None:
     assert away_mm == pytest.approx(np.full(len(away_mm), 0.75), abs=8 * UM)
     assert np.mean(found.bends_per_mm) == pytest.approx(1.0, abs=0.02)
     assert area_mm2(found.places_mm) > 0
+
+
+def test_a_speck_beside_the_rim_moves_nothing() -> None:
+    """One pixel of a scan, with one of paper between it and a bar: within a tenth of a pixel."""
+    clean = inked(polyline((4, 6), (16, 6)), polyline((4, 6.3), (16, 6.3)))
+    darkness, pitch_mm = np.array(clean.darkness), clean.pitch_mm
+    # the bar begins at 5.75 mm, in the middle of a pixel
+    darkness[len(darkness) - 1 - int(5.75 / pitch_mm) + 2, int(10 / pitch_mm)] = 0.9
+    outline = polyline((3.75, 5.75), (16.25, 5.75), (16.25, 6.55), (3.75, 6.55))
+    low_mm = []
+    for drawing in (clean, Drawing(darkness, pitch_mm)):
+        found = felt_rim(view_of(drawing.sheet, None, 2 * HALF_MM), outline)
+        assert found is not None
+        near = np.abs(found.places_mm - (10, 5.75)).max(axis=1) < 0.4
+        low_mm.append(found.places_mm[near, 1].min())
+    assert low_mm[1] == pytest.approx(low_mm[0], abs=8 * UM)
 
 
 def test_the_way_within_a_circle_is_a_smaller_circle() -> None:
