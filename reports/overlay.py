@@ -50,6 +50,7 @@ NARROWEST = 0.35  # shorter to longer side of what is shown
 # along an enlargement: each number of all takes a hundredth of a picture's time
 FEW_NUMBERS = 4
 PIXELS = ".png"
+MOST_NUMBERED = 60  # lines; chosen
 LETTERS_PER_IN = 11.0  # of a title of 10 points: capitals and underscores too
 LIGHT = 3.2  # ink as light grey, for a path to lie on
 
@@ -119,6 +120,10 @@ def _whole(picture: Picture, view: View, page: Page) -> tuple[Plate, Colours | N
     """The whole contour with its marks, and what its colours mean."""
     letters = round(page.main.width_in * LETTERS_PER_IN)
     title = picture.title
+    if len(picture.numbers_mm) > MOST_NUMBERED:
+        title += (
+            f"; the {MOST_NUMBERED} longest of {len(picture.numbers_mm)} lines have numbers"
+        )
     plate = Plate(view, title if len(title) <= letters else f"{title[: letters - 1]}…")
     _ground(plate, picture)
     scale = _contour(plate, picture, line_pt=1.8)
@@ -177,8 +182,14 @@ def _ends(plate: Plate, path: Path) -> None:
 
 
 def _numbers(plate: Plate, picture: Picture) -> None:
-    """Number several lines, each beside its start, in a ring: the enlargements have plain numbers."""
-    for number, place_mm in picture.numbers_mm:
+    """Number several lines, each beside its start, in a ring: the enlargements have plain numbers.
+
+    Of very many lines only the longest, which have the lowest numbers: the rings would hide the path.
+    """
+    lowest = sorted(picture.numbers_mm, key=lambda each: (len(each[0]), each[0]))[
+        :MOST_NUMBERED
+    ]
+    for number, place_mm in picture.numbers_mm if len(lowest) < MOST_NUMBERED else lowest:
         plate.add(Words(place_mm, number, WORDS_PT, offset_pt=(-11, -11), ring=REFERENCE))
 
 

@@ -108,3 +108,15 @@ def test_a_legend_stands_beside_the_sheet_where_lines_are_in_all_corners() -> No
         level = y > 1 - share[1] if is_upper else y < share[1]
         within = aside & level
         assert bool(within.any()) != is_free
+
+
+def test_of_very_many_lines_only_the_longest_have_numbers() -> None:
+    """A page of lettering has hundreds, whose rings hid the path. The longest lines have the lowest numbers."""
+    t_s = np.arange(5.0)
+    path = Path(t_s=t_s, positions_mm=np.column_stack([20 * t_s, 20 * t_s, -1 - 0 * t_s]))
+    numbers = [(str(n), (float(n % 97), float(n % 89))) for n in range(300, 0, -1)]
+    picture = Picture("page", path, numbers_mm=numbers)
+    _, plate, _ = overlay._laid_out(picture, overlay.view_of(picture), 0)
+    written = {int(words.text) for words in plate.words if words.ring}
+    assert written == set(range(1, overlay.MOST_NUMBERED + 1))
+    assert plate.title == "page; the 60 longest of 300 lines have numbers"
