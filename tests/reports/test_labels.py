@@ -111,7 +111,7 @@ def test_a_legend_stands_beside_the_sheet_where_lines_are_in_all_corners() -> No
 
 
 def test_of_very_many_lines_only_the_longest_have_numbers() -> None:
-    """A page of lettering has hundreds, whose rings hid the path. The longest lines have the lowest numbers."""
+    """A page of lettering has hundreds, whose rings hid the path. The lowest numbers are the longest."""
     t_s = np.arange(5.0)
     path = Path(t_s=t_s, positions_mm=np.column_stack([20 * t_s, 20 * t_s, -1 - 0 * t_s]))
     numbers = [(str(n), (float(n % 97), float(n % 89))) for n in range(300, 0, -1)]
