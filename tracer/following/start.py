@@ -133,7 +133,7 @@ def _as_before(
     found = _ends(view, before, old, start_mm, settings, reference_mm)
     found += _plain(view, old, start_mm, _catch_mm(before))
     # 2. the same on the ink as it is now, where that is still this line
-    now = view_of(sheet, settings.aperture_mm, width_mm).cells.darkness
+    now = view_of(sheet, settings.aperture_mm, width_mm).cells
     for stance in found:
         if stroke.is_at(stance.place_mm) and is_far(stance, changed_mm):
             yield on_ink(stance, now)

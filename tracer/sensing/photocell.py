@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import math
 import mmap
+from collections.abc import Callable
 from typing import NamedTuple
 
 import cv2
@@ -47,6 +48,14 @@ MOSTLY = 0.6  # of the tiles: the whole sheet at once takes less
 LEAST_SPREAD_PX = 0.2  # a smaller aperture changes no pixel by more than a scanner's noise
 
 
+Beyond = tuple[
+    int, int, int, int
+]  # rows above a part of a sheet, columns to its left, below, right
+Seen = Callable[
+    [int, int, int, int], Darkness
+]  # from a row to another, from a column to another
+
+
 class _Seen(NamedTuple):
     """The fields of `Cells`."""
 
@@ -54,26 +63,42 @@ class _Seen(NamedTuple):
     pitch_mm: float
     level: float
     tiles: aperture.MadeTiles = aperture.NONE
+    beyond: Beyond = (0, 0, 0, 0)
 
 
 @keeps_kinds
 class Cells(_Seen):
     """What the cells see of a sheet: the darkness behind their aperture, (rows, columns) float32, on pixels
     of `pitch_mm`; and the darkness at which they see an edge. That of a large sheet is empty: it is made
-    where the cells look, in `tiles`.
+    where the cells look, in `tiles`. Of a part of a sheet the darkness is that part's, and `beyond` it is
+    paper.
     """
 
     @property
     def shape(self) -> tuple[int, int]:
         """Rows and columns of the sheet."""
+        above, left, below, right = self.beyond
         rows, columns = self.darkness.shape
-        return rows + self.tiles.rows, columns + self.tiles.columns
+        return (
+            above + rows + below + self.tiles.rows,
+            left + columns + right + self.tiles.columns,
+        )
 
     def window(self, top: int, bottom: int, left: int, right: int) -> Darkness:
         """What the cells see in some rows and columns, those of them that are on the sheet."""
         if self.tiles.rows:
             return aperture.window(self.tiles, top, bottom, left, right)
-        return self.darkness[top:bottom, left:right]
+        if not any(self.beyond):
+            return self.darkness[top:bottom, left:right]
+        (all_rows, all_columns), (above, beside) = self.shape, self.beyond[:2]
+        shape = max(min(bottom, all_rows) - top, 0), max(min(right, all_columns) - left, 0)
+        seen, (rows, columns) = np.zeros(shape, np.float32), self.darkness.shape
+        first, last = max(top, above), min(top + shape[0], above + rows)
+        begin, end = max(left, beside), min(left + shape[1], beside + columns)
+        if first < last and begin < end:
+            own = self.darkness[first - above : last - above, begin - beside : end - beside]
+            seen[first - top : last - top, begin - left : end - left] = own
+        return seen
 
     def wider(self, spread_px: float, places: Array, beyond_mm: float) -> Cells:
         """The same behind a further spot of a standard deviation, about some places (n, 2) sheet mm; a small
@@ -81,13 +106,14 @@ class Cells(_Seen):
         """
         if self.tiles.rows:
             return self._replace(darkness=nothing(), tiles=self.tiles.wider(spread_px))
-        rows, columns = self.darkness.shape
+        rows, columns = self.shape
         (left, low), (right, high) = np.stack(bounds(places)) / self.pitch_mm
-        beyond = beyond_mm / self.pitch_mm + 1.0
-        top, bottom = max(0, math.floor(rows - high - beyond)), math.ceil(rows - low + beyond)
-        first, last = max(0, math.floor(left - beyond)), math.ceil(right + beyond)
+        about = beyond_mm / self.pitch_mm + 1.0
+        top, bottom = max(0, math.floor(rows - high - about)), math.ceil(rows - low + about)
+        first, last = max(0, math.floor(left - about)), math.ceil(right + about)
         window = top, first, min(rows, bottom), min(columns, last)
-        return self._replace(darkness=_blurred(self.darkness, spread_px, window))
+        darkness, beyond = _part(self.window, self.shape, spread_px, window)
+        return self._replace(darkness=darkness, beyond=beyond)
 
 
 def behind_aperture(
@@ -101,9 +127,11 @@ def behind_aperture(
         return Cells(nothing(), drawing.pitch_mm, level, made)
     if sigma_px >= LEAST_SPREAD_PX and window is None:
         darkness = _near_ink(drawing, sigma_px)
-    elif sigma_px >= LEAST_SPREAD_PX and window is not None:
-        darkness = _blurred(darkness, sigma_px, window)
-    return Cells(darkness, drawing.pitch_mm, level)
+    whole = Cells(darkness, drawing.pitch_mm, level)
+    if sigma_px < LEAST_SPREAD_PX or window is None:
+        return whole
+    darkness, beyond = _part(whole.window, whole.shape, sigma_px, window)
+    return whole._replace(darkness=darkness, beyond=beyond)
 
 
 def without_aperture(drawing: Drawing, level: float) -> Cells:
@@ -149,11 +177,29 @@ def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
     return seen
 
 
-def _blurred(darkness: Darkness, sigma_px: float, window: Window) -> Darkness:
-    """A window of a sheet behind a spot; the rest is zeros, which take neither time nor memory."""
-    seen = _bare(darkness.shape)
-    _blur(darkness, sigma_px, window, math.ceil(HALO_SPREADS * sigma_px) + 1, seen)
-    return seen
+def _part(
+    seen: Seen, shape: tuple[int, int], sigma_px: float, window: Window
+) -> tuple[Darkness, Beyond]:
+    """A window of a sheet of a shape behind a spot, within a rim of paper where the sheet goes on; and how
+    much of the sheet is beyond. `seen` gives the sheet's darkness.
+    """
+    rows, columns = shape
+    top, left, bottom, right = (
+        window[0],
+        window[1],
+        min(window[2], rows),
+        min(window[3], columns),
+    )
+    first, last = max(0, top - 1), min(rows, bottom + 1)
+    begin, end = max(0, left - 1), min(columns, right + 1)
+    halo = math.ceil(HALO_SPREADS * sigma_px) + 1
+    above, beside = max(0, top - halo), max(0, left - halo)
+    about = seen(above, min(bottom + halo, rows), beside, min(right + halo, columns))
+    soft = cv2.GaussianBlur(about, (0, 0), sigma_px)
+    part = np.zeros((last - first, end - begin), np.float32)
+    own = soft[top - above : bottom - above, left - beside : right - beside]
+    part[top - first : bottom - first, left - begin : right - begin] = own
+    return part, (first, begin, rows - last, columns - end)
 
 
 def _blur(
@@ -180,12 +226,14 @@ def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     rows, columns = seen.shape
     if rows == 0:
         return aperture.darkness_at(cells.tiles, x_mm / pitch_mm, y_mm / pitch_mm)
+    above_px, left_px, below_px, _ = cells.beyond
     x = x_mm / pitch_mm - 0.5
-    y = rows - y_mm / pitch_mm - 0.5
+    y = (above_px + rows + below_px) - y_mm / pitch_mm - 0.5
     i, j = math.floor(y), math.floor(x)
+    fx, fy = x - j, y - i
+    i, j = i - above_px, j - left_px
     if i < 0 or j < 0 or i >= rows - 1 or j >= columns - 1:
         return 0.0
-    fx, fy = x - j, y - i
     i, j = int(i), int(j)
     above = seen[i, j] * (1 - fx) + seen[i, j + 1] * fx
     below = seen[i + 1, j] * (1 - fx) + seen[i + 1, j + 1] * fx
