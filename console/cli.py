@@ -17,6 +17,7 @@ import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import click
@@ -110,10 +111,19 @@ def cli() -> None:
 
 def main(words: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code. Whatever goes wrong ends as one line on stderr."""
+    _open_closed_streams()
     kernels.choose_cache()
     compile_damaged_again(lambda line: click.echo(line, err=True))
     with _rings_sought_seldom(), _stopped_by_signals():
         return _ended(words)
+
+
+def _open_closed_streams() -> None:
+    """Let what was closed by whoever started the program, as with `2>&-`, take words and give none."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            # the lowest number that is free is the stream's own: no file of ours comes to have it
+            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))  # noqa: SIM115
 
 
 def _ended(words: Sequence[str] | None) -> int:

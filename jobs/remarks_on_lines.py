@@ -49,6 +49,7 @@ def _of_left_out(seen: Survey) -> Iterator[str]:
         )
     kinds = {
         "taken for letters": [e.number for e in seen.entries if e.is_letter],
+        "rims of filled shapes": [e.number for e in seen.entries if e.is_solid],
         "reference points": [e.number for e in seen.entries if e.is_reference],
         "pieces of another line": [e.number for e in seen.entries if e.piece_of is not None],
     }

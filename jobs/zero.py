@@ -1,10 +1,10 @@
 """The zero of a program: where on the sheet, or on the part that is cut, the machine's zero is.
 
-    sheet         the lower-left corner of the sheet
+    sheet         the lower-left corner of the sheet as it was scanned: mirror, scale and turn leave it there
     lower-left    the lowest X and the lowest Y of the part, as it lies after mirror, scale and turn
     centre        halfway between the lowest and the highest X and Y of the part
     reference     the reference point on the drawing
-    X,Y           a place on the sheet
+    X,Y           a place on the sheet; these two are mirrored, scaled and turned with the drawing
 
 The part is what is cut of the lines themselves: a cutter's path, leads and lead lines do not count.
 """
@@ -64,8 +64,10 @@ class ZeroOnSheet:
 
     def origin_mm(self, placement: Placement) -> Place:
         """What a placement about a known point takes off, so that the zero is where it is asked for."""
-        if self.asked not in OF_PART or self.followed is None:
+        if self.asked == "sheet":
             return self.place_mm
+        if self.asked not in OF_PART or self.followed is None:
+            return placed_mm(self.place_mm, placement)
         return on_part_mm(self.asked, _bounds_mm(self.followed, placement))
 
     def part_size_mm(self, placement: Placement) -> Place | None:
@@ -119,11 +121,18 @@ def of_path_mm(zero: Zero, path: Path, placement: Placement) -> Place:
             "--zero reference is a point on a drawing, and a path has none; give lower-left, centre, or its "
             "place X,Y"
         )
+    placement = placement.about(path.positions_mm[0])
     if not isinstance(zero, str):
-        return zero
+        return placed_mm(zero, placement)
     runs = without_leads(path).runs()
     places_mm = np.vstack(runs) if runs else path.xy_mm
-    return on_part_mm(zero, placement.about(path.positions_mm[0]).places(places_mm))
+    return on_part_mm(zero, placement.places(places_mm))
+
+
+def placed_mm(place_mm: Place, placement: Placement) -> Place:
+    """Where a placement about a known point puts a place of the sheet."""
+    x_mm, y_mm = placement.places(np.array([place_mm]))[0].tolist()
+    return x_mm, y_mm
 
 
 def on_sheet_mm(zero: Zero, placement: Placement) -> Place | None:

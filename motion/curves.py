@@ -16,7 +16,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.plane import NOTHING_MM, SAME_MM
+from morfax.motion.plane import NOTHING_MM, SAME_MM, length_between
 from morfax.motion.polyline import APART_MM
 from morfax.motion.speed_limits import braked
 
@@ -47,7 +47,7 @@ def _places_through(poses):  # type: ignore[no-untyped-def]
     """How many places the cubics through some poses (n, 3) have."""
     count = 0
     for k in range(len(poses) - 1):
-        chord = math.hypot(poses[k + 1, 0] - poses[k, 0], poses[k + 1, 1] - poses[k, 1])
+        chord = length_between(poses, k, k + 1)
         count += max(2, math.ceil(chord / APART_MM) + 1)
     return count
 

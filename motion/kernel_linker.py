@@ -64,6 +64,8 @@ class Linker:
     def function(self, kernel: Kernel, entry: Entry) -> Callable[..., Any]:
         """Link the object code of an entry; give its Python function."""
         code, name, environments = entry
+        if b"numba_xx" in code or b"numba_xgesv" in code or b"numba_ez_" in code:
+            _load_algebra()
         self._engine.add_object_file(self._llvm.ObjectFileRef.from_data(code))
         self._engine.finalize_object()
         for held in environments:
@@ -107,6 +109,16 @@ class Linker:
     def _name(self, name: str, address: int) -> None:
         self._llvm.add_symbol(name, address)
         self.names.add(name)
+
+
+def _load_algebra() -> None:
+    """Load scipy's BLAS and LAPACK, which numba's C functions would import at their first call.
+
+    If Ctrl-C comes while they do, they end the process with a dump.
+    """
+    from scipy.linalg import cython_blas, cython_lapack
+
+    assert cython_blas and cython_lapack
 
 
 def _serve_pickles(unpickle_address: int) -> None:

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 
 NO_LENGTH = 1e-12  # so that nothing is divided by zero
 NOTHING_MM = 1e-9  # rounding leaves so much of a length that is none
@@ -46,3 +47,18 @@ def meeting(place: Array, way: Array, other: Array, its_way: Array) -> Array:
     """Where a line through a place meets one through another; they may not be parallel."""
     gap = other - place
     return np.asarray(place + way * cross(gap, its_way) / cross(way, its_way))
+
+
+# between two of some places (n, 2 or more columns), for kernels
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def heading_between(places, first, last):  # type: ignore[no-untyped-def]
+    """The heading from one place to another, rad."""
+    return math.atan2(places[last, 1] - places[first, 1], places[last, 0] - places[first, 0])
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def length_between(places, first, last):  # type: ignore[no-untyped-def]
+    """How far one place is from another."""
+    return math.hypot(places[last, 0] - places[first, 0], places[last, 1] - places[first, 1])

@@ -130,6 +130,7 @@ class Bench:
         """Show the drawing that lies there, and have its lines looked at if they were not."""
         self.changed()
         if self.drawing is None:
+            self._clear()
             return
         shown = sheet_picture.key(self.drawing, self.options)
         words = commands.lines_words(self.drawing, self.options)
@@ -140,6 +141,11 @@ class Bench:
         if looked_at != self._looked_at:
             self._looked_at, self.refused = looked_at, None
             self.send("lines", self.command_line.lines(words))
+
+    def _clear(self) -> None:
+        """Show no drawing: undo has taken the first one off the bench."""
+        self.picture, self.line_map, self.sheet, self.refused = None, None, None, None
+        self._picture_of, self._looked_at = "", []
 
     def run(self) -> None:
         """Begin a run as it is set; raises WrongUse for settings that do not go together."""
@@ -231,7 +237,9 @@ class Bench:
             self.tell("fault", result["fault"])
 
     def _seen(self, seen: dict[str, Any]) -> None:
-        """The drawing was looked at."""
+        """The drawing was looked at; it may have been taken off the bench meanwhile."""
+        if self.drawing is None:
+            return
         self.line_map = LineMap(seen["numbers"])
         if seen["picture"] is not None:
             self.picture = Picture(seen["picture"])

@@ -4,6 +4,7 @@ Signals in: a plate and the size of its axes, points. Out: its words with other 
 
 The axes are a grid of small cells. Each name in turn tries places round its own, the nearest first, and takes
 the one with the fewest cells that are taken: by a line a little, by another name, a legend or the frame much.
+A thin line leads from a place to a name that stands further off than beside it.
 
 Source: our own. Questions: none.
 """
@@ -19,11 +20,12 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.reports import lettering
 from morfax.reports.lettering import PX_PER_PT
-from morfax.reports.plate import Line, Place, Plate, Spot, Words, filled_in, fitted
+from morfax.reports.plate import Line, Mark, Place, Plate, Spot, Words, filled_in, fitted
 
 CELL_PT = 2.0
 LETTER = 0.62  # width of a letter over its size; DejaVu's own is 0.6 on average
 AWAY_PT = (7.0, 14.0, 24.0, 36.0, 50.0)  # from a place to its name
+BESIDE_PT, LEADER_PT = 12.0, 0.4  # a name further off has a leader, so thick
 LINE_COST, SPOT_COST, NAME_COST = 1.0, 2.0, 100.0
 FEW_NAMES = (
     12  # more are shortened to a letter and a number; the legend says what the letter means
@@ -59,11 +61,14 @@ def _start(kind: str, kinds: set[str]) -> str:
 
 def spread(plate: Plate, wide_pt: float, high_pt: float) -> None:
     """Give the words of a plate, on axes of a size, offsets at which nothing is hidden."""
-    grid = _Grid(plate, wide_pt, high_pt)
-    plate.marks = [
-        grid.put(mark) if isinstance(mark, Words) and not mark.centred else mark
-        for mark in plate.marks
-    ]
+    grid, marks = _Grid(plate, wide_pt, high_pt), list[Mark]()
+    for mark in plate.marks:
+        if isinstance(mark, Words) and not mark.centred:
+            put = grid.put(mark)
+            marks += [*grid.leaders(put), put]
+        else:
+            marks.append(mark)
+    plate.marks = marks
 
 
 class _Grid:
@@ -93,12 +98,21 @@ class _Grid:
             0 <= x / CELL_PT < self.cost.shape[1] and 0 <= y / CELL_PT < self.cost.shape[0]
         ):
             return words
-        wide = max(len(words.text), 1) * LETTER * words.size_pt
+        wide = _wide_pt(words)
         tried = [words.offset_pt, *_offsets(wide, words.size_pt)]
         boxes = [(x + dx, y + dy, x + dx + wide, y + dy + words.size_pt) for dx, dy in tried]
         best = int(np.argmin([self._cost_of(box) for box in boxes]))
         self._take(boxes[best], NAME_COST)
         return replace(words, offset_pt=tried[best])
+
+    def leaders(self, words: Words) -> list[Line]:
+        """The line from a place to its name, where that does not stand beside it."""
+        wide, (dx, dy) = _wide_pt(words), words.offset_pt
+        nearest_pt = np.clip(0.0, [dx, dy], [dx + wide, dy + words.size_pt])
+        if np.hypot(*nearest_pt) < BESIDE_PT:
+            return []
+        end_mm = words.place_mm + nearest_pt / self.pt_per_mm
+        return [Line(np.array([words.place_mm, end_mm]), words.colour, LEADER_PT, order=3)]
 
     def _pt(self, places_mm: Array) -> Array:
         """Places from the lower left corner of the axes, points."""
@@ -127,6 +141,11 @@ class _Grid:
     def _cost_of(self, box: tuple[float, float, float, float]) -> float:
         rows, columns, beside = self._cells(box)
         return float(self.cost[rows, columns].sum()) + NAME_COST * beside
+
+
+def _wide_pt(words: Words) -> float:
+    """How long a name is."""
+    return max(len(words.text), 1) * LETTER * words.size_pt
 
 
 def _offsets(wide_pt: float, high_pt: float) -> Iterator[Place]:

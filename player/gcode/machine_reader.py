@@ -106,9 +106,12 @@ class MachineReader(GcodeReader):
             takes.arc_mm, takes.arc_share, takes.arc_most_mm, takes.reach_mm
         )
         self.tool, self.share = ToolState(wanted.tool), 1.0
-        self.is_whole = takes.end == "none"
-        if self.is_whole:
+        self.takes_number = takes.expressions
+        self.is_whole = takes.end != "needed"
+        if takes.end == "none":
             self.ending = f"the comment {wanted.comment(END)!r}"
+        elif takes.end == "usual":
+            self.unended = f"{name} has no M2 or M30; see that it is whole"
         if not wanted.z and start_mm is None:
             self.start[2] = self.place[2] = ABOVE_MM
 

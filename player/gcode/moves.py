@@ -31,11 +31,14 @@ class Move(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program as read: start of the machine, moves, and the machine that it is for, '' if not known."""
+    """A program as read: start of the machine, moves, the machine that it is for, '' if not known, and notes
+    on it for the operator.
+    """
 
     start_mm: Place
     moves: list[Move]
     machine: str = ""
+    notes: tuple[str, ...] = ()
 
 
 def reached(move: Move) -> Iterator[tuple[float, ...]]:

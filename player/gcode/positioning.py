@@ -85,6 +85,7 @@ class PositionPlayback(Supervised):
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.conditions, self.limit = [SOUND] * len(AXES), settings.limit
+        self.notes = program.notes
         for move in program.moves:
             self._check(move)
         self.servos = PositionServos(self.start_mm, settings=settings.servo)

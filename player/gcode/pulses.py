@@ -123,7 +123,7 @@ def play_pulses(
     ]
     playback = PulsePlayback(replace(program, moves=moves), control, str(file))
     if moves != program.moves and fastest_mm_s is None:
-        playback.notes = (
+        playback.notes += (
             f"{file} asks for feeds above {most_mm_s:g} mm/s, the fastest of this control; they are played "
             f"at {held_mm_s:g} mm/s, along the same path",
         )
@@ -142,6 +142,7 @@ class PulsePlayback(Supervised):
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None
         self.conditions, self.limit = [SOUND] * len(AXES), settings.limit
+        self.notes = program.notes
         self.supervise(AXES, MOTION_RATE_HZ)
         self._jobs = [self._job(move) for move in program.moves]
 

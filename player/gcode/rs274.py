@@ -27,9 +27,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from morfax.motion.faults import ProgramFault
+from morfax.motion.pathtable import LONGEST_S
 from morfax.motion.units import MM_PER_INCH
 from morfax.player.gcode.arc_words import OURS, ArcWords, Place, WordError
-from morfax.player.gcode.gcode_text import COMMENT, WORD
+from morfax.player.gcode.gcode_text import COMMENT, PROGRAM_NUMBER, WORD
 from morfax.player.gcode.modal_groups import BLENDING, CODES, DISTANCE, MOTION, READ, UNITS
 from morfax.player.gcode.moves import (
     CLOCKWISE,
@@ -41,7 +42,7 @@ from morfax.player.gcode.moves import (
     Program,
 )
 
-LONGEST_DWELL_S = 86400.0  # a day: more is a mistake of the unit
+LONGEST_DWELL_S = LONGEST_S  # more is a mistake of the unit
 
 _KINDS = {0.0: RAPID, 1.0: LINE, 2.0: CLOCKWISE, 3.0: COUNTER_CLOCKWISE}
 _PLAIN, _MOVING, _ARC_WORDS = frozenset("GXYZIJRFPSTN"), frozenset("XYZIJR"), frozenset("IJR")
@@ -71,14 +72,21 @@ def parse_rs274(
             line=reader.number,
         )
     x_mm, y_mm, z_mm = (0.0 if place is None else place for place in reader.start)
-    return Program((x_mm, y_mm, z_mm), reader.moves_from((x_mm, y_mm, z_mm)))
+    notes = (reader.unended,) if reader.unended and not reader.ended else ()
+    return Program((x_mm, y_mm, z_mm), reader.moves_from((x_mm, y_mm, z_mm)), notes=notes)
 
 
 class GcodeReader:
     """The modal state of a program, and the moves so far."""
 
     is_whole = False  # whether the end of the file may be the end of the program
-    ending = "M2, M30 or % (for Marlin, with --machine marlin, anywhere)"
+    ending = (
+        "M2, M30 or % (for Grbl and Marlin, with --machine grbl-router or marlin, anywhere)"
+    )
+    takes_number = (
+        True  # whether a line such as O1000 may come first, the number of the program
+    )
+    unended = ""  # the note on a program without an end, where its control takes that, and ends as a rule
 
     def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:
         self.name, self.number, self.ended = name, 0, False
@@ -89,7 +97,7 @@ class GcodeReader:
         self.place = [0.0, 0.0, 0.0] if start_mm is None else list(start_mm)
         self.kind, self.scale, self.relative, self.feed_mm_s = "", 1.0, False, 0.0
         self.arc_limits = OURS
-        self.begun = False  # whether there was a % or a word
+        self.begun = self.has_words = False  # whether there was a % or a word; a word
         self.unsent = [0, 0, 0]  # moves of each axis before the program first sends it
 
     def moves_from(self, start_mm: Place) -> list[Move]:
@@ -110,7 +118,10 @@ class GcodeReader:
         if any(parts[::3]):
             parts = self._second_look("".join(parts))
         if len(parts) > 1:
-            self.begun = True
+            is_name = not self.has_words and bool(PROGRAM_NUMBER.fullmatch("".join(parts)))
+            self.begun = self.has_words = True
+            if is_name and self.takes_number:
+                return
             self.obey(parts[1::3], parts[2::3])
 
     def _second_look(self, text: str) -> list[str]:

@@ -34,7 +34,7 @@ from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, Side, side
 from morfax.player.tape.discriminator import Discriminator
 from morfax.player.tape.motion_edges import END_ROWS, furthest
-from morfax.player.tape.phases import Phases
+from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.predictor import recount
 from morfax.player.tape.riding import Riding
 from morfax.player.tape.standstill import LEVEL_STEADY
@@ -127,9 +127,7 @@ class Gaps:
         found, self._new = self._new, []
         return found
 
-    def feed(
-        self, phases: Phases, *, last: bool = False
-    ) -> tuple[Phases, tuple[int, Fault] | None]:
+    def feed(self, phases: Phases, *, last: bool = False) -> tuple[Phases, Uncertain | None]:
         """Take the next rows; the rows that are certain now, and the first that is not, with its fault."""
         held = len(self._lost)
         self._lost = _longer(self._lost, len(phases))
@@ -141,13 +139,13 @@ class Gaps:
         ready, fault = self._bridged(rows, last)
         out = rows.cut(self._given - rows.first_row, ready)
         self._given = max(self._given, rows.first_row + ready)
-        fault = fault and (len(out), fault[1])
+        fault = fault and Uncertain(len(out), fault.fault)
         keep = max(ready - self._side - self._spread, 0)
         self._rows, self._lost = rows.cut(keep, len(rows)), self._lost[keep:]
         self._surprised = self._surprised[keep:]
         return out, fault
 
-    def _bridged(self, rows: Phases, last: bool) -> tuple[int, tuple[int, Fault] | None]:
+    def _bridged(self, rows: Phases, last: bool) -> tuple[int, Uncertain | None]:
         """Bridge what is lost; and, on a checked tape, what surprises in the rows that would be given out."""
         most = len(rows) - (0 if last else self._held)
         ready, fault = self._bridge_all(rows, most, last)
@@ -173,19 +171,17 @@ class Gaps:
         self._surprised |= found
         return new
 
-    def _bridge_all(
-        self, rows: Phases, ready: int, last: bool
-    ) -> tuple[int, tuple[int, Fault] | None]:
+    def _bridge_all(self, rows: Phases, ready: int, last: bool) -> tuple[int, Uncertain | None]:
         """Bridge the gaps of all axes; the number of certain rows, and the fault that ends the tape there."""
-        first: tuple[int, Fault] | None = None
+        first: Uncertain | None = None
         if not (self._lost.any() or self._surprised.any()):
             return ready, None
         for axis in range(len(self._names)):
             sure, fault = self._bridge_axis(rows, axis, last)
             ready = min(ready, sure)
-            if fault is not None and (first is None or sure < first[0]):
-                first = sure, fault
-        if first is not None and first[0] > ready:
+            if fault is not None and (first is None or sure < first.row):
+                first = Uncertain(sure, fault)
+        if first is not None and first.row > ready:
             first = None  # an earlier gap is still open
         return ready, first
 

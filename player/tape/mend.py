@@ -26,8 +26,9 @@ within a dropout, that of the motors is taken, and `unknown_mm` is large.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 
@@ -42,6 +43,7 @@ from morfax.player.tape.reader import TapeReader
 from morfax.player.tape.track_order import END_CYCLES
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.recording import Progress, Recording, record
+from morfax.recorder.tape.stated import TapeEntries
 
 END_S = 0.05  # of the standstill at the end, over which the place is averaged
 KEPT_DWELL = 0.1  # of the standstills: the tape may have run this much fast, and gets new ones
@@ -76,27 +78,13 @@ def mend(
     file: str | os.PathLike[str],
     mended: str | os.PathLike[str],
     *,
-    reference_hz: float | None = None,
-    cycles_per_mm: float | None = None,
-    start_mm: Sequence[float] | None = None,
-    order: Sequence[int] | None = None,
-    still: Sequence[str] | None = None,
-    alike: Sequence[str] | None = None,
     closed: bool = False,
     acceleration_mm_s2: float | None = None,
     progress: Progress | None = None,
+    **by_hand: Unpack[TapeEntries],
 ) -> Mended:
     """Mend a tape; raises TapeFault if the loss cannot be known, and the faults of playing and recording."""
-    by_hand = {
-        "reference_hz": reference_hz,
-        "cycles_per_mm": cycles_per_mm,
-        "start_mm": start_mm,
-        "order": order,
-        "still": still,
-        "alike": alike,
-    }
-    limits = {"closed": closed, "acceleration_mm_s2": acceleration_mm_s2}
-    playback = play(file, **by_hand, **limits)  # type: ignore[arg-type]
+    playback = play(file, closed=closed, acceleration_mm_s2=acceleration_mm_s2, **by_hand)
     fmt, reader = playback.format, playback.reader
     if is_checked(playback):
         reader.mends = True
@@ -157,7 +145,7 @@ def _read(playback: TapePlayback) -> Iterator[tuple[int, Array]]:
     for read in playback.reader.read(lambda: place_mm.tolist()):
         fault = read.first_fault(fmt.motion_rate_hz, place_mm.tolist())
         if fault is not None:
-            raise fault[1]
+            raise fault.fault
         phases, zero_cycles = read.rows, read.bearings.zero_cycles
         places_mm = playback.start_mm + (phases.cycles - zero_cycles) * fmt.mm_per_cycle
         if len(places_mm):

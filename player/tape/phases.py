@@ -9,14 +9,22 @@ Source: our own. Questions: none.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.faults import Fault
 
 Number = TypeVar("Number", bound=np.generic)
+
+
+class Uncertain(NamedTuple):
+    """The first row of a block that is not certain, and its fault."""
+
+    row: int
+    fault: Fault
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from itertools import islice
 from os import PathLike
-from typing import Any, BinaryIO
+from typing import BinaryIO, Unpack
 
 import numpy as np
 
@@ -42,18 +42,13 @@ from morfax.player.tape.setting import Setting, check_resumption
 from morfax.player.tape.track_order import END_CYCLES, found_order
 from morfax.recorder.sound.pipe import PipeSource, Samples
 from morfax.recorder.sound.source import FileSource, Source
+from morfax.recorder.tape.stated import TapeEntries
 from morfax.recorder.tape.tape import Tape, TapeFormat
 
 
 def play(
     file: str | PathLike[str] | Callable[[], Source],
     *,
-    reference_hz: float | None = None,
-    cycles_per_mm: float | None = None,
-    start_mm: Sequence[float] | None = None,
-    order: Sequence[int] | None = None,
-    still: Sequence[str] | None = None,
-    alike: Sequence[str] | None = None,
     closed: bool = False,
     settings: PhaseLock | None = None,
     acceleration_mm_s2: float | None = None,
@@ -61,13 +56,12 @@ def play(
     zero_mm: Sequence[float] = (),
     override: float = 1.0,
     wheel: SectorWheel | None = None,
+    **by_hand: Unpack[TapeEntries],
 ) -> TapePlayback:
-    """Put a tape in the machine; values given by hand override its text chunk. Raises TapeFault, FileFault.
+    """Put a tape in the machine, with what is given of it by hand. Raises TapeFault, FileFault.
 
-    `file`: its name, or what opens its source, each time that it is called.
-
-    `order`: on which tracks of the file reference, X, Y … are. `closed`: it returns to its start, if it does
-    not say where it ends. `still`, `alike`: axes that may stand from start to end, and that may run alike.
+    `file`: its name, or what opens its source, each time that it is called. `closed`: it returns to its
+    start, if it does not say where it ends.
 
     `settings` are those of the drives (MOTORS). `zero_mm`: by how much the phase changers move each axis;
     `override`: how fast the tape runs against the speed at which it was recorded. `wheel`: what is wrong with
@@ -81,24 +75,19 @@ def play(
     opened = file if callable(file) else lambda: FileSource(file)
 
     def open_tape() -> Tape:
-        return Tape.of(
-            opened(),
-            reference_hz=reference_hz,
-            cycles_per_mm=cycles_per_mm,
-            start_mm=start_mm,
-            order=order,
-            still=still,
-            alike=alike,
-        )
+        return Tape.of(opened(), **by_hand)
 
     with open_tape() as tape:
         fmt, frames = _ending(tape.format, closed), tape.frames
-        found, check = (None, None) if order or resume_at_s else found_order(tape)
-    order = order or found
-    if (
-        resume_at_s and fmt.end_mm is not None
-    ):  # the place is not the tape's start, so the end does not go along
-        with Tape.of(opened(), reference_hz=reference_hz, cycles_per_mm=cycles_per_mm) as tape:
+        ordered = by_hand.get("order") or resume_at_s
+        found, check = (None, None) if ordered else found_order(tape)
+    if found:
+        by_hand["order"] = found
+    start_mm = by_hand.get("start_mm")
+    # the place is not the tape's start, so the end does not go along
+    if resume_at_s and fmt.end_mm is not None:
+        at_start: TapeEntries = {**by_hand, "start_mm": None}
+        with Tape.of(opened(), **at_start) as tape:
             fmt = replace(fmt, end_mm=tape.format.end_mm)
     setting = Setting(settings or PhaseLock(), tuple(zero_mm), override, wheel or SectorWheel())
     check_resumption(resume_at_s, start_mm, frames / fmt.sample_rate_hz)
@@ -110,17 +99,20 @@ def play(
 
 
 def play_pipe(
-    stream: BinaryIO, *, samples: Samples | None = None, **by_hand: Any
+    stream: BinaryIO,
+    *,
+    samples: Samples | None = None,
+    closed: bool = False,
+    **by_hand: Unpack[TapeEntries],
 ) -> TapePlayback:
     """Put a tape from a pipe in the machine, as `play_live` does."""
-    return play_live(PipeSource(stream, samples), **by_hand)
+    return play_live(PipeSource(stream, samples), closed=closed, **by_hand)
 
 
-def play_live(source: Source, *, closed: bool = False, **by_hand: Any) -> TapePlayback:
-    """Put a tape that comes once, through a pipe or from a device, in the machine. Raises TapeFault.
-
-    `by_hand`: what `Tape.of` takes.
-    """
+def play_live(
+    source: Source, *, closed: bool = False, **by_hand: Unpack[TapeEntries]
+) -> TapePlayback:
+    """Put a tape that comes once, through a pipe or from a device, in the machine. Raises TapeFault."""
     tape = Tape.of(source, **by_hand)
     return TapePlayback(lambda: tape, _ending(tape.format, closed), 0, Setting())
 
@@ -211,7 +203,7 @@ class TapePlayback(Supervised):
             phases = read.rows
             self.notes = self.reader.notes
             found = read.first_fault(fmt.motion_rate_hz, self.end_mm.tolist())
-            sound = len(phases) if found is None else min(found[0], len(phases))
+            sound = len(phases) if found is None else min(found.row, len(phases))
             zero_cycles = self._zero_mm * fmt.cycles_per_mm - read.bearings.zero_cycles
             monitor.rows_seen = phases.first_row
             places_mm, demands_mm = drives.run(phases.cycles[:sound], zero_cycles, rest_mm)
@@ -225,7 +217,7 @@ class TapePlayback(Supervised):
             if rows < sound:
                 raise self._out_of_range(drives, phases.first_row + rows)
             if found is not None:
-                raise found[1]
+                raise found.fault
         self._check_end()
 
     def _read(self) -> Iterator[Read]:

@@ -25,14 +25,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.faults import Fault, TapeFault
+from morfax.motion.faults import TapeFault
 from morfax.player.tape.bare import BareTape
 from morfax.player.tape.bridges import Bound, Bridge
 from morfax.player.tape.check_reader import CheckReader, read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, discriminate
 from morfax.player.tape.dropouts import Gaps, under_way
 from morfax.player.tape.lost_ways import Laid
-from morfax.player.tape.phases import Phases
+from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.riding import Riding
 from morfax.player.tape.standstill import STANDSTILL_S, Bearings, evened, take_bearings
 from morfax.player.tape.steadiest import Steadiest
@@ -52,9 +52,9 @@ class Read(NamedTuple):
     rows: Phases
     bearings: Bearings
     watch: Watch | None
-    ended: tuple[int, Fault] | None
+    ended: Uncertain | None
 
-    def first_fault(self, rate_hz: float, stands_mm: list[float]) -> tuple[int, Fault] | None:
+    def first_fault(self, rate_hz: float, stands_mm: list[float]) -> Uncertain | None:
         """The first row that is not certain, with its fault; the machine stands at `stands_mm`."""
         found = self.bearings.first_fault(self.rows, rate_hz, stands_mm)
         if found is None and self.watch is not None:

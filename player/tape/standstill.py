@@ -27,8 +27,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.faults import Fault, LockFault, TapeFault
-from morfax.player.tape.phases import Phases
+from morfax.motion.faults import LockFault, TapeFault
+from morfax.player.tape.phases import Phases, Uncertain
 from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
@@ -75,7 +75,7 @@ class Bearings:
 
     def first_fault(
         self, phases: Phases, rate_hz: float, positions_mm: Sequence[float]
-    ) -> tuple[int, Fault] | None:
+    ) -> Uncertain | None:
         """The first row that no motion explains, and its fault; the screws stood at `positions_mm`."""
         sizes = np.abs(phases.surprise)
         if sizes.max(initial=0.0) < SURPRISE_CYCLES:
@@ -83,9 +83,8 @@ class Bearings:
         jumped = ~(sizes < SURPRISE_CYCLES)
         row = int(np.argmax(jumped.any(axis=1)))
         time_s, axis = (phases.first_row + row) / rate_hz, int(np.argmax(jumped[row]))
-        return row, self._jump(
-            axis, float(phases.surprise[row, axis]), time_s, positions_mm[axis]
-        )
+        surprise = float(phases.surprise[row, axis])
+        return Uncertain(row, self._jump(axis, surprise, time_s, positions_mm[axis]))
 
     def _jump(self, axis: int, surprise: float, time_s: float, position_mm: float) -> LockFault:
         """The fault of a phase that no motion explains."""

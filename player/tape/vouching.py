@@ -32,7 +32,7 @@ from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.held_rows import HeldRows
 from morfax.player.tape.lost_ways import Laid, LostWays, laid
-from morfax.player.tape.phases import Phases
+from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.tail import tail_of
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
@@ -123,9 +123,9 @@ class Vouching:
         upto = len(held) if ended else min(int(self._vouched) - held.first_row, len(held))
         upto = max(upto, self._given)
         out = self._cut(held, upto)
-        fault = self._fault or (certain.fault and certain.fault[1])
+        fault = self._fault or (certain.fault and certain.fault.fault)
         if fault is not None:
-            return out, (len(out), fault)
+            return out, Uncertain(len(out), fault)
         keep = max(upto - self._delays[0].span, 0)
         held.drop(keep)
         self._given = upto - keep

@@ -15,22 +15,21 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 from morfax.motion.arrays import Array
-from morfax.motion.faults import Fault
 from morfax.player.tape.bridges import Gap
-from morfax.player.tape.phases import Phases
+from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.tape import Stored
 
 StandsMm = Callable[[], Sequence[float]]  # where the machine stands, axis by axis
 PlaceMm = Callable[[int, float], float]  # where an axis is at a phase, cycles
-Given = tuple[Phases, tuple[int, Fault] | None]
+Given = tuple[Phases, Uncertain | None]
 
 
 class Certain(NamedTuple):
     """Rows that the dropouts have left certain, the first row that is not, and the gaps bridged so far."""
 
     rows: Phases
-    fault: tuple[int, Fault] | None
+    fault: Uncertain | None
     gaps: Sequence[Gap] = ()
 
 

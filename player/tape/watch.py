@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.faults import Fault, LockFault, TapeFault
+from morfax.motion.faults import LockFault, TapeFault
 from morfax.player.monitor.monitor import NEARLY
-from morfax.player.tape.phases import Phases
+from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.standstill import ALLOWED_CYCLES, Bearings, track_name
 from morfax.player.tape.warrant import StandsMm
 from morfax.recorder.tape.format import TapeFormat
@@ -47,16 +47,16 @@ class Watch:
         self._format, self._bearings = fmt, bearings
         self.takes_skew = True  # False: the check signal tells it, and it is taken out
 
-    def first_fault(self, phases: Phases, stands_mm: StandsMm) -> tuple[int, Fault] | None:
+    def first_fault(self, phases: Phases, stands_mm: StandsMm) -> Uncertain | None:
         """The first row that skew or shaking make uncertain, with its fault."""
         found = [
             f
             for f in (self.skewed(phases, stands_mm), self.unsteady(phases, stands_mm))
             if f is not None
         ]
-        return min(found, key=lambda one: one[0], default=None)
+        return min(found, key=lambda one: one.row, default=None)
 
-    def skewed(self, phases: Phases, stands_mm: StandsMm) -> tuple[int, Fault] | None:
+    def skewed(self, phases: Phases, stands_mm: StandsMm) -> Uncertain | None:
         """The first row with an axis too fast for the skew of its track, and the fault."""
         if (
             not self.takes_skew or len(phases) < 2 or not self._format.dwell_s
@@ -77,19 +77,20 @@ class Watch:
         row, axis = (int(i) for i in np.argwhere(wrong)[0])
         name = self._format.axes[axis]
         time_s = (phases.first_row + row) / rate_hz
-        return row, LockFault(
-            f"{name.upper()} moves at {speed[row, axis] * self._format.mm_per_cycle:.3g} mm/s at "
-            f"{time_s:.3f} s, and its "
-            f"track is {skew_s[axis] * 1e6:.0f} us off the reference: that is "
-            f"{speed[row, axis] * skew_s[axis]:.2f} cycle, "
+        error_cycles = float(speed[row, axis] * skew_s[axis])
+        speed_mm_s = speed[row, axis] * self._format.mm_per_cycle
+        fault = LockFault(
+            f"{name.upper()} moves at {speed_mm_s:.3g} mm/s at {time_s:.3f} s, and its track is "
+            f"{skew_s[axis] * 1e6:.0f} us off the reference: that is {error_cycles:.2f} cycle, "
             f"{ALLOWED_CYCLES:g} is allowed; copy the tape with the head set straight",
             axis=name,
             time_s=time_s,
-            error_cycles=float(speed[row, axis] * skew_s[axis]),
+            error_cycles=error_cycles,
             position_mm=stands_mm()[axis],
         )
+        return Uncertain(row, fault)
 
-    def unsteady(self, phases: Phases, stands_mm: StandsMm) -> tuple[int, Fault] | None:
+    def unsteady(self, phases: Phases, stands_mm: StandsMm) -> Uncertain | None:
         """The first row of a window in which the phase of an axis shakes, and the fault."""
         window = shake_rows(self._format.motion_rate_hz)
         whole = len(phases) // window * window
@@ -102,20 +103,18 @@ class Watch:
         if not (shakes > SHAKE_CYCLES).any():
             return None
         at, axis = (int(i) for i in np.argwhere(shakes > SHAKE_CYCLES)[0])
-        name, time_s = (
-            self._format.axes[axis],
-            (phases.first_row + at * window) / self._format.motion_rate_hz,
-        )
-        return at * window, LockFault(
+        name = self._format.axes[axis]
+        time_s = (phases.first_row + at * window) / self._format.motion_rate_hz
+        fault = LockFault(
             f"the phase of {name.upper()} shakes by {shakes[at, axis]:.4f} cycle (median) at {time_s:.3f} s, "
-            f"{SHAKE_CYCLES:g} is allowed: noise, crosstalk or print-through, which the motors "
-            "cannot follow; copy the tape "
-            f"on a better machine",
+            f"{SHAKE_CYCLES:g} is allowed: noise, crosstalk or print-through, which the motors cannot "
+            "follow; copy the tape on a better machine",
             axis=name,
             time_s=time_s,
             error_cycles=float(shakes[at, axis]),
             position_mm=stands_mm()[axis],
         )
+        return Uncertain(at * window, fault)
 
 
 @njit(cache=True, nogil=True)

@@ -16,6 +16,7 @@ layer of its INSERT.
 
 from __future__ import annotations
 
+import logging
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -99,6 +100,8 @@ def _opened(file: FilePath) -> Drawing:
     from ezdxf import recover
     from ezdxf.lldxf.const import DXFError
 
+    # what it meets on its way would stand on the terminal, where no one has asked for it
+    logging.getLogger("ezdxf").addHandler(logging.NullHandler())
     try:
         return ezdxf.readfile(file)
     except (DXFError, *DAMAGE):

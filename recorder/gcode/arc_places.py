@@ -14,6 +14,7 @@ from morfax.motion.arrays import Array
 from morfax.recorder.gcode.program_text import ARCS, WORDS, Block
 
 CHORD_MM = 0.2  # between the places on an arc: finer than any line drawn with a pen is wide
+STEP = 1e-3  # of a block's way, between the two places that give its direction at an end
 
 Place = tuple[float, float, float]
 
@@ -47,6 +48,14 @@ def place_at(begin_mm: Place, block: Block, share: float) -> tuple[float, float]
         dy = block.place_mm[1] - begin_mm[1]
         return begin_mm[0] + share * dx, begin_mm[1] + share * dy
     return _turned_to(begin_mm, block.centre_mm, turned)
+
+
+def step_at(begin_mm: Place, block: Block, at: int) -> tuple[float, float]:
+    """A short step along a block at its begin (0) or end (1): its direction there."""
+    from_, to = (0.0, STEP) if at == 0 else (1 - STEP, 1.0)
+    x0, y0 = place_at(begin_mm, block, from_)
+    x1, y1 = place_at(begin_mm, block, to)
+    return x1 - x0, y1 - y0
 
 
 def _turned_to(

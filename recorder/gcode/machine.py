@@ -18,12 +18,12 @@ from typing import Any, Literal
 
 from morfax.motion.toml_fields import Field, opened, parsed
 from morfax.recorder.gcode.machine_fields import (
-    CONTROL,
     FIELDS,
     LINES,
     NUMBER_LONG,
     SHORTEST_LINE,
     filled,
+    in_ascii,
     strings,
 )
 from morfax.recorder.gcode.takes import Takes, ToolWords
@@ -78,7 +78,7 @@ class Machine:
 
     def comment(self, text: str) -> str:
         """A line that the control passes over, cut to its longest."""
-        plain = CONTROL.sub("?", text).replace("(", "[").replace(")", "]")
+        plain = in_ascii(text).replace("(", "[").replace(")", "]")
         for obeyed in self.takes.not_sent:  # even in a comment
             plain = plain.replace(obeyed, ".")
         kept = plain[: self.longest_line - 3]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from typing import Any
 
 from morfax.motion.toml_fields import Field
@@ -16,6 +17,32 @@ from morfax.recorder.gcode.takes import read_takes, read_tool
 
 SUFFIXES = (".ngc", ".nc", ".gcode", ".tap", ".cnc", ".plt", ".hpgl")
 CONTROL = re.compile(r"[^\x20-\x7e]")  # what is no printable character of ASCII
+# letters that do not come apart into one of ASCII and an accent, as people write them without
+WRITTEN = str.maketrans(
+    {
+        "ä": "ae",
+        "ö": "oe",
+        "ü": "ue",
+        "Ä": "Ae",
+        "Ö": "Oe",
+        "Ü": "Ue",
+        "ß": "ss",
+        "ø": "o",
+        "Ø": "O",
+    }
+    | {
+        "æ": "ae",
+        "Æ": "Ae",
+        "å": "aa",
+        "Å": "Aa",
+        "ł": "l",
+        "Ł": "L",
+        "đ": "d",
+        "Đ": "D",
+        "œ": "oe",
+    }
+    | {"µ": "u", "–": "-", "—": "-", "×": "x", "’": "'", "“": '"', "”": '"', "„": '"'}
+)
 PLACEHOLDER = re.compile(r"\{(\w+)\}")
 SHORTEST_LINE = 64  # characters; an arc with its feed has up to 60
 NUMBER_LONG = 7  # characters of a line number, such as "N99990 "
@@ -31,6 +58,13 @@ LINES = (
     "hole_overcut",
     "hole_end",
 )
+
+
+def in_ascii(text: str) -> str:
+    """A text in printable ASCII: ä is ae, é is e, and ? is what has no such letter."""
+    written = unicodedata.normalize("NFC", text).translate(WRITTEN)
+    apart = unicodedata.normalize("NFKD", written)
+    return CONTROL.sub("?", "".join(c for c in apart if not unicodedata.combining(c)))
 
 
 def strings(held: Field) -> list[Field]:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.circle import kasa, spread
 from morfax.motion.compiled import njit
-from morfax.motion.plane import SAME_MM
+from morfax.motion.plane import SAME_MM, length_between
 from morfax.motion.polyline import lengths_mm
 
 SPACING_MM = 0.05  # of the places that stand for a path
@@ -126,7 +126,7 @@ def _turned_rad(places):  # type: ignore[no-untyped-def]
     """The approximate turn of a row of places on a circle, rad."""
     way = 0.0
     for i in range(1, len(places)):
-        way += math.hypot(places[i, 0] - places[i - 1, 0], places[i, 1] - places[i - 1, 1])
+        way += length_between(places, i - 1, i)
     return way / max(kasa(places)[2], SAME_MM)
 
 

@@ -26,8 +26,8 @@ from morfax.motion.polyline import area_mm2
 from morfax.recorder.gcode.arc_places import (
     Place,
     length_mm,
-    place_at,
     places_along,
+    step_at,
     turned_rad,
 )
 from morfax.recorder.gcode.closing import loop
@@ -40,7 +40,6 @@ HEAD_LINES = 10  # among which a program says for which machine it is, and where
 SAME_MM = 0.02  # of two sizes that are told in hundredths
 ZERO_LINE = re.compile(r"^[(;] ?zero at (-?[\d.]+),(-?[\d.]+) mm of the sheet")
 SHARP_RAD = math.radians(20)  # between two blocks of a bend it is less; chosen by trial
-STEP = 1e-3  # of a block's way, for its direction
 
 Place2 = tuple[float, float]
 
@@ -197,16 +196,15 @@ def _bends_mm(line: list[Block], sense: int) -> list[float]:
     for (before, block), (_, after) in zip(blocks, [*blocks[1:], blocks[0]], strict=True):
         if sense * turned_rad(before.place_mm, block) > 0:
             found.append(math.hypot(*block.centre_mm))
-        arrives = _heading_rad(before.place_mm, block, 1 - STEP, 1.0)
-        leaves = _heading_rad(block.place_mm, after, 0.0, STEP)
+        arrives = _heading_rad(before.place_mm, block, 1)
+        leaves = _heading_rad(block.place_mm, after, 0)
         turn = math.remainder(leaves - arrives, math.tau)
         if sense * turn > SHARP_RAD:
             found.append(0.0)
     return found
 
 
-def _heading_rad(begin: Place, block: Block, from_: float, to: float) -> float:
-    """The heading of a block between two shares of its way."""
-    x0, y0 = place_at(begin, block, from_)
-    x1, y1 = place_at(begin, block, to)
-    return math.atan2(y1 - y0, x1 - x0)
+def _heading_rad(begin: Place, block: Block, at: int) -> float:
+    """The heading of a block at its begin (0) or end (1)."""
+    x_mm, y_mm = step_at(begin, block, at)
+    return math.atan2(y_mm, x_mm)

@@ -26,13 +26,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from morfax.motion.arrays import Array
-from morfax.recorder.gcode.arc_places import Place, length_mm, place_at, turned_rad
+from morfax.recorder.gcode.arc_places import Place, length_mm, step_at, turned_rad
 from morfax.recorder.gcode.machine import Axes, Machine
 from morfax.recorder.gcode.program_text import ARCS, DWELL, RAPID, WORDS, Block
 
 # of the acceleration, towards the centre of an arc; the rest, half of it, is for the feed (LinuxCNC, tp.c)
 ACROSS = math.sqrt(3) / 2
-STEP = 1e-3  # of a block's way, between the two places that give its direction at an end
 
 _DWELL = re.compile(r"^G4 P([\d.]+)$")
 _PASSING = re.compile(r"^(M62|M63|M67|S)")  # obeyed on the way: the axes do not stop for it
@@ -89,8 +88,8 @@ def _leg(place: Place, block: Block, machine: Machine, share: float) -> _Leg | N
     way_mm = length_mm(place, block)
     if way_mm <= 0:
         return None
-    leaves = _direction(place, block, 0.0)
-    arrives = _direction(place, block, 1.0)
+    leaves = _direction(place, block, 0)
+    arrives = _direction(place, block, 1)
     if block.code == RAPID:
         speed_mm_s = _along(leaves, machine.rapid_mm_s)
     else:
@@ -106,15 +105,12 @@ def _leg(place: Place, block: Block, machine: Machine, share: float) -> _Leg | N
     return _Leg(way_mm, speed_mm_s, most_mm_s2, leaves, arrives)
 
 
-def _direction(place: Place, block: Block, at: float) -> Place:
+def _direction(place: Place, block: Block, at: int) -> Place:
     """The direction of a block at its begin (0) or end (1), of length 1."""
     if not turned_rad(place, block):
         way = [end - begin for begin, end in zip(place, block.place_mm, strict=True)]
     else:
-        from_, to = (0.0, STEP) if at == 0 else (1 - STEP, 1.0)
-        x0, y0 = place_at(place, block, from_)
-        x1, y1 = place_at(place, block, to)
-        way = [x1 - x0, y1 - y0, 0.0]
+        way = [*step_at(place, block, at), 0.0]
     whole = math.hypot(*way)
     return way[0] / whole, way[1] / whole, way[2] / whole
 

@@ -29,11 +29,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.motion import IN_WORK_BELOW_MM, Path
+from morfax.motion.motion import IN_WORK_BELOW_MM, THINNING_TOLERANCE_MM, Path
 
 DWELL_S = 0.25  # half as long again as the longest swivel of the head
 LEVEL = 0.02  # Z that changes less than this share of the way across stands
-NOISE_MM = 2e-4  # of a thinned path
+NOISE_MM = THINNING_TOLERANCE_MM
 # over less on either side of a rest, noise hides whether a step climbs
 HIDDEN_MM = 2 * NOISE_MM / LEVEL
 STAND = 0.25  # of the speed before and after it: a slower place parts two moves of Z

@@ -127,9 +127,9 @@ def programme_within(blocks: Iterator[Stored], rate_hz: int) -> tuple[int, int] 
         count = len(frames) // window
         left = frames[count * window :]
         levels.append(_levels(frames[: count * window], window))
-    level = np.concatenate(levels) if levels else np.zeros((0, 1))
-    if len(level) < SETTLING:
+    if sum(map(len, levels)) < SETTLING:
         return None
+    level = np.concatenate(levels)
     up = np.asarray((level > LEAST_LEVEL).all(axis=1))
     runs = np.flatnonzero(np.convolve(up, np.ones(SETTLING), "valid") == SETTLING)
     if not len(runs):

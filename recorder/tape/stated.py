@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path as FilePath
-from typing import Any
+from typing import Any, TypedDict
 
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.motion import MOTION_RATE_HZ
@@ -24,6 +24,22 @@ _EXAMPLES = {
     "reference_hz": "--reference-frequency 6kHz",
     "cycles_per_mm": "--cycles-per-mm 20",
 }
+
+
+class TapeEntries(TypedDict, total=False):
+    """What an operator gives by hand of a tape; it overrides the tape's text, None leaves it.
+
+    `start_mm`: X, Y … at the start; X and Y alone leave Z as it is. `order`: the tracks of the source, from
+    1, on which reference, X, Y … are, where it is not this order. `still`, `alike`: axes that may stand from
+    start to end, and that may run alike.
+    """
+
+    reference_hz: float | None
+    cycles_per_mm: float | None
+    start_mm: Sequence[float] | None
+    order: Sequence[int] | None
+    still: Sequence[str] | None
+    alike: Sequence[str] | None
 
 
 def format_of(source: Source, by_hand: dict[str, float | None]) -> TapeFormat:

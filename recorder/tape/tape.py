@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from typing import Unpack
 
 from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
@@ -24,7 +25,7 @@ from morfax.recorder.sound.source import (
 )
 from morfax.recorder.tape.format import TapeFormat, columns_of
 from morfax.recorder.tape.recording import Recording, record
-from morfax.recorder.tape.stated import allowed, format_of, started
+from morfax.recorder.tape.stated import TapeEntries, allowed, format_of, started
 
 __all__ = ["Recording", "Stored", "Tape", "TapeFormat", "full_scale", "record"]
 
@@ -38,31 +39,13 @@ class Tape(Ending):
         self.source, self.format, self._columns = source, fmt, columns
 
     @classmethod
-    def open(
-        cls,
-        file: str | os.PathLike[str],
-        *,
-        reference_hz: float | None = None,
-        cycles_per_mm: float | None = None,
-        start_mm: Sequence[float] | None = None,
-        order: Sequence[int] | None = None,
-        still: Sequence[str] | None = None,
-        alike: Sequence[str] | None = None,
-    ) -> Tape:
-        """Open a tape in a file; values given by hand override its text chunk, as in `of`.
+    def open(cls, file: str | os.PathLike[str], **by_hand: Unpack[TapeEntries]) -> Tape:
+        """Open a tape in a file.
 
         Raises FileFault if the file cannot be read, TapeFault if it is no tape, cut short, empty or of
         unknown format.
         """
-        return cls.of(
-            FileSource(file),
-            reference_hz=reference_hz,
-            cycles_per_mm=cycles_per_mm,
-            start_mm=start_mm,
-            order=order,
-            still=still,
-            alike=alike,
-        )
+        return cls.of(FileSource(file), **by_hand)
 
     @classmethod
     def of(
@@ -76,10 +59,7 @@ class Tape(Ending):
         still: Sequence[str] | None = None,
         alike: Sequence[str] | None = None,
     ) -> Tape:
-        """The tape in a source; values given by hand override its text; a start X, Y leaves Z as it is.
-
-        `order`: the tracks of the source, from 1, on which reference, X, Y … are, where it is not this order.
-        `still`, `alike`: axes that may stand from start to end, and that may run alike.
+        """The tape in a source, with what is given of it by hand (`TapeEntries`).
 
         Raises TapeFault if it has too few tracks, or is of unknown format; the source is closed then.
         """

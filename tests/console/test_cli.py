@@ -202,6 +202,23 @@ def test_a_reader_that_goes_away_is_no_fault(path_file: Path) -> None:
     assert done.returncode == 0
 
 
+@pytest.mark.parametrize("closed", ["2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
+def test_streams_that_are_closed_take_what_is_said(
+    path_file: Path, tmp_path: Path, closed: str
+) -> None:
+    """(Fails without `_open_closed_streams`: a mistake in morfax, exit code 70.)"""
+    words = ["record", str(path_file), "-o", str(tmp_path / "closed.cubic")]
+    done = subprocess.run(
+        ["sh", "-c", f'exec "$@" {closed}', "sh", *MORFAX, *words],
+        capture_output=True,
+        text=True,
+        env=_with_house(),
+        check=False,
+    )
+    assert done.returncode == 0 and done.stderr == ""
+    assert (tmp_path / "closed.cubic").read_text().startswith("morfax cubic 1")
+
+
 def _with_house() -> dict[str, str]:
     """The environment, with the packages on the path wherever the command is called."""
     return {**os.environ, "PYTHONPATH": str(Path(cli.__file__).absolute().parents[2])}

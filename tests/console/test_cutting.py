@@ -143,10 +143,14 @@ def test_a_program_says_its_zero_and_the_size_of_the_part_and_compare_takes_them
     assert "% of the path lies along the drawing's ink: the path has another zero" in far.err
 
 
+@pytest.mark.parametrize(
+    "placed", [(), ("--turn", "90deg"), ("--mirror", "x", "--turn", "30deg")]
+)
 def test_a_plotter_that_cannot_come_to_a_lead_is_told_the_zero_that_goes(
-    morfax: Morfax, here: Path
+    morfax: Morfax, here: Path, placed: tuple[str, ...]
 ) -> None:
-    words = ("trace", SAMPLES / "bracket.png", "--lines", "contours", "--kerf", "1mm")
+    """(Fails turned or mirrored where a zero on the sheet does not go with the drawing.)"""
+    words = ("trace", SAMPLES / "bracket.png", "--lines", "contours", "--kerf", "1mm", *placed)
     plot = (*words, "--lead-in", "3mm", "-o", "a.plt", "--zero")
     refused = morfax(*plot, "lower-left")
     assert refused.exit_code == 7 and not (here / "a.plt").exists()

@@ -217,10 +217,16 @@ def test_a_machine_that_is_given_reads_the_program_that_is_played(
     assert compared.figures["largest_mm"] <= 0.010  # um of what was written
     moves = ["G0 Z2 F600", "G0 X5 Y5 F3000", "G1 Z-1 F200", "G1 X20 F600", "G0 Z2", "M5"]
     (here / "b.gcode").write_text("\n".join(["G21", "G90", "M3 S1000", *moves, ""]))
-    assert "for Marlin, with --machine marlin" in morfax("play", "b.gcode").fault
+    assert "with --machine grbl-router or marlin" in morfax("play", "b.gcode").fault
     played = morfax("play", "b.gcode", "--machine", "marlin", "-o", "b.csv", "--json")
     assert played.exit_code == 0
     assert played.figures["end_place_mm"] == pytest.approx([20, 5, 2], abs=0.01)
+    assert "see that it is whole" not in played.err
+    # Grbl takes a program without an end, and programs for it end as a rule
+    played = morfax("play", "b.gcode", "--machine", "grbl-router", "-o", "b.csv", "--force")
+    assert played.exit_code == 0 and "no M2 or M30; see that it is whole" in played.err
+    (here / "b.gcode").write_text("\n".join(["G21", "G90", "M3 S1000", *moves, "M2", ""]))
+    assert "whole" not in morfax("play", "b.gcode", "--machine", "grbl-router").err
 
 
 def test_what_was_played_is_recorded_in_another_medium(morfax: Morfax, here: Path) -> None:

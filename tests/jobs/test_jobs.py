@@ -315,6 +315,32 @@ def test_the_zero_may_be_of_the_part_that_is_cut(
         assert compared.figures["path_to_ink"]["rms_mm"] < 0.01
 
 
+@pytest.mark.parametrize(
+    "placed", [{"turn_rad": np.pi / 2}, {"mirror": "x", "scale": 0.5}, {"turn_rad": 0.3}]
+)
+def test_a_zero_on_the_sheet_goes_with_the_drawing(placed: dict[str, Any], here: Path) -> None:
+    """The middle of the bracket's hole is where the machine has its zero, however the program is placed.
+
+    (Fails where the place counts after mirror, scale and turn: then it is told and meant on the sheet, and
+    the program lies elsewhere.)
+    """
+    contours = LineSettings(lines="contours")
+    TraceJob(BRACKET, TraceOutputs(here / "a.csv"), TraceSettings(contours)).run()
+    hole = read_path(here / "a.csv").runs()[0]
+    middle_mm = 0.5 * (hole.min(axis=0) + hole.max(axis=0))
+    zero = (float(middle_mm[0]), float(middle_mm[1]))
+    settings = TraceSettings(contours, program=ProgramSettings(zero=zero))
+    unit = RecordingUnit(**placed)
+    told = TraceJob(BRACKET, TraceOutputs(here / "b.csv"), settings, unit).run().figures
+    RecordJob(here / "a.csv", here / "c.ngc", unit=unit, zero=zero).run()
+    PlayJob(here / "c.ngc", (here / "c.csv",)).run()
+    assert told["zero_place_mm"] == pytest.approx(zero)
+    for name in ("b.csv", "c.csv"):
+        placed_hole = read_path(here / name).runs()[0]
+        middle = 0.5 * (placed_hole.min(axis=0) + placed_hole.max(axis=0))
+        assert middle == pytest.approx((0, 0), abs=0.02)
+
+
 def test_a_machine_s_direction_counts_where_nobody_asks_for_another(here: Path) -> None:
     """qtplasmac turns the outline clockwise; `--direction` and `--conventional` come before it."""
     ways = {}

@@ -129,6 +129,43 @@ def test_a_kept_kernel_runs_without_numba_and_is_made_anew_when_what_is_in_it_ch
     assert moved == [*changed[:4], 0, False]
 
 
+@pytest.mark.skipif(not machine_code.can_be_kept(), reason="numba runs the kernels here")
+@pytest.mark.parametrize("formula", ["np.linalg.solve(a, b)", "a @ b"])
+def test_linear_algebra_is_loaded_before_a_kept_kernel_runs(
+    tmp_path: Path, formula: str
+) -> None:
+    """Where the kernel itself loads it at its first call, Ctrl-C ends the process with a dump.
+
+    (Fails without `_load_algebra`: the kernel comes by no algebra here.)
+    """
+    lines = [
+        "import numpy as np",
+        "from morfax.motion.compiled import njit",
+        "@njit(cache=True)",
+        "def solved(a, b, rounds):",
+        "    for _ in range(rounds):",
+        f"        b = {formula}",
+        "    return b",
+    ]
+    (tmp_path / "solved.py").write_text("\n".join([*lines, ""]))
+    call = (
+        "import sys, numpy as np; from solved import solved; solved(np.eye(2), np.ones(2), 0); "
+    )
+    names = "scipy.linalg.cython_lapack", "scipy.linalg.cython_blas", "numba.core"
+    call += f"print(*[name in sys.modules for name in {names}])"
+    kept = {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+    paths = {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    for with_numba in (True, False):
+        done = subprocess.run(
+            [sys.executable, "-c", call],
+            env={**os.environ, **kept, **paths},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert done.stdout.split() == ["True", "True", str(with_numba)]
+
+
 def test_only_the_newest_versions_of_a_kernel_are_kept(tmp_path: Path) -> None:
     for age in range(machine_code.VERSIONS + 3):
         file = tmp_path / f"a.part.cpython-311.{age:016x}.kernel"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 FILE = re.compile(
     r"`((?:motion|tracer|recorder|player|jobs|reports|console|samples|docs|tests)/[\w/-]+\.\w+)`"
 )
+WRITES = ("-o", "--path", "--picture", "--following")
 
 
 def plain(line: str) -> str:
@@ -64,3 +66,18 @@ def test_the_commands_of_a_page_can_be_typed_one_after_the_other(page: Path) -> 
         if "trace" in line and "-o" not in words and "--print-settings" not in words:
             made_up.append(drawing)
     assert len(made_up) == len(set(made_up))
+
+
+@pytest.mark.parametrize(
+    "name", ["alfred-herbert", "pratt-whitney", "sea", "side-by-side", "superior-electric"]
+)
+def test_a_system_s_page_makes_every_tape_and_path_that_its_commands_read(name: str) -> None:
+    """Somebody who restores a control types them from the first to the last, with a scan of his own."""
+    text = (ROOT / "docs" / "background" / f"{name}.md").read_text(encoding="utf-8")
+    made = {"scan.png"}
+    for line in re.findall(r"^ {4,}(morfax [a-z]+ \S*\..*)$", text, re.M):
+        words = shlex.split(line, comments=True)[2:]
+        files = [word for word in words if re.search(r"\.[a-z]+$", word)]
+        written = [a for before, a in pairwise(words) if before in WRITES]
+        assert set(files) - set(written) <= made, line
+        made |= set(written)

@@ -15,7 +15,7 @@ from morfax.recorder.cubics.cubics import record_cubics
 from morfax.recorder.cubics.file import read_program as read_cubic
 from morfax.recorder.steps.file import read_program as read_steps
 from morfax.recorder.steps.steps import record_steps
-from tests.recorder.steps.test_steps import circle
+from tests.recorder.steps.paths import circle
 
 RECORDERS = {".steps": record_steps, ".cubic": record_cubics}
 

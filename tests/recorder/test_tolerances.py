@@ -24,7 +24,7 @@ from morfax.recorder.gcode.blocks import record_blocks
 from morfax.recorder.steps import file as step_file
 from morfax.recorder.steps.file import StepFormat
 from morfax.recorder.steps.steps import record_steps
-from tests.recorder.gcode.test_blocks import run_of
+from tests.recorder.gcode.runs import run_of
 
 UM = 1e-3
 DRAWN_UM = 1.0  # sagitta of the arcs as `run_of` draws them

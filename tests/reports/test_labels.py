@@ -46,6 +46,22 @@ def test_names_of_places_near_to_each_other_do_not_lie_over_one_another(count: i
         assert np.all(beside | (others[:, 1] >= high) | (others[:, 3] <= low))
 
 
+def test_a_line_leads_to_every_name_that_does_not_stand_beside_its_place() -> None:
+    """(Fails without `leaders`, and with a leader that ends elsewhere than at the name.)"""
+    plate = crowd(labels.FEW_NAMES)
+    boxes, leaders = boxes_pt(plate), [m for m in plate.marks if isinstance(m, Line)]
+    led = 0
+    for words, (left, low, right, high) in zip(plate.words, boxes, strict=True):
+        place_pt = 4.0 * np.array(words.place_mm)
+        nearest_pt = np.clip(place_pt, (left, low), (right, high))
+        own = [m for m in leaders if np.allclose(m.places_mm[0], words.place_mm)]
+        assert len(own) == (np.hypot(*(nearest_pt - place_pt)) >= labels.BESIDE_PT)
+        if own:
+            assert 4.0 * own[0].places_mm[1] == pytest.approx(nearest_pt)
+        led += len(own)
+    assert 0 < led < len(plate.words)
+
+
 def test_a_name_leaves_the_path_free_and_stays_on_the_axes() -> None:
     """One upright line through the place where the name would stand, and a place at the right border."""
     plate = Plate(VIEW)

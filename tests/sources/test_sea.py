@@ -27,7 +27,7 @@ from morfax.recorder.cubics.cubics import differences, record_cubics
 from morfax.recorder.cubics.file import CubicFormat, read_program
 from tests.console.conftest import Morfax
 from tests.player.cubics.registers import table, truncated_end
-from tests.recorder.steps.test_steps import circle
+from tests.recorder.steps.paths import circle
 
 Vectors = Callable[[str], Any]
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,6 +29,10 @@ DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a dark
 # dpi; a line that is drawn in a shadow as dark as a shape is narrower
 RIM_MM = 0.25 * WIDEST_STROKE_MM
 SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
+# A shape's own paper is smoothed over half of the widest stroke: inwards the rim's darkness falls slowly, and
+# so far beyond its ink it is still darker than this. A line has an edge there, on either side.
+BEYOND_MM, STILL_DARK = 0.05 * WIDEST_STROKE_MM, 0.25
+SOFT = 0.25  # of the paper about a patch of ink is as dark: half of it about a rim, by trial
 
 
 def inked(drawing: Drawing) -> Runs:
@@ -57,13 +62,32 @@ def depths_px(runs: Runs, shape: tuple[int, int]) -> Array:
     return sums
 
 
-def are_solid(drawing: Drawing, patches: Patches) -> NDArray[np.bool_]:
-    """Which patches of ink are the rims of filled shapes."""
+def are_solid(drawing: Drawing, patches: Patches, widths_mm: Array) -> NDArray[np.bool_]:
+    """Which patches of ink, of some widths, are the rims of filled shapes, and no lines in a shadow."""
     if drawing.shapes is None:
         return np.zeros(patches.count, bool)
     beside = _beside_shapes(drawing, patches, slice(None))
     inked = np.bincount(patches.patch, beside * (patches.end - patches.begin), patches.count)
-    return np.asarray(inked > SOLID * patches.areas)
+    solid = np.asarray(inked > SOLID * patches.areas)
+    narrow = np.flatnonzero(solid & (widths_mm <= RIM_MM))
+    solid[narrow] = [_falls_slowly(drawing, patches, patch) for patch in narrow.tolist()]
+    return solid
+
+
+def _falls_slowly(drawing: Drawing, patches: Patches, patch: int) -> bool:
+    """Whether the darkness of a patch of ink falls slowly at one side, as that of a rim does inwards."""
+    beyond_px = max(2, round(BEYOND_MM / drawing.pitch_mm))
+    halo, shape = beyond_px + 1, drawing.darkness.shape
+    top, bottom, left, right = patches.boxes[patch].tolist()
+    rows = max(0, top - halo), min(shape[0], bottom + halo)
+    columns = max(0, left - halo), min(shape[1], right + halo)
+    chosen = np.zeros(patches.count, bool)
+    chosen[patch] = True
+    ink = patches.painted(chosen, *rows, *columns)
+    away_px = cv2.distanceTransform(1 - ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    about = np.abs(away_px - beyond_px) < 0.5
+    darkness = drawing.darkness[slice(*rows), slice(*columns)]
+    return bool(np.mean(darkness[about] > STILL_DARK) > SOFT) if about.any() else False
 
 
 def is_filled(drawing: Drawing, patches: Patches, patch: int) -> bool:

@@ -26,7 +26,7 @@ from morfax.motion.median import median
 from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.inked import DEEPEST_PX, RIM_MM, are_solid, depths_px, inked
+from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 from morfax.tracer.drawing.weighing import Weight, weighed_mm
@@ -103,7 +103,7 @@ class Sheet:
             4 * deep - 2, 1.0
         )  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
         lengths_mm, widths_mm = areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm
-        solid = are_solid(drawing, patches) & (widths_mm > RIM_MM)
+        solid = are_solid(drawing, patches, widths_mm)
         sheet = cls(drawing, patches, lengths_mm, widths_mm, solid)
         if not sheet._long_enough().any():
             raise DrawingFault(
@@ -123,8 +123,11 @@ class Sheet:
         return replace(self, window=(*first, *last))
 
     def longest(self) -> Stroke:
-        """The longest line."""
+        """The longest line; of a sheet that has nothing else the longest rim of a filled shape."""
+        are_lines = self._long_enough() & ~self.are_solid
         lengths_mm = self.one_pen_mm()
+        if are_lines.any():
+            lengths_mm = np.where(are_lines, lengths_mm, 0.0)
         long = np.flatnonzero(lengths_mm >= (1 - 2 * ALIKE) * lengths_mm.max())
         return self.stroke(int(self.longest_first(long)[0]))
 

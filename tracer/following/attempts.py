@@ -34,6 +34,7 @@ from morfax.tracer.following.ways_out import Turns
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.sensing.side import SIDES, Side
+from morfax.tracer.sensing.view import STEP_WIDTHS
 
 # All limits below were chosen by trial on the test drawings.
 # the other way round is the line itself if it is shorter than this: straight on has led elsewhere
@@ -42,7 +43,6 @@ DOUBTS = 8  # doubts of a run that are looked into
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
 TWICE = 0.1  # of a run: crossing lines and legs that end in one tip run together for less
-STEP = 0.1  # widths from place to place of a run that is searched for stretches gone twice
 AGAIN = 4  # widths on from a place, the run may come by that place again
 # a stub as short, straight on from a closed line, is where the pen set out, and not another line
 OVERRUN_MM = 3.0
@@ -275,11 +275,11 @@ def _goes_twice(run: Followed) -> bool:
     """Whether more than `TWICE` of a run goes along what it has followed before."""
     from scipy.spatial import cKDTree
 
-    step_mm = STEP * run.view.width_mm
+    step_mm = STEP_WIDTHS * run.view.width_mm
     places = evenly(run.positions_mm[::THINNED], step_mm)
     near = cKDTree(places).query_pairs(2 * step_mm, output_type="ndarray")
-    again = near[np.ptp(near, axis=1) * STEP > AGAIN] if len(near) else near
-    return len(set(again[:, 1].tolist())) > TWICE * len(places) + AGAIN / STEP
+    again = near[np.ptp(near, axis=1) * STEP_WIDTHS > AGAIN] if len(near) else near
+    return len(set(again[:, 1].tolist())) > TWICE * len(places) + AGAIN / STEP_WIDTHS
 
 
 def _kind(put_down: Stance) -> type[Follower]:

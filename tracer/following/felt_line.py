@@ -14,6 +14,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.plane import heading_between
 from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
@@ -97,7 +98,7 @@ def _bare_mm(view: View, way: Array, seen: Array) -> float:
 def _bare(cells, places, reach_mm, broadest_mm):  # type: ignore[no-untyped-def]
     """Along how many steps of a way (n, 2) mm, at their ends, the line is no broader than so much."""
     for k in range(len(places) - 1):
-        heading = math.atan2(places[k + 1, 1] - places[k, 1], places[k + 1, 0] - places[k, 0])
+        heading = heading_between(places, k, k + 1)
         right, left = edges(cells, places[k + 1, 0], places[k + 1, 1], heading, reach_mm)
         if not left - right <= broadest_mm:  # NaN: no edge in reach
             return k

@@ -25,7 +25,7 @@ from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import Leg, centre_at, turn
+from morfax.tracer.sensing.leg import FACING, Leg, centre_at, turn
 from morfax.tracer.sensing.parabola import bend_at
 from morfax.tracer.sensing.photocell import LEVEL, Cells, darkness_at, ring
 from morfax.tracer.sensing.ray import edges
@@ -45,7 +45,6 @@ PLACES = 80  # tried along a line
 ABOUT_WIDTHS = 2.0  # to either side of a place that was asked for, places are tried
 FAINTEST = 0.2  # darkness: fainter ink is taken for this dark
 RING_WIDTHS, RING_PX = 0.9, 4.5  # radius of the ring of cells about a place: the larger
-OPPOSITE = math.radians(35)  # the ring's two arcs are opposite each other within this
 NARROWEST, WIDEST = 0.4, 2.5  # times the line's width: a line of another width is another line
 FEWEST_STATIONS = 6  # felt to either side
 FELT = 1.5  # leg's lengths are felt to either side
@@ -153,7 +152,7 @@ def _heading(view: View, place: Array) -> float | None:
         return None
     there, back = arcs.mean(axis=1)
     bend = turn(there, back + math.pi)
-    return None if abs(bend) > OPPOSITE else float(there + 0.5 * bend)
+    return None if abs(bend) > FACING else float(there + 0.5 * bend)
 
 
 def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | None:
@@ -199,7 +198,7 @@ def _felt_about(cells, place, sizes_mm):  # type: ignore[no-untyped-def]
     there, back = 0.5 * (arcs[0, 0] + arcs[0, 1]), 0.5 * (arcs[1, 0] + arcs[1, 1])
     turned = back + math.pi - there
     turned -= math.tau * round(turned / math.tau)
-    if abs(turned) > OPPOSITE:
+    if abs(turned) > FACING:
         return 0.0, 0.0
     heading = there + 0.5 * turned
     # 2. the line felt both ways

@@ -12,6 +12,7 @@ Source: patent ES 361967, section on use: the operator brings the head over the 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -56,7 +57,8 @@ def put_down(
     sheet = drawing if isinstance(drawing, Sheet) else Sheet.of(drawing)
     settings = settings or Settings()
     stroke = _stroke_at(sheet, start_mm)
-    for stance in _stances(sheet, stroke, start_mm, settings, reference_mm):
+    sought = _Sought(start_mm, settings, reference_mm)
+    for stance in _stances(sheet, stroke, sought):
         yield stance, stroke.length_mm
 
 
@@ -66,56 +68,55 @@ def _catch_mm(sheet: Sheet) -> float:
 
 
 def _stroke_at(sheet: Sheet, start_mm: tuple[float, float] | None) -> Stroke:
-    """The line nearest to a place, or the longest; raises LineFault if none is near."""
+    """The line nearest to a place, or the longest; raises LineFault if there is none, or none is near."""
     if start_mm is None:
-        return sheet.longest()
+        stroke = sheet.longest()
+        if sheet.are_solid[stroke.patch]:
+            raise a_dark_area(sheet, stroke)
+        return stroke
     return sheet.nearest(start_mm, _catch_mm(sheet))
 
 
-def _stances(
-    sheet: Sheet,
-    stroke: Stroke,
-    start_mm: tuple[float, float] | None,
-    settings: Settings,
-    reference_mm: tuple[float, float] | None,
-) -> Iterator[Stance]:
+class _Sought(NamedTuple):
+    """What was given of the place where the head is put down: near it, the settings, the reference point."""
+
+    start_mm: tuple[float, float] | None
+    settings: Settings
+    reference_mm: tuple[float, float] | None
+
+    def view(self, sheet: Sheet, stroke: Stroke) -> View:
+        """How the head sees a line of a sheet."""
+        width_mm = self.settings.line_width_mm or stroke.width_mm
+        return view_of(sheet, self.settings.aperture_mm, width_mm)
+
+
+def _stances(sheet: Sheet, stroke: Stroke, sought: _Sought) -> Iterator[Stance]:
     """Stances on a line, the best first: at its open ends, of which an edge has none, and at plain places."""
+    settings = sought.settings
     if sheet.drawing.shade is not None:
         view, ends = edge_view_of(sheet.drawing, settings.aperture_mm), list[Stance]()
     else:
-        yield from _as_before(sheet, stroke, start_mm, settings, reference_mm)
-        view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
-        ends = _ends(view, sheet, stroke, start_mm, settings, reference_mm)
+        yield from _as_before(sheet, stroke, sought)
+        view = sought.view(sheet, stroke)
+        ends = _ends(view, sheet, stroke, sought)
     yield from ends
     is_clean = bool(ends)
-    for stance in _plain(view, stroke, start_mm, _catch_mm(sheet)):
+    for stance in _plain(view, stroke, sought.start_mm, _catch_mm(sheet)):
         is_clean = True
         yield stance
     if not is_clean:
         raise _nowhere_clean(sheet, stroke, view.width_mm, settings.line_width_mm)
 
 
-def _ends(
-    view: View,
-    sheet: Sheet,
-    stroke: Stroke,
-    start_mm: tuple[float, float] | None,
-    settings: Settings,
-    reference_mm: tuple[float, float] | None,
-) -> list[Stance]:
+def _ends(view: View, sheet: Sheet, stroke: Stroke, sought: _Sought) -> list[Stance]:
     """Stances at the open ends of a line, or at those near a place."""
-    if start_mm is not None:
-        return _ends_near(view, stroke, start_mm, settings.gap_mm)[:ENDS]
-    return at_ends(view, sheet, stroke, settings.gap_mm, reference_mm)[:ENDS]
+    gap_mm = sought.settings.gap_mm
+    if sought.start_mm is not None:
+        return _ends_near(view, stroke, sought.start_mm, gap_mm)[:ENDS]
+    return at_ends(view, sheet, stroke, gap_mm, sought.reference_mm)[:ENDS]
 
 
-def _as_before(
-    sheet: Sheet,
-    stroke: Stroke,
-    start_mm: tuple[float, float] | None,
-    settings: Settings,
-    reference_mm: tuple[float, float] | None,
-) -> Iterator[Stance]:
+def _as_before(sheet: Sheet, stroke: Stroke, sought: _Sought) -> Iterator[Stance]:
     """Of a line whose ink was changed elsewhere: the stances that the head had before, so that it runs the
     same way up to there.
     """
@@ -125,15 +126,14 @@ def _as_before(
     # 1. where the head was put down on the bare drawing
     try:
         before = sheet.drawing.bare.sheet
-        old = _stroke_at(before, start_mm)
+        old = _stroke_at(before, sought.start_mm)
     except Fault:
         return
-    width_mm = settings.line_width_mm or old.width_mm
-    view = view_of(before, settings.aperture_mm, width_mm)
-    found = _ends(view, before, old, start_mm, settings, reference_mm)
-    found += _plain(view, old, start_mm, _catch_mm(before))
+    view = sought.view(before, old)
+    found = _ends(view, before, old, sought)
+    found += _plain(view, old, sought.start_mm, _catch_mm(before))
     # 2. the same on the ink as it is now, where that is still this line
-    now = view_of(sheet, settings.aperture_mm, width_mm).cells
+    now = sought.view(sheet, old).cells
     for stance in found:
         if stroke.is_at(stance.place_mm) and is_far(stance, changed_mm):
             yield on_ink(stance, now)
@@ -157,9 +157,9 @@ def ends_of(
     sheet: Sheet, stroke: Stroke, settings: Settings, reference_mm: tuple[float, float] | None
 ) -> list[tuple[Stance, float]]:
     """Stances at the open ends of one of the lines, each with its length, mm."""
-    view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
-    ends = at_ends(view, sheet, stroke, settings.gap_mm, reference_mm)
-    return [(stance, stroke.length_mm) for stance in ends[:ENDS]]
+    sought = _Sought(None, settings, reference_mm)
+    ends = _ends(sought.view(sheet, stroke), sheet, stroke, sought)
+    return [(stance, stroke.length_mm) for stance in ends]
 
 
 def reference_on(drawing: Drawing) -> tuple[float, float]:
@@ -193,7 +193,7 @@ def _nowhere_clean(
     """The fault of a line on which the head can nowhere be put down."""
     drawing, why, edge = sheet.drawing, "", ""
     if is_filled(drawing, sheet.patches, stroke.patch):
-        return _filled(sheet, stroke)
+        return a_dark_area(sheet, stroke)
     gap = narrow_strip_of(drawing, stroke.middles_mm, width_mm)
     if gap is not None:
         (x, y), dpi = gap.place_mm, finer_dpi(drawing.pitch_mm * drawing.finer, PARTED)
@@ -209,7 +209,7 @@ def _nowhere_clean(
     )
 
 
-def _filled(sheet: Sheet, stroke: Stroke) -> LineFault:
+def a_dark_area(sheet: Sheet, stroke: Stroke) -> LineFault:
     """The fault of a filled shape where a line is asked for; an edge needs paper all round."""
     x, y = stroke.middles_mm[0]
     top, bottom, left, right = sheet.patches.boxes[stroke.patch].tolist()

@@ -15,13 +15,13 @@ import numpy as np
 from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.kernel import HOME_COSINE
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home
 from morfax.tracer.junctions.line_ahead import AHEAD
 from morfax.tracer.sensing.leg import Leg, turn
 
 ON_HOME = 0.3  # widths: a course that comes as near to home passes over it; by trial
-SAME_WAY = 0.8  # cosine of the angle between its heading there and home's: 37 degrees; by trial
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class WayHome:
             step = way[min(near + 1, len(way) - 1)] - way[min(near, len(way) - 2)]
             over_home = np.hypot(*(way[near] - home)) < ON_HOME * width_mm
             ahead_rad = math.atan2(step[1], step[0])
-            if over_home and near > 0 and math.cos(ahead_rad - heading) > SAME_WAY:
+            if over_home and near > 0 and math.cos(ahead_rad - heading) > HOME_COSINE:
                 return [*distinct[:k], np.vstack([way[:near], home])]
         return None
 

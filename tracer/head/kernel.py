@@ -43,6 +43,7 @@ from morfax.motion.compiled import njit
 from morfax.tracer.head.screws import move, owed_s
 from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT
 from morfax.tracer.head.swinging import detect, seen, swing, way_of
+from morfax.tracer.sensing.moments import NO_PLACES, parabola_of, with_place
 
 # Shares of the line's ink; all chosen by trial on the test drawings.
 LOST = 0.2  # less over a sweep: the line has gone from under a head without guard cells
@@ -54,7 +55,7 @@ BEND_FOLLOWS = 0.1  # share by which the usual bend follows the bend, sweep by s
 GUARD_FOLLOWS = 0.5  # share by which a guard cell follows what it sees, sweep by sweep
 SINGULAR = 1e-9  # of the moments' product: too few places on the drum for a parabola
 HOME_ASIDE = 0.3  # of the lead: home is on the line
-HOME_COSINE = 0.8  # of the angle between the heading and home's
+HOME_COSINE = 0.8  # of the angle between the heading and home's: 37 degrees; by trial
 SHORTEST = 0.2  # of the distance to the point: the axis may have come so near to it
 
 
@@ -83,37 +84,22 @@ def _fit(state, t):  # type: ignore[no-untyped-def]
     """Lay a parabola through the drum's places about the point ahead of the axis: where the line is there,
     and its bend.
 
-    Weights fall to nothing at the window's ends: 1 - (x/h)². The sums solve for y = p0 + p1·x + p2·x².
+    Weights fall to nothing at the window's ends: 1 - (x/h)².
     """
     # 1. the moments of the places, x along the heading and y across it, from the point
     c, s = way_of(state)
     x0, y0 = state.x_mm + t.point_mm * c, state.y_mm + t.point_mm * s
     half = _half_window(state, t)
-    s0 = s1 = s2 = s3 = s4 = 0.0
-    b0 = b1 = b2 = 0.0
+    sums = NO_PLACES
     for k in range(min(state.places, DRUM)):
         dx, dy = state.drum_mm[k, 0] - x0, state.drum_mm[k, 1] - y0
         x, y = dx * c + dy * s, dy * c - dx * s
         if abs(x) < half and abs(y) < half:
-            w = 1.0 - (x / half) ** 2
-            xx = x * x
-            s0 += w
-            s1 += w * x
-            s2 += w * xx
-            s3 += w * xx * x
-            s4 += w * xx * xx
-            b0 += w * y
-            b1 += w * x * y
-            b2 += w * xx * y
-    # 2. the parabola, by Cramer's rule
-    d0, d1, d2 = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
-    det = s0 * d0 + s1 * d1 + s2 * d2
-    if det < SINGULAR * s0 * s2 * s4 or s0 == 0.0:
+            sums = with_place(sums, 1.0 - (x / half) ** 2, x, y)
+    # 2. the parabola
+    is_one, p0, p1, p2 = parabola_of(sums, SINGULAR)
+    if not is_one:
         return
-    d11, d12, d22 = s0 * s4 - s2 * s2, s1 * s2 - s0 * s3, s0 * s2 - s1 * s1
-    p0 = (d0 * b0 + d1 * b1 + d2 * b2) / det
-    p1 = (d1 * b0 + d11 * b1 + d12 * b2) / det
-    p2 = (d2 * b0 + d12 * b1 + d22 * b2) / det
     # 3. the point on it, and the bend there
     state.point_x_mm, state.point_y_mm = x0 - p0 * s, y0 + p0 * c
     state.bend_per_mm = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5

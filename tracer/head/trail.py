@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.plane import heading_between
 from morfax.tracer.head import loop
 from morfax.tracer.sensing.leg import Leg
 
@@ -173,7 +174,7 @@ def place_back(marks, distance_mm):  # type: ignore[no-untyped-def]
     i = max(first, count - 1 - round(distance_mm / marks.step_mm))
     j = min(i + CHORD, count - 1)
     before = max(first, j - CHORD)
-    heading = math.atan2(places[j, 1] - places[before, 1], places[j, 0] - places[before, 0])
+    heading = heading_between(places, before, j)
     return places[i, 0], places[i, 1], heading
 
 

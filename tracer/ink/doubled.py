@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends
-from morfax.tracer.ink.nib import Ink, is_by_heading, what_swells
+from morfax.tracer.ink.nib import Ink, is_by_heading, seems_two_lines, what_swells
 from morfax.tracer.ink.run import Run, smooth
 from morfax.tracer.ink.swelling import Swelling, pen_of, pen_of_hollow, stands_out
 
@@ -65,8 +65,8 @@ LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 class Doubled(NamedTuple):
     """The pen's width, mm, and the stretches that two lines share: which of the stations of each.
 
-    Short pieces of the same lines are `cut` by others that cross them. If it is not sure that they are two
-    they are run once, and told.
+    Short pieces of the same lines are `cut` by others that cross them. Where it is not sure that they are two
+    they are run once, and told if a place along them looks so.
     """
 
     pen_mm: float = math.nan
@@ -91,8 +91,7 @@ class Doubled(NamedTuple):
         }
         every = list(found.values())
         pen_mm, beside_mm = pen_of(every), pen_of_hollow(every)
-        if math.isnan(pen_mm):
-            pen_mm = beside_mm
+        pen_mm = beside_mm if math.isnan(pen_mm) else pen_mm
         if not pen_mm > narrowest_mm:
             return cls()
         ink = Ink.TWO_LINES if beside_mm > 0 else _what_is(every, pen_mm)
@@ -111,7 +110,8 @@ class Doubled(NamedTuple):
             doubled |= more
         stations = {n: broad[n] for n in sorted(doubled)}
         if ink == Ink.EITHER:
-            return cls(pen_mm, stations, is_sure=False)
+            told = {n: stations[n] for n in stations if seems_two_lines(found[n], pen_mm)}
+            return cls(pen_mm, told, is_sure=False)
         return cls(pen_mm, stations, _cut(felt, patch_of, doubled, pen_mm))
 
     def length_mm(self, felt: Sequence[Run], number: int) -> float:

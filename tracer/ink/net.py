@@ -17,6 +17,8 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+import numpy as np
+
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.neighbours import pairs_within
@@ -26,7 +28,7 @@ from morfax.tracer.ink.felt import FEWEST_STATIONS, Parted, whole
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet
-from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
+from morfax.tracer.sensing.leg import FACING, TURNS_OFF, Leg, turn
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
 
@@ -42,7 +44,6 @@ COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
 LEAST_MM, SPECK_WIDTHS = 0.7, 1.0
 TRIMMED_SHARE = 0.3  # of a run is left out at an end at most
 WAIST_WIDTHS = 8.0  # a longer one, or one that turns more, is line
-FACING = math.radians(35)  # ends whose headings are so near to one line face each other
 ASIDE = 0.6  # widths: and miss each other by no more
 
 
@@ -60,6 +61,11 @@ class FeltLine:
     width_mm: float
     length_mm: float
     stretch: int = -1
+
+    @property
+    def places_mm(self) -> Array:
+        """Places along its clean runs, (n, 2) mm."""
+        return np.vstack([run.places_mm for run in self.runs])
 
 
 class Inner(NamedTuple):

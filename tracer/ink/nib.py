@@ -91,6 +91,11 @@ def _misfit(sines: Array, means: Array, weights: Array) -> float:
     return float(np.sum((shapes @ fit - means * weights) ** 2))
 
 
+def seems_two_lines(each: Swelling, thin_mm: float) -> bool:
+    """Whether a place along a stretch looks like two lines of the thinnest width."""
+    return bool(_like_two_lines(each, thin_mm))
+
+
 def _like_two_lines(each: Swelling, thin_mm: float) -> list[int]:
     """The stations of a stretch where two lines seem to cross, or one of them to end."""
     crossed = _crossings(each.averaged, thin_mm)

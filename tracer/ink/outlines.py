@@ -14,6 +14,7 @@ them, as the pen drew it; round the outside is the outline where straight on lea
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence, Set
 from typing import NamedTuple
 
 import numpy as np
@@ -22,13 +23,11 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.numbering import Ink, longest_first
 from morfax.tracer.ink.areas import Edge, ways_round
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
-from morfax.tracer.sensing.leg import turn
+from morfax.tracer.sensing.leg import FACING, Leg, turn
 
 # of the way round the net's outside: two lines that overlap each make half of it or more, and a closed chain
 # that is shorter is a detail of the drawing
 MOST_OF_IT = 0.5
-# legs of a line that goes on over a junction turn by no more; by trial
-STRAIGHT_ON = math.radians(35)
 
 
 class Outline(NamedTuple):
@@ -41,11 +40,7 @@ class Outline(NamedTuple):
 def outlines(junctions: Junctions) -> list[Outline]:
     """The closed contours of a net, the longest first: closed chains, or the way round its outside."""
     lines = junctions.net.lines
-    found = [
-        Outline(chain, sum(lines[link.line].length_mm for link in chain.links))
-        for chain in junctions.chains()
-        if chain.closed and _is_straight_on(chain, junctions)
-    ]
+    found = straight_chains(junctions)
     outside = _outside(junctions)
     longest_mm = max((each.length_mm for each in found), default=0.0)
     if outside is not None and longest_mm < MOST_OF_IT * outside.length_mm:
@@ -53,8 +48,7 @@ def outlines(junctions: Junctions) -> list[Outline]:
     if len(found) < 2:
         return found
     places = [
-        np.vstack([run.places_mm for link in each.chain.links for run in lines[link.line].runs])
-        for each in found
+        np.vstack([lines[link.line].places_mm for link in each.chain.links]) for each in found
     ]
     every = np.vstack(places)
     order = longest_first(
@@ -63,6 +57,30 @@ def outlines(junctions: Junctions) -> list[Outline]:
         Ink.of(every, np.ones(len(every))),
     )
     return [found[k] for k in order]
+
+
+def as_outline(chain: Chain, junctions: Junctions) -> Outline:
+    """A chain as an outline."""
+    return Outline(chain, sum(junctions.net.lines[link.line].length_mm for link in chain.links))
+
+
+def straight_chains(junctions: Junctions) -> list[Outline]:
+    """The closed chains that go straight on over their junctions, the longest first."""
+    found = [
+        as_outline(chain, junctions)
+        for chain in junctions.chains()
+        if chain.closed and _is_straight_on(chain, junctions)
+    ]
+    return sorted(found, key=lambda outline: -outline.length_mm)
+
+
+def is_free(chain: Chain, junctions: Junctions) -> bool:
+    """Whether both ends of a chain are ends of the ink."""
+    if chain.closed:
+        return False
+    lines, (first, last) = junctions.net.lines, (chain.links[0], chain.links[-1])
+    ends = lines[first.line].junctions[first.back], lines[last.line].junctions[not last.back]
+    return junctions.net.free_ends.issuperset(ends)
 
 
 def one_stroke(junctions: Junctions) -> Outline | None:
@@ -85,29 +103,55 @@ def _is_straight_on(chain: Chain, junctions: Junctions) -> bool:
         there = junctions.at(far)
         if len(there.sides) == 2:
             continue
-        turned = turn(there.leg(far).heading_rad, there.leg(near).heading_rad + math.pi)
-        if abs(turned) > STRAIGHT_ON:
+        if turned_by(there.leg(far), there.leg(near).turned_round()) > FACING:
             return False
     return True
 
 
-def _outside(junctions: Junctions) -> Outline | None:
-    """The longest way round the outside of a net, without bars and spurs; None if nothing goes round."""
+def turned_by(one: Leg, other: Leg) -> float:
+    """By how much a way turns from an incoming leg onto an outgoing one, rad, or by how much more than their
+    bends let expect, whichever is less: a bend felt beside other ink is none.
+    """
+    chord, whole = other.end_mm - one.end_mm, turn(one.heading_rad, other.heading_rad)
+    long_mm = float(np.hypot(*chord))
+    if long_mm < one.width_mm:
+        return abs(whole)
+    along = math.atan2(chord[1], chord[0])
+    before, after = turn(one.heading_rad, along), turn(along, other.heading_rad)
+    half = 0.25 * long_mm * (one.bend_per_mm + other.bend_per_mm)
+    most = (
+        max(abs(whole - 2 * bend), abs(before - bend), abs(after - bend))
+        for bend in (0.0, half)
+    )
+    return min(most)
+
+
+def parts(junctions: Junctions, taken: Set[int] = frozenset()) -> list[Outline]:
+    """The ways round the outside of the parts of a net that bars join, without bars and spurs, the longest
+    first; of what is left without some lines that are taken.
+    """
     lines = junctions.net.lines
-    left = {n for n, line in enumerate(lines) if line.junctions[0] != line.junctions[1]}
+    left = {n for n, line in enumerate(lines) if line.junctions[0] != line.junctions[1]} - taken
     while True:
         spurs = _spurs(left, junctions) or _bars(left, junctions)
         if not spurs:
             break
         left -= spurs
     ways = [way for face in ways_round(left, junctions) for way in _simple(face, junctions)]
-    if not ways:
-        return None
-    areas = [_area_mm2(way, junctions) for way in ways]
-    way = ways[int(np.argmin(areas))]  # the outside is gone round clockwise
-    links = [Link(line, back) for line, back in way]
-    length_mm = sum(lines[line].length_mm for line, _ in way)
-    return Outline(Chain(links, True), length_mm)
+    # the outside is gone round clockwise
+    round_about = [way for way in ways if _area_mm2(way, junctions) < 0]
+    found = [
+        as_outline(Chain([Link(*edge) for edge in way], True), junctions) for way in round_about
+    ]
+    return sorted(found, key=lambda outline: -outline.length_mm)
+
+
+def _outside(junctions: Junctions) -> Outline | None:
+    """The way round the outside of the largest part of a net; None if nothing goes round."""
+    every = parts(junctions)
+    return min(
+        every, key=lambda outline: _area_mm2(outline.chain.links, junctions), default=None
+    )
 
 
 def _spurs(left: set[int], junctions: Junctions) -> set[int]:
@@ -139,17 +183,17 @@ def _simple(face: list[Edge], junctions: Junctions) -> list[list[Edge]]:
     return ways
 
 
-def _area_mm2(way: list[Edge], junctions: Junctions) -> float:
+def _area_mm2(way: Sequence[Edge], junctions: Junctions) -> float:
     """The area that a way goes round, mm²; anticlockwise is more than 0."""
     x, y = _places(way, junctions).T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
-def _places(way: list[Edge], junctions: Junctions) -> Array:
+def _places(way: Sequence[Edge], junctions: Junctions) -> Array:
     """Places along a way, (n, 2) mm."""
     pieces = list[Array]()
     for line, back in way:
-        places = np.vstack([run.places_mm for run in junctions.net.lines[line].runs])
+        places = junctions.net.lines[line].places_mm
         pieces.append(places[::-1] if back else places)
     return np.vstack(pieces)
 

@@ -23,6 +23,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
 from morfax.tracer.drawing.contrast import ABOVE_NOISE
+from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
 from morfax.tracer.drawing.deepening import LEAST, SPARSE, SPOT_PX, STRIPS, shaded
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
@@ -63,6 +64,8 @@ def _pale(drawing: Drawing) -> Mask:
     noise = drawing.noise
     rim_px = RIM_PX + math.ceil(SPOTS * float(np.nan_to_num(noise.softness_px)))
     level = max(LEAST, ABOVE_NOISE * LEFT_OF_NOISE * float(np.nan_to_num(noise.paper)))
+    if drawing.grainy:  # a slit makes strands of the paper's grain
+        level = max(level, STANDS_OUT * _noise_of_spots(drawing))
     rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim_px + 1,) * 2)
     pale = np.zeros(drawing.darkness.shape, np.uint8)
     for top, bottom, rows in strips(

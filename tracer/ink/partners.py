@@ -26,7 +26,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.tracer.head.course import SMOOTH, on_ink, through_nodes
-from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink
+from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink, off_rims_mm
 from morfax.tracer.junctions.corner import Corner, sharp_corner
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.sensing.leg import Leg, turn
@@ -38,6 +38,7 @@ CORNERED = math.radians(30)  # a corner counts as turning so much more: a smooth
 HIDDEN_WIDTHS = 6.0  # a vertex further beyond both clean ends is told by neither leg
 STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning so much more
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
+NEARER = 0.05  # widths: a way that is so much nearer to its rims, in the mean, is the line's
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
 MOST_LEGS = (
     10  # 945 pairings; of more legs the straightest are paired first, and partners exchanged
@@ -91,7 +92,7 @@ def way_through(
     incoming, outgoing = legs
     onto = outgoing.end_mm, outgoing.heading_rad
     straight = hermite(*planner.stands, *onto)
-    smooth = [straight]
+    smooth, others = [straight], list[Array]()
     if ink is not None:
         others = ink.besides(np.vstack([incoming.end_mm, outgoing.end_mm]))
         smooth = [kept_in_ink(straight, ink, planner.view.width_mm, others)]
@@ -103,6 +104,13 @@ def way_through(
         end_mm = max(0.0, BEYOND_MM - corner.before_mm)
         ways.append(sharp_corner(planner.stands, corner, end_mm))
     ways.append(smooth)
+    if ink is not None and len(ways) > 1:
+        # a circle that touches another line turns as much as a corner: the rims tell
+        off_mm = [
+            off_rims_mm(np.vstack(way), ink, planner.view.width_mm, others) for way in ways
+        ]
+        if off_mm[1] < off_mm[0] - NEARER * planner.view.width_mm:
+            ways = [smooth]
     if between is not None and len(between) > 2:
         some = between[:: max(1, len(between) // FELT_NODES)]
         ways.append([_through_places(planner.stands, some, onto)])

@@ -17,9 +17,12 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.moments import NO_PLACES, parabola_of, straight_of, with_place
 from morfax.tracer.sensing.view import View
 
 LEAST_PLACES = 5  # for a parabola of their own; by trial
+LEAST_WEIGHT = 0.01  # of a place at the window's end: a line that is bent counts there too
+SINGULAR = 1e-12  # of the moments' product: places on one spot
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,17 +113,17 @@ class Run:
 def smooth(run: Run) -> Run:
     """A run whose places lie on the parabolas through the stations about each, with headings and bends."""
     half_mm = FELT_LEGS * run.view.leg_mm
-    places, headings, bends = _parabolas(run.places_mm, half_mm, run.view.step_mm)
+    places, headings, bends = parabolas(run.places_mm, half_mm, run.view.step_mm)
     # a speck within a run has no width of its own
     widths = np.where(np.isfinite(run.widths_mm), run.widths_mm, run.view.width_mm)
     return Run(places, headings, bends, widths, run.view, run.legs_mm, run.is_strand)
 
 
 @njit(cache=True)
-def _parabolas(places, half_mm, step_mm):  # type: ignore[no-untyped-def]
+def parabolas(places, half_mm, step_mm):  # type: ignore[no-untyped-def]
     """Places, headings and bends of the parabolas through the places about each, weighted to the middle.
 
-    They solve for y = p0 + p1·x + p2·x² as the head's kernel does; few places make a straight line.
+    Few places make a straight line.
     """
     count, reach = len(places), int(half_mm / step_mm) + 1
     smooth, headings, bends = np.empty((count, 2)), np.empty(count), np.zeros(count)
@@ -131,28 +134,15 @@ def _parabolas(places, half_mm, step_mm):  # type: ignore[no-untyped-def]
         c, s = dx / long, dy / long
         # the window is as long at the ends of the line, but to one side
         half = max(half_mm, max(last - n, n - first) * step_mm * 1.01)
-        s0 = s1 = s2 = s3 = s4 = b0 = b1 = b2 = 0.0
+        sums = NO_PLACES
         for k in range(first, last + 1):
             x = (places[k, 0] - places[n, 0]) * c + (places[k, 1] - places[n, 1]) * s
             y = (places[k, 1] - places[n, 1]) * c - (places[k, 0] - places[n, 0]) * s
-            w = max(1.0 - (x / half) ** 2, 0.01)
-            xx = x * x
-            s0, s1, s2 = s0 + w, s1 + w * x, s2 + w * xx
-            s3, s4 = s3 + w * xx * x, s4 + w * xx * xx
-            b0, b1, b2 = b0 + w * y, b1 + w * x * y, b2 + w * xx * y
-        d0, d1, d2 = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
-        det = s0 * d0 + s1 * d1 + s2 * d2
+            sums = with_place(sums, max(1.0 - (x / half) ** 2, LEAST_WEIGHT), x, y)
+        is_one, p0, p1, p2 = parabola_of(sums, SINGULAR)
         one_sided = n - first < 2 or last - n < 2
-        if last - first + 1 < LEAST_PLACES or one_sided or det <= 1e-12 * s0 * s2 * s4:
-            flat = s0 * s2 - s1 * s1
-            p2 = 0.0
-            p1 = (s0 * b1 - s1 * b0) / flat if flat > 0 else 0.0
-            p0 = (b0 - p1 * s1) / s0
-        else:
-            d11, d12, d22 = s0 * s4 - s2 * s2, s1 * s2 - s0 * s3, s0 * s2 - s1 * s1
-            p0 = (d0 * b0 + d1 * b1 + d2 * b2) / det
-            p1 = (d1 * b0 + d11 * b1 + d12 * b2) / det
-            p2 = (d2 * b0 + d12 * b1 + d22 * b2) / det
+        if last - first + 1 < LEAST_PLACES or one_sided or not is_one:
+            p0, p1, p2 = straight_of(sums)
         smooth[n, 0], smooth[n, 1] = places[n, 0] - p0 * s, places[n, 1] + p0 * c
         headings[n] = math.atan2(s, c) + math.atan(p1)
         bends[n] = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5

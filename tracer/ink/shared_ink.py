@@ -98,6 +98,18 @@ def kept_in_ink(
     return np.asarray(way + np.column_stack([np.interp(come_mm, at_mm, m) for m in moves.T]))
 
 
+def off_rims_mm(way: Array, ink: SharedInk, width_mm: float, others: Sequence[Array]) -> float:
+    """How far a way (n, 2) mm is, in the mean, from where its own rims tell a line of a width to be, mm; 0
+    where none tell.
+    """
+    stations, come_mm = ink.stations(), lengths_mm(way)
+    if not len(stations) or come_mm[-1] < FADES * width_mm:
+        return 0.0
+    some = at_lengths(way, np.arange(0.0, come_mm[-1], EVERY_MM))
+    off = _off(some, stations, width_mm, others)
+    return float(np.sum(np.abs(off.aside) * off.sure) / max(off.sure.sum(), 1.0))
+
+
 def are_apart_where_they_cross(
     one: Array, other: Array, ink: SharedInk, width_mm: float
 ) -> bool:

@@ -152,7 +152,7 @@ class FeltSheet:
         widths = _line_widths(straight, measured, settings)
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
         doubled, some = Doubled(), _no_letters(graph, letters)
-        if not settings.line_width_mm:
+        if not settings.line_width_mm and not drawing.grainy:
             patch, pixel_mm = graph.patches(), drawing.pitch_mm * drawing.finer
             narrowest_mm = LEAST_PX[drawing.is_hard] * pixel_mm
             doubled = Doubled.of(felt, ends, {n: int(patch[n]) for n in some}, narrowest_mm)

@@ -25,7 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.polyline import length_mm, nearest_mm
+from morfax.motion.polyline import length_mm, lengths_mm, nearest_mm
 from morfax.tracer.following.felt_line import bare_from_mm, bare_stretch
 from morfax.tracer.following.follower import SWELLS
 from morfax.tracer.head import course
@@ -71,6 +71,15 @@ class InkStroke(NamedTuple):
     closed: bool
     width_mm: float
     led: Led = Led()
+
+    def part(self, begin_mm: float, end_mm: float) -> InkStroke:
+        """The stroke without so much of its beginning and of its end, mm."""
+        come_mm = lengths_mm(self.way_mm)
+        first, last = np.searchsorted(come_mm, (begin_mm, come_mm[-1] - end_mm)).tolist()
+        last = max(last, first + 1)
+        way_mm = self.way_mm[first : last + 1]
+        led = Led.along(self.led.of(len(way_mm), first))
+        return self._replace(way_mm=way_mm, length_mm=length_mm(way_mm), led=led)
 
 
 def stroke_along(

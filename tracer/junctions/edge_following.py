@@ -29,7 +29,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding
-from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of, turn
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, TURNS_BACK, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
 from morfax.tracer.sensing.scout import onward
@@ -39,7 +39,6 @@ from morfax.tracer.sensing.view import View
 FARTHEST_MM = 40.0
 WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there
 CHORD = 5  # stations that a heading is taken over
-TIP = math.radians(150)  # a corner that turns by more is a tip
 REGAINED_MM = 1.5  # after this much of both edges the line is by itself again
 BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
 JUMP = 0.25  # of the width, from station to station: the far edge is no longer the same
@@ -145,7 +144,7 @@ def _within_ink(view: View, corner: Corner) -> Corner:
     Lines that are nearly parallel meet anywhere.
     """
     arriving = corner.incoming
-    if abs(turn(arriving.heading_rad, corner.outgoing.heading_rad)) < TIP:
+    if abs(turn(arriving.heading_rad, corner.outgoing.heading_rad)) < TURNS_BACK:
         return corner
     reach_mm = max(0.0, corner.beyond_mm) + 2 * view.width_mm
     ink_mm = view.ink_along(arriving.end_mm, arriving.heading_rad, reach_mm)

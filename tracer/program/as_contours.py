@@ -34,13 +34,13 @@ from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.small_rings import pen_mm
 from morfax.tracer.program.unexplained import Unexplained
 from morfax.tracer.program.window import Window
+from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.pen import NOWHERE_MM
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-# between the places of a way; where its narrow ends are looked for
-STEP, COARSE_STEP = 0.1, 0.25
+COARSE_STEP = 0.25  # between the places at which narrow ends are looked for
 # sides so near to each other, with so much way between them, have a narrow end
 NARROW, ROUND_END = 2.6, 6.0
 END = 5.0  # of a stroke: shows whether it ends in a bar
@@ -134,7 +134,7 @@ def _contour(setup: Setup, number: int, strokes: list[Line]) -> Line | None:
 def _is_better(sheet: Sheet, line: Line, strokes: list[Line]) -> bool:
     """Whether a line explains the ink where it differs from strokes, and these do not."""
     width_mm = min(line.width_mm, strokes[0].width_mm)
-    step_mm = STEP * width_mm
+    step_mm = STEP_WIDTHS * width_mm
     one = evenly(line.loop_mm, step_mm)
     other = np.vstack([evenly(stroke.loop_mm, step_mm) for stroke in strokes])
     mine = nearest_mm(one, other) > DIFFER * width_mm
@@ -145,7 +145,7 @@ def _is_better(sheet: Sheet, line: Line, strokes: list[Line]) -> bool:
     own_misfit, misfit = (
         ink.misfit(ink.best_drawn(nearest_mm(ink.places_mm, way))) for way in (other, one)
     )
-    widths = STEP * np.count_nonzero(nearest_mm(one, differ) < REACH * width_mm)
+    widths = STEP_WIDTHS * np.count_nonzero(nearest_mm(one, differ) < REACH * width_mm)
     return bool(misfit < LIKE * widths and misfit < own_misfit - GAIN * widths)
 
 

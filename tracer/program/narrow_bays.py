@@ -30,12 +30,12 @@ from morfax.tracer.program.bay_run import Bay, laid
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.unexplained import Unexplained, beside_ink, ink_beside, unexplained
 from morfax.tracer.program.window import Window
+from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
 from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk, middles_mm
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-STEP = 0.1  # between the places of a way
 LEG = 1.5  # of the way before and after a bay show where the line comes from and goes on
 MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
@@ -133,7 +133,7 @@ class _Bays:
         is_plain = line.ending == "closed" and not is_marked and not line.loop_from
         if not is_plain or line.on_edge or not is_clear(self.setup.sheet.drawing):
             return line
-        step_mm = STEP * line.width_mm
+        step_mm = STEP_WIDTHS * line.width_mm
         way = evenly(line.loop_mm, step_mm)
         round_mm = len(way) * step_mm
         suspects = list(self._suspects(way, step_mm))[:MOST]
@@ -182,7 +182,7 @@ class _Bays:
     def _bay(self, way: Array, step_mm: float, suspect: Suspect) -> Bay | None:
         """The bay that a stretch of the way is, if a rule explains its ink better than the way does."""
         # 1. the stretch with clean line on either side, and the ink about it
-        width_mm, leg = self.line.width_mm, round(LEG / STEP)
+        width_mm, leg = self.line.width_mm, round(LEG / STEP_WIDTHS)
         first, last = suspect.first - leg, suspect.last + leg
         long = last - first
         if long > OF_LOOP * len(way) or long * step_mm > LONGEST * width_mm:
@@ -207,7 +207,7 @@ class _Bays:
         widths = rule.length_mm / width_mm
         drawn_by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
         own_misfit = ink.misfit(drawn_by_own)
-        gain = own_misfit - rule.misfit + FURTHER * (STEP * long - widths)
+        gain = own_misfit - rule.misfit + FURTHER * (STEP_WIDTHS * long - widths)
         is_like = rule.misfit < LIKE * widths
         drawn = ink.drawn_along(rule.way, rule.half_mm)
         is_like &= suspect.is_beside_itself or ink.share_left(drawn, drawn_by_own) < MOST_LEFT

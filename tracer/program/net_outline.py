@@ -37,7 +37,7 @@ from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.sensing.photocell import ABOUT_MM
+from morfax.tracer.sensing.behind_spot import ABOUT_MM
 
 if TYPE_CHECKING:
     from morfax.tracer.ink.chains import Chain, Junctions
@@ -75,10 +75,10 @@ def of_net(setup: Setup) -> OfNet:
     sheet = setup.sheet
     if not may_solve(setup):
         return OfNet(setup)
-    are_nets = _nets(sheet)
+    is_net = are_nets(sheet)
     lengths_mm = sheet.one_pen_mm()
-    longest_mm = float(np.max(lengths_mm[~are_nets], initial=0.0))
-    nets = np.flatnonzero(are_nets & (lengths_mm > (1 - ALIKE) * longest_mm))
+    longest_mm = float(np.max(lengths_mm[~is_net], initial=0.0))
+    nets = np.flatnonzero(is_net & (lengths_mm > (1 - ALIKE) * longest_mm))
     if not len(nets) or _has_reference(setup):
         return OfNet(setup)
     # 1. the longest outline of each
@@ -101,7 +101,7 @@ def of_net(setup: Setup) -> OfNet:
     )
     is_nearly_all = outline.length_mm > NEARLY_ALL * float(lengths_mm[longest])
     may_be_longer = outline.chain.closed and not is_nearly_all
-    return OfNet(setup, line, may_be_longer and _touches_itself(junctions))
+    return OfNet(setup, line, may_be_longer and touches_itself(junctions))
 
 
 def outline_of(setup: Setup, patch: int) -> Line | None:
@@ -109,7 +109,7 @@ def outline_of(setup: Setup, patch: int) -> Line | None:
     sheet = setup.sheet
     if not may_solve(setup):
         return None
-    closed = _closed(setup, patch) if _nets(sheet)[patch] else None
+    closed = _closed(setup, patch) if are_nets(sheet)[patch] else None
     if closed is None:
         return None
     outline, junctions = closed
@@ -166,7 +166,7 @@ def junctions_of(setup: Setup, patch: int) -> Junctions:
     return setup.newest[patch]
 
 
-def _touches_itself(junctions: Junctions) -> bool:
+def touches_itself(junctions: Junctions) -> bool:
     """Whether a net may be one line that touches itself: it brings an even number of legs to most of its
     junctions, and ends nowhere but at spikes whose two lines are one.
     """
@@ -194,7 +194,7 @@ def _has_reference(setup: Setup) -> bool:
     return stance.reference_mm is not None
 
 
-def _nets(sheet: Sheet) -> NDArray[np.bool_]:
+def are_nets(sheet: Sheet) -> NDArray[np.bool_]:
     """Which patches go round two areas or more."""
     return np.asarray((_loops(sheet) > 1) & ~sheet.are_solid)
 

@@ -1,6 +1,6 @@
 """One line of each patch: the first line that is followed on each patch of ink that is asked for.
 
-Signals: contours in; a line of each out, and the contours on which the head can nowhere be put down.
+Signals: contours in; a line of each out, and the contours that are filled shapes, or give the head no place.
 
 The head is put down at an open end of the patch, or at the plainest of its places. A patch along which a line
 was followed before is a piece of that line, which has gaps. A line that is lost is cut as far as it was
@@ -26,10 +26,12 @@ from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
+from morfax.tracer.following.start import a_dark_area
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program import selection
 from morfax.tracer.program.best_run import SHORT
-from morfax.tracer.program.net_outline import ABOUT_WIDTHS, may_solve, outline_of
+from morfax.tracer.program.net_lines import net_of, or_outline
+from morfax.tracer.program.net_outline import ABOUT_WIDTHS, may_solve
 from morfax.tracer.program.open_ink import is_of_several, is_open, strokes_of
 from morfax.tracer.program.selection import Contour, Which
 from morfax.tracer.program.setup import Setup
@@ -44,8 +46,8 @@ ENDLESS_ABOUT_MM = 1.5 * LARGEST_MM
 
 
 class OneOfEach(NamedTuple):
-    """One line of each patch; the patches on which the head can nowhere be put down; and of the patches whose
-    junctions showed all their strokes the others of these, by the patch's number.
+    """One line of each patch; the patches that are filled shapes, or nowhere a place for the head; and of the
+    patches whose junctions showed all their strokes the others of these, by the patch's number.
     """
 
     lines: list[Line]
@@ -73,6 +75,9 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
             continue
         if which == "outer" and _is_inner(contour, lines):
             continue
+        if isinstance(which, str) and selection.is_shape(setup.sheet, contour, asked):
+            unclear.append(contour)
+            continue
         is_letter = contour.stroke.patch in letters
         found = _found(setup.after(come_mm, total_mm), loops, contour, is_letter)
         line = found.line
@@ -86,7 +91,7 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
         elif isinstance(which, str) or contour.number not in which:
             unclear.append(contour)
         else:
-            raise _a_letter(contour)
+            raise selection.a_letter(contour)
     lines = [line for line in lines if not _is_reference(line, begins_mm)]
     return OneOfEach(lines, unclear, others)
 
@@ -152,12 +157,20 @@ def _is_inner(contour: Contour, lines: list[Line]) -> bool:
 def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -> _Found:
     """A line of a patch as the head follows it, as the outline of a net, or as the small loop that it is."""
     stroke = contour.stroke
+    if setup.sheet.are_solid[stroke.patch]:
+        return _Found(_lost(contour, a_dark_area(setup.sheet, stroke)))
     loop = loops.slot(stroke.patch)
     if loop is None:
+        net = net_of(setup, contour)
+        lines = net.lines() if net is not None and net.is_clear else []
+        if lines and lines[0].ending == "closed":
+            return _Found(loops.mended(lines[0]), [loops.mended(line) for line in lines[1:]])
         found = _follow_in_window(setup, contour, is_letter)
-        own = _or_outline(setup, contour, found.line)
+        own = or_outline(setup, contour, found.line)
         if own is not None:
             line = loops.mended(own)
+            if net is not None and not line.is_lead:
+                return _Found(line, net.besides(line))
             return _Found(line, found.others if line is own else None)
         loop = loops.of_patch(stroke.patch, stroke.width_mm)
     return _Found(None if loop is None else loop.line(contour.number))
@@ -193,18 +206,6 @@ def _keeps_to(contour: Contour, line: Line | None) -> bool:
     return bool(is_within.all())
 
 
-def _or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:
-    """A line that was followed on a patch; where it is a smaller part of a net, the net's outline."""
-    if line is None or line.reference_mm is not None or line.is_lead:
-        return line
-    if line.ending == "closed" and line.length_mm > SHORT * line.ink_mm:
-        return line
-    outline = outline_of(setup, contour.stroke.patch)
-    if outline is None or (line.ending == "closed" and outline.length_mm < line.length_mm):
-        return line
-    return replace(outline, number=contour.number)
-
-
 def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
     """Follow a line of a patch from an open end, or from the plainest place; none if the head can nowhere be
     put down on a small patch. Of what is likely a letter, and where several strokes meet of which none comes
@@ -231,8 +232,13 @@ def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
         return about if is_better else _Found(from_end)
     if from_end is not None or contour.reach_mm < selection.LETTER_MM:
         return _Found(from_end)
+    return _Found(_lost(contour, about))
+
+
+def _lost(contour: Contour, fault: LineFault) -> Line:
+    """The line of a patch that was never begun."""
     place_mm = np.array(contour.starts_mm()[:1])
-    return _Found(Line(place_mm, "lost", contour.stroke.width_mm, 0.0, about, contour.number))
+    return Line(place_mm, "lost", contour.stroke.width_mm, 0.0, fault, contour.number)
 
 
 def _can_stand(setup: Setup, contour: Contour) -> bool:
@@ -287,14 +293,3 @@ def _follow_from_plain_places(setup: Setup, contour: Contour) -> _Found | LineFa
         in_vain.append(start_mm)
         passed.append(line.own_mm)
     return _Found(followed(setup, in_vain[0], contour.number)) if in_vain else fault
-
-
-def _a_letter(contour: Contour) -> LineFault:
-    """The fault of a patch that was asked for by number, and on which the head can nowhere be put down."""
-    x, y = contour.stroke.middles_mm.mean(axis=0)
-    return LineFault(
-        f"line {contour.number}, about {x:.1f},{y:.1f} mm, is taken for a letter: the head can be put down"
-        " nowhere on it; give the other numbers, or --start X,Y at a plain stretch of it",
-        x_mm=float(x),
-        y_mm=float(y),
-    )

@@ -15,7 +15,6 @@ that ends at a gap is not taken for open.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.line import Line
@@ -30,9 +29,6 @@ from morfax.tracer.program.net_outline import (
     may_solve,
 )
 from morfax.tracer.program.setup import Setup
-
-if TYPE_CHECKING:
-    from morfax.tracer.ink.chains import Chain, Junctions
 
 ENDS_OF_ONE = 2  # of a single stroke: where there are more, strokes meet
 
@@ -60,20 +56,15 @@ def strokes_of(setup: Setup, patch: int, number: int) -> list[Line]:
     """The longest stroke of a patch, and those others that are lines, the longest first, all with the patch's
     number; none if nothing is felt.
     """
+    from morfax.tracer.ink.outlines import is_free
+
     junctions, ink_mm = junctions_of(setup, patch), float(setup.sheet.lengths_mm[patch])
     chains = sorted(junctions.chains(), key=lambda chain: -chain_mm(chain, junctions))
     return [
         replace(line_along(setup, chain, junctions), number=number, ink_mm=ink_mm)
         for n, chain in enumerate(chains)
-        if n == 0 or chain.closed or _ends_free(chain, junctions)
+        if n == 0 or chain.closed or is_free(chain, junctions)
     ]
-
-
-def _ends_free(chain: Chain, junctions: Junctions) -> bool:
-    """Whether both ends of a stroke are ends of the ink: one that ends on another line is a bar."""
-    lines, (first, last) = junctions.net.lines, (chain.links[0], chain.links[-1])
-    ends = lines[first.line].junctions[first.back], lines[last.line].junctions[not last.back]
-    return junctions.net.free_ends.issuperset(ends)
 
 
 def _is_apart(setup: Setup, stroke: Stroke, ends: int) -> bool:

@@ -105,6 +105,17 @@ def plan(sheet: Sheet, which: Which) -> tuple[list[Contour], int]:
     return [contours[i] for i in widest_first], sheet.patches.count - len(patches)
 
 
+def is_shape(sheet: Sheet, contour: Contour, asked: Sequence[Contour]) -> bool:
+    """Whether a patch is the rim of a filled shape, and no line; one that goes round lines is lost, not left
+    out: an outline that hangs together with a shape is the part's.
+    """
+    patch = contour.stroke.patch
+    if not sheet.are_solid[patch]:
+        return False
+    lines = [c.stroke.patch for c in asked if not sheet.are_solid[c.stroke.patch]]
+    return not np.any(sheet.patches.enclosure.inside[lines] == patch)
+
+
 class Others(NamedTuple):
     """Further lines of a sheet beside the one that was followed, how many of them lie inside that, and how
     long the longest is, mm.
@@ -200,3 +211,14 @@ def _listed(numbers: Sequence[int]) -> str:
         run = [number for _, number in group]
         runs.append(f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)))
     return ", ".join(runs)
+
+
+def a_letter(contour: Contour) -> LineFault:
+    """The fault of a patch that was asked for by number, and on which the head can nowhere be put down."""
+    x, y = contour.stroke.middles_mm.mean(axis=0)
+    return LineFault(
+        f"line {contour.number}, about {x:.1f},{y:.1f} mm, is taken for a letter: the head can be put down"
+        " nowhere on it; give the other numbers, or --start X,Y at a plain stretch of it",
+        x_mm=float(x),
+        y_mm=float(y),
+    )

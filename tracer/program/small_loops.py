@@ -2,7 +2,9 @@
 
 Between the bends of a small hole or slot the head finds no clean line that is as long as its legs. Its way
 may cut such a loop short, or the head can nowhere be put down. The pen's ink along the way tells; the loop is
-then the way that explains the ink (see `tangles.compass`), and the head runs along that from memory.
+then the way that explains the ink (see `tangles.compass`), and the head runs along that from memory. A loop
+whose sides run together, however long and of whatever shape, is laid within the rim of its ink (see
+`rim_loops`).
 
 Signals: the sheet and a small closed way in; the way as the head ran along it, and who led, out.
 
@@ -17,14 +19,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.polyline import evenly, length_mm
+from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
@@ -35,10 +35,18 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.program.own_ink import MOST_SPECKS, OVER
+from morfax.tracer.program.loop_ink import ink_of, is_drawn, is_single, leaves_none
+from morfax.tracer.program.rim_loops import (
+    BROAD,
+    broad_mm,
+    core_within,
+    felt_pen_mm,
+    narrow_outline,
+)
 from morfax.tracer.program.selection import lines_of
 from morfax.tracer.program.small_rings import MAYBE_BROAD, paper_within_px, pen_mm
-from morfax.tracer.tangles.compass import Core, explained, filled_misfit
+from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.compass import Core, explained, filled_misfit, with_misfit
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 SMALL_WIDTHS = 16.0  # a longer loop has sides as long as a leg, ...
@@ -52,11 +60,8 @@ BROADEST, SHORT_WIDTHS, MOST_BROAD = 2.7, 2.0, 100
 NO_BROADER = 0.9  # times as broad as a line: in the mean a seam may make up for it
 # for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
 SEAM = 0.002
-# widths between places of a way, and about each: there a pen draws no more on paper than that of a long line
-# (see `own_ink`); of 22 right slots 21 leave 0.01 at most and one 0.08, lines that are open at one end 0.1
-STATION, ABOUT_STATION = 0.25, 0.75
-ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
-MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
+GOES_BACK = 1.2  # widths: a closed way that is so much longer runs a piece of its line twice
+RIM_PLACES = 40  # for each width of the way round, of a loop of any shape
 TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
 
 
@@ -129,13 +134,16 @@ class SmallLoops:
         patch = self.sheet.patch_at(way[0])
         if not self._may_be(patch, width_mm):
             return self._narrow(patch, way)
-        ink = self._ink(patch, width_mm)
-        return self._laid(ink, ink.misfit_along(one_in(way, THINNED)))
+        ink, thinned = ink_of(self.sheet, patch, width_mm), one_in(way, THINNED)
+        loop = self._laid(ink, ink.misfit_along(thinned))
+        is_narrow = broad_mm(thinned) < (BROAD[1] - 1) * width_mm
+        return self._within_rim(patch, way) if loop is None and is_narrow else loop
 
     def of_patch(self, patch: int, width_mm: float, way: Array | None = None) -> Loop | None:
         """The loop that a patch of ink is, along which the head has found no closed way, but an open one."""
         if self._may_be(patch, width_mm):
-            return self._laid(self._ink(patch, width_mm), math.inf)
+            loop = self._laid(ink_of(self.sheet, patch, width_mm), math.inf)
+            return loop or self._within_rim(patch, way)
         return self._narrow(patch, way)
 
     def _narrow(self, patch: int, way: Array | None) -> Loop | None:
@@ -143,7 +151,8 @@ class SmallLoops:
         may_be = (
             self._is_broad(patch, NO_BROADER) and paper_within_px(self.sheet, patch) < LEAST_PX
         )
-        return self._with_seam(patch, way) if may_be else None
+        loop = self._with_seam(patch, way) if may_be else None
+        return loop or self._within_rim(patch, way)
 
     @cached_property
     def slots(self) -> dict[int, Loop]:
@@ -155,7 +164,9 @@ class SmallLoops:
 
     def slot(self, patch: int) -> Loop | None:
         """The loop that a patch is whose sides run together; None for another."""
-        return self._with_seam(patch) if self._is_broad(patch) else None
+        loop = self._with_seam(patch) if self._is_broad(patch) else None
+        is_broad = self.sheet.widths_mm[patch] > MAYBE_BROAD * self.pen_mm
+        return self._within_rim(patch) if loop is None and is_broad else loop
 
     @cached_property
     def _letters(self) -> set[int]:
@@ -167,7 +178,7 @@ class SmallLoops:
         """Whether the scan shows seams, and a line whose pen is known; large pixels make seams of letters."""
         drawing = self.sheet.drawing
         is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1
-        return is_clear and len(lines_of(self.sheet)) > 0
+        return is_clear and not drawing.edges_mm and len(lines_of(self.sheet)) > 0
 
     def _is_broad(self, patch: int, least: float = MAYBE_BROAD) -> bool:
         """Whether a patch is as broad as so many lines to two; no longer than a narrow loop, no letter."""
@@ -182,16 +193,50 @@ class SmallLoops:
         """The loop that a broad patch is, if its ink shows the seam between two lines, and it explains more
         than the head's way.
         """
-        ink = self._ink(patch, self.pen_mm)
-        core = explained(ink)
+        ink = ink_of(self.sheet, patch, self.pen_mm)
+        own = math.inf if way is None else ink.misfit_along(one_in(way, THINNED))
+        return self._run_if_two_lines(ink, explained(ink), own)
+
+    def _within_rim(self, patch: int, way: Array | None = None) -> Loop | None:
+        """The loop of any shape that a patch is, by the rim of its ink, where the head's way fails that."""
+        if not self._shows_seams or patch in self._letters:
+            return None
+        outline = narrow_outline(self.sheet, patch, self.pen_mm)
+        if outline is None:
+            return None
+        widths = length_mm(outline) / self.pen_mm
+        ink = ink_of(self.sheet, patch, self.pen_mm, round(RIM_PLACES * widths))
+        core = core_within(self._pen_view, outline, self._felt_pen_mm)
+        if core is None or not is_single(core) or not leaves_none(ink, core):
+            return None
+        own = math.inf
+        if way is not None:
+            thinned = one_in(way, THINNED)
+            goes_back = length_mm(thinned) > core.length_mm + GOES_BACK * self.pen_mm
+            own = math.inf if goes_back else ink.misfit_along(thinned)
+        return self._run_if_two_lines(ink, with_misfit(ink, core), own)
+
+    def _run_if_two_lines(self, ink: SeenInk, core: Core | None, own: float) -> Loop | None:
+        """The run along a core, if its ink shows the seam between two lines, and it explains more than the
+        head's own way.
+        """
         if core is None:
             return None
         widths = core.length_mm / ink.width_mm
         least = max(SEAM * widths, abs(core.misfit))
-        own = math.inf if way is None else ink.misfit_along(one_in(way, THINNED))
         has_seam = filled_misfit(ink, core) - core.misfit > least
         is_better = core.misfit < min(own - GAIN * widths, LIKE * widths)
-        return self._run(core) if has_seam and is_better and _is_drawn(ink, core) else None
+        return self._run(core) if has_seam and is_better and is_drawn(ink, core) else None
+
+    @cached_property
+    def _pen_view(self) -> View:
+        """The sheet through cells for the pen."""
+        return view_of(self.sheet, self.settings.aperture_mm, self.pen_mm)
+
+    @cached_property
+    def _felt_pen_mm(self) -> float:
+        """The pen's width as those cells feel it."""
+        return felt_pen_mm(self.sheet, self._pen_view)
 
     def _may_be(self, patch: int, width_mm: float) -> bool:
         """Whether a patch may be a short or a narrow loop: it has paper within, and the pen is known."""
@@ -205,27 +250,6 @@ class SmallLoops:
         is_loop = is_small and within_px >= LEAST_PX
         return is_loop and self.sheet.drawing.noise.softness_px > 0
 
-    def _ink(self, patch: int, width_mm: float) -> SeenInk:
-        """The ink of a patch, and the paper about it and within, as far as that is no other patch's."""
-        drawing, patches = self.sheet.drawing, self.sheet.patches
-        rows, columns = drawing.darkness.shape
-        about = 2 + math.ceil(ABOUT_SOFT * drawing.noise.softness_px)
-        top, bottom, left, right = patches.boxes[patch].tolist()
-        top, bottom = max(top - about, 0), min(bottom + about, rows)
-        left, right = max(left - about, 0), min(right + about, columns)
-        # what is nearer to this ink than so far, and to no other
-        is_own: NDArray[np.bool_] = np.arange(patches.count) == patch
-        reach = np.ones((2 * about + 1,) * 2, np.uint8)
-        own, others = (
-            cv2.dilate(patches.painted(chosen, top, bottom, left, right), reach)
-            for chosen in (is_own, ~is_own)
-        )
-        i, j = np.nonzero((own > 0) & (others == 0))
-        every = 1 + len(i) // MOST_PLACES
-        i, j = i[::every] + top, j[::every] + left
-        known_mm = np.full(len(i), math.inf)  # nothing else is drawn there
-        return SeenInk.of(drawing, i, j, known_mm, width_mm, every)
-
     def _laid(self, ink: SeenInk, own: float) -> Loop | None:
         """The loop that explains some ink, if it leaves less unexplained than the head's own closed way."""
         core = explained(ink) if len(ink.places_mm) else None
@@ -233,7 +257,7 @@ class SmallLoops:
             return None
         widths = core.length_mm / ink.width_mm
         is_better = core.misfit < min(own - GAIN * widths, LIKE * widths)
-        is_line = math.isfinite(own) or _is_drawn(ink, core)
+        is_line = math.isfinite(own) or is_drawn(ink, core)
         return self._run(core) if is_better and is_line else None
 
     def _run(self, core: Core) -> Loop:
@@ -245,16 +269,3 @@ class SmallLoops:
         carriage = Carriage(stance, self.settings, MOTION_RATE_HZ)
         carriage.run(stretches, leader=REDRAWN)
         return Loop(carriage.positions_mm, carriage.led, 2 * core.half_mm)
-
-
-def _is_drawn(ink: SeenInk, core: Core) -> bool:
-    """Whether there is ink wherever a pen along a core's way would leave it, but for specks of paper: a line
-    that goes round but for its last side is no loop.
-    """
-    way = np.vstack(core.stretches())
-    drawn = ink.drawn_along(way, core.half_mm)
-    paper = np.maximum(drawn - ink.darkness, 0.0) ** 2 * ink.area_mm2 / ink.width_mm**2
-    stations = evenly(way, STATION * ink.width_mm)
-    away_mm = np.hypot(*(stations[:, None] - ink.places_mm[None]).transpose(2, 0, 1))
-    most = float(((away_mm < ABOUT_STATION * ink.width_mm) @ paper).max())
-    return most < max(OVER, MOST_SPECKS * ink.area_mm2 / ink.width_mm**2)

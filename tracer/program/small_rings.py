@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.faults import LineFault
 from morfax.motion.median import median
 from morfax.tracer.drawing.enclosure import NONE
 from morfax.tracer.drawing.holes import holes
@@ -123,6 +124,21 @@ def unclear_patches(sheet: Sheet, contours: Sequence[Contour]) -> tuple[SmallPat
     """The patches of contours on which the head could not be put down; the largest first."""
     patches = (SmallPatch.of(sheet, contour.stroke.patch) for contour in contours)
     return tuple(sorted(patches, key=lambda patch: -patch.across_mm))
+
+
+def none_begun(unclear: Sequence[SmallPatch]) -> LineFault:
+    """The fault of a sheet on which no line can be begun, with the patches that were left out."""
+    filled = next((patch for patch in unclear if patch.is_filled), None)
+    if filled is None:
+        return LineFault(
+            "no line can be begun: the ink on the sheet is too short, or is letters; give --start X,Y at a "
+            "plain stretch, or, if dots are to be drilled, the --line-width of their pen"
+        )
+    x, y = filled.place_mm
+    return LineFault(
+        f"no line can be begun: what is on the sheet is filled shapes (the largest, {filled.across_mm:.1f} "
+        f"mm across, at {x:.1f},{y:.1f} mm); --edge follows their outlines"
+    )
 
 
 def paper_within_px(sheet: Sheet, patch: int) -> int:

@@ -21,9 +21,9 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
 from morfax.tracer.following.line import Line
+from morfax.tracer.sensing.view import STEP_WIDTHS
 
 # All limits below were chosen by trial on lines with ticks, and on outlines with tips. In widths of the line:
-STEP = 0.1  # between the places that are compared
 CLOSE = 0.75  # out and back are no further apart
 LEAST_OUT = 0.8  # a way that goes out less is a bump
 MOST_OUT = 4.0  # one that goes out further is a line
@@ -42,8 +42,8 @@ class Stub(NamedTuple):
 
 def stubs(line: Line) -> list[Stub]:
     """The stubs on a line's way; of an open line but for those at its ends."""
-    reach = round(2 * (MOST_OUT + APPROACH) / STEP)
-    way = evenly(line.loop_mm, STEP * line.width_mm)
+    reach = round(2 * (MOST_OUT + APPROACH) / STEP_WIDTHS)
+    way = evenly(line.loop_mm, STEP_WIDTHS * line.width_mm)
     if len(way) < reach:
         return []
     if line.ending == "closed":
@@ -53,8 +53,8 @@ def stubs(line: Line) -> list[Stub]:
 
 def _found(way: Array, width_mm: float) -> Iterator[Stub]:
     """The stubs of a way at even steps; the same one more than once."""
-    near = round(APPROACH / STEP)
-    for out in range(round(LEAST_OUT / STEP), round(MOST_OUT / STEP) + 1):
+    near = round(APPROACH / STEP_WIDTHS)
+    for out in range(round(LEAST_OUT / STEP_WIDTHS), round(MOST_OUT / STEP_WIDTHS) + 1):
         feet = len(way) - 2 * out
         # 1. where it comes back to where it was, and goes straight on
         back = np.hypot(*(way[2 * out :] - way[:feet]).T) < CLOSE * width_mm

@@ -82,8 +82,11 @@ class Entry:
 
     @property
     def is_in_contours(self) -> bool:
-        """Whether it is one of the contours: no letter, no reference point, and no piece of another line."""
-        return not (self.is_letter or self.is_reference or self.piece_of is not None)
+        """Whether it is one of the contours: no letter, no rim of a filled shape, no reference point, and no
+        piece of another line.
+        """
+        is_other = self.is_solid or self.is_reference or self.piece_of is not None
+        return not (self.is_letter or is_other)
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,7 @@ from morfax.tracer.ink.chains import Junctions, solved
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import InkLeft, ink_left
 from morfax.tracer.ink.stretches import FeltSheet
+from morfax.tracer.ink.struck_off import struck_off
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import stroke_order
@@ -71,7 +72,7 @@ def _of_strokes(
     give_back()
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt), settings, progress)
-    strokes = _long_enough(_kept(_mended(loops, run)))
+    strokes = struck_off(sheet.drawing, _long_enough(_kept(_mended(loops, run))))
     felt = felt.without_cells()
     give_back()
     if not strokes:

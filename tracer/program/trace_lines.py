@@ -40,18 +40,17 @@ from morfax.tracer.program.one_of_each import (
     with_least_numbers,
 )
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.selection import Contour, Which
+from morfax.tracer.program.selection import COVERED, Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.small_lines import small_lines
 from morfax.tracer.program.small_rings import (
     SmallPatch,
     filled_up,
+    none_begun,
     small_rings,
     unclear_patches,
 )
 from morfax.tracer.program.trace import followed
-
-SAME = 0.8  # of a line's way along another: they are one line; by trial
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +87,7 @@ def trace_lines(
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     found = found_lines(setup, which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
-    _refuse_none_begun(lines)
+    _refuse_none_begun(lines, found.unclear)
     lines, left = explained(setup, lines)
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
@@ -143,7 +142,7 @@ def trace_places(
         line = followed(setup, start_mm, number)
         for other in lines:
             near = nearest_mm(line.places_mm, other.places_mm) < line.width_mm
-            if near.mean() > SAME:
+            if near.mean() > COVERED:
                 raise _one_line(starts_mm[other.number - 1], start_mm)
         lines.append(line)
         if progress is not None and not alone:
@@ -246,15 +245,12 @@ def _of_numbers(lines: list[Line], numbers: tuple[int, ...]) -> list[Line]:
     return [line for line in lines if line.number in numbers]
 
 
-def _refuse_none_begun(lines: list[Line]) -> None:
+def _refuse_none_begun(lines: list[Line], unclear: Sequence[SmallPatch] = ()) -> None:
     """Raise LineFault for a sheet on which no line could be begun."""
     if any(len(line.xy_mm) > 1 for line in lines):
         return
     fault = lines[0].fault if lines else None
-    raise fault or LineFault(
-        "no line can be begun: the ink on the sheet is too short, or is letters; give --start X,Y at a plain"
-        " stretch, or, if dots are to be drilled, the --line-width of their pen"
-    )
+    raise fault or none_begun(unclear)
 
 
 def _one_line(first_mm: tuple[float, float], second_mm: tuple[float, float]) -> LineFault:

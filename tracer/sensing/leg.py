@@ -22,6 +22,10 @@ from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, leg_through, parabo
 
 # straight on is within this, and a leg turns off to a side by more than that
 STRAIGHT, TURNS_OFF = math.radians(40), math.radians(20)
+# legs that turn by more lie beside each other: a tip, or a line that comes back; by trial
+TURNS_BACK = math.radians(150)
+# two ends whose headings are so near to one line face each other; by trial
+FACING = math.radians(35)
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 NEARLY_PARALLEL = 0.02  # sine of the angle between two legs that do not meet
 FEWEST_STATIONS, LEAST_WIDTHS = 4, 0.8  # of clean line make a leg; by trial

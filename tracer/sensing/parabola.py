@@ -17,6 +17,7 @@ import numpy as np
 from morfax.motion.arrays import median as median_of
 from morfax.motion.compiled import njit
 from morfax.motion.median import OUTLIERS, ROBUST
+from morfax.motion.plane import heading_between, length_between
 
 BITTEN = 0.06  # of the width: more than a scan's noise
 LEAST_OFF_MM = 0.001  # of a station: nearer ones stay in
@@ -81,7 +82,7 @@ def _leg(seen, end, within_mm):  # type: ignore[no-untyped-def]
             near[count] = k
             count += 1
     first, last = near[0], near[count - 1]
-    heading = math.atan2(seen[last, 1] - seen[first, 1], seen[last, 0] - seen[first, 0])
+    heading = heading_between(seen, first, last)
     c, s = math.cos(heading), math.sin(heading)
     x = np.empty(count)
     y = np.empty(count)
@@ -199,11 +200,11 @@ def bend_at(seen, i, half_mm):  # type: ignore[no-untyped-def]
     near = np.empty(len(seen), np.int64)
     count = 0
     for k in range(len(seen)):
-        if math.hypot(seen[k, 0] - seen[i, 0], seen[k, 1] - seen[i, 1]) < half_mm:
+        if length_between(seen, i, k) < half_mm:
             near[count] = k
             count += 1
     first, last = near[0], near[count - 1]
-    heading = math.atan2(seen[last, 1] - seen[first, 1], seen[last, 0] - seen[first, 0])
+    heading = heading_between(seen, first, last)
     c, s = math.cos(heading), math.sin(heading)
     # 2. their weights
     x = np.empty(count)

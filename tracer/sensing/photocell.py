@@ -21,39 +21,22 @@ the aperture (standard deviation a quarter of it).
 from __future__ import annotations
 
 import math
-import mmap
-from collections.abc import Callable
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.compiled import keeps_kinds, njit
-from morfax.tracer.drawing.blocks import BLOCK_PX
-from morfax.tracer.drawing.contrast import FAINT
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.strokes import Window
 from morfax.tracer.drawing.tiles import Tiles
 from morfax.tracer.sensing import aperture
+from morfax.tracer.sensing.behind_spot import Beyond, near_ink, part_behind
 
 TWO_PI = 2.0 * math.pi
 LEVEL = 0.5  # an edge is at this share of the line's darkness
 STEP_PX = 0.35  # how finely cells look along a ray and round a ring: three steps to a pixel
-HALO_SPREADS = 5.0  # standard deviations of a spot that OpenCV looks at, and one more
-# from what is drawn: no cell that is held against a level looks further; by trial
-ABOUT_MM = 4.0
-TILE_BLOCKS = 16  # blocks of a sheet to the side of a tile that is seen behind a spot at a time
-MOSTLY = 0.6  # of the tiles: the whole sheet at once takes less
 LEAST_SPREAD_PX = 0.2  # a smaller aperture changes no pixel by more than a scanner's noise
-
-
-Beyond = tuple[
-    int, int, int, int
-]  # rows above a part of a sheet, columns to its left, below, right
-Seen = Callable[
-    [int, int, int, int], Darkness
-]  # from a row to another, from a column to another
 
 
 class _Seen(NamedTuple):
@@ -112,7 +95,7 @@ class Cells(_Seen):
         top, bottom = max(0, math.floor(rows - high - about)), math.ceil(rows - low + about)
         first, last = max(0, math.floor(left - about)), math.ceil(right + about)
         window = top, first, min(rows, bottom), min(columns, last)
-        darkness, beyond = _part(self.window, self.shape, spread_px, window)
+        darkness, beyond = part_behind(self.window, self.shape, spread_px, window)
         return self._replace(darkness=darkness, beyond=beyond)
 
 
@@ -126,11 +109,11 @@ def behind_aperture(
         made = aperture.MadeTiles.of(darkness, spread_px)
         return Cells(nothing(), drawing.pitch_mm, level, made)
     if sigma_px >= LEAST_SPREAD_PX and window is None:
-        darkness = _near_ink(drawing, sigma_px)
+        darkness = near_ink(drawing, sigma_px)
     whole = Cells(darkness, drawing.pitch_mm, level)
     if sigma_px < LEAST_SPREAD_PX or window is None:
         return whole
-    darkness, beyond = _part(whole.window, whole.shape, sigma_px, window)
+    darkness, beyond = part_behind(whole.window, whole.shape, sigma_px, window)
     return whole._replace(darkness=darkness, beyond=beyond)
 
 
@@ -142,78 +125,6 @@ def without_aperture(drawing: Drawing, level: float) -> Cells:
 def nothing() -> Darkness:
     """What stands for the darkness of a large sheet."""
     return np.empty((0, 0), np.float32)
-
-
-def _bare(shape: tuple[int, ...]) -> Darkness:
-    """A sheet of plain paper: it takes memory, and time, only where something is written on it."""
-    room = mmap.mmap(-1, max(4 * math.prod(shape), 1))
-    return np.frombuffer(room, np.float32, math.prod(shape)).reshape(shape)
-
-
-def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
-    """A sheet behind a spot, as far as anything is drawn; plain paper far from it is zeros."""
-    darkness = drawing.darkness
-    inked = (drawing.darkest > FAINT).view(np.uint8)
-    if not inked.any():
-        return _bare(darkness.shape)
-    # 1. the tiles that are near something, in stretches of each row of tiles
-    tiles = [-(-side // TILE_BLOCKS) for side in inked.shape]
-    padded = np.zeros([side * TILE_BLOCKS for side in tiles], np.uint8)
-    about = 2 * math.ceil(ABOUT_MM / (BLOCK_PX * drawing.pitch_mm)) + 1
-    padded[: inked.shape[0], : inked.shape[1]] = cv2.dilate(
-        inked, np.ones((about, about), np.uint8)
-    )
-    near = padded.reshape(tiles[0], TILE_BLOCKS, tiles[1], TILE_BLOCKS).any(axis=(1, 3))
-    if near.mean() > MOSTLY:
-        return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
-    # 2. each stretch behind the spot
-    seen, halo = _bare(darkness.shape), math.ceil(HALO_SPREADS * sigma_px) + 1
-    side = TILE_BLOCKS * BLOCK_PX
-    edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    row, begin = np.nonzero(edges == 1)
-    right = np.nonzero(edges == -1)[1]
-    for top, first, last in (side * np.column_stack([row, begin, right])).tolist():
-        _blur(darkness, sigma_px, (top, first, top + side, last), halo, seen)
-    return seen
-
-
-def _part(
-    seen: Seen, shape: tuple[int, int], sigma_px: float, window: Window
-) -> tuple[Darkness, Beyond]:
-    """A window of a sheet of a shape behind a spot, within a rim of paper where the sheet goes on; and how
-    much of the sheet is beyond. `seen` gives the sheet's darkness.
-    """
-    rows, columns = shape
-    top, left, bottom, right = (
-        window[0],
-        window[1],
-        min(window[2], rows),
-        min(window[3], columns),
-    )
-    first, last = max(0, top - 1), min(rows, bottom + 1)
-    begin, end = max(0, left - 1), min(columns, right + 1)
-    halo = math.ceil(HALO_SPREADS * sigma_px) + 1
-    above, beside = max(0, top - halo), max(0, left - halo)
-    about = seen(above, min(bottom + halo, rows), beside, min(right + halo, columns))
-    soft = cv2.GaussianBlur(about, (0, 0), sigma_px)
-    part = np.zeros((last - first, end - begin), np.float32)
-    own = soft[top - above : bottom - above, left - beside : right - beside]
-    part[top - first : bottom - first, left - begin : right - begin] = own
-    return part, (first, begin, rows - last, columns - end)
-
-
-def _blur(
-    darkness: Darkness, sigma_px: float, window: Window, halo: int, seen: Darkness
-) -> None:
-    """Fill in a window of a sheet behind a spot that looks a halo beyond it."""
-    top, left, bottom, right = window
-    above = max(0, top - halo)
-    beside = max(0, left - halo)
-    soft = cv2.GaussianBlur(
-        darkness[above : bottom + halo, beside : right + halo], (0, 0), sigma_px
-    )
-    own = soft[top - above : bottom - above, left - beside : right - beside]
-    seen[top:bottom, left:right] = own
 
 
 @njit(cache=True, inline="always")

@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from morfax.motion.compiled import njit
+from morfax.motion.plane import heading_between
 from morfax.tracer.sensing.ray import edges
 
 # widths and pixels from where a line is expected, within which its edges are
@@ -90,9 +91,9 @@ def felt(cells, pose, width_mm, along_mm):  # type: ignore[no-untyped-def]
 def onward(seen, count):  # type: ignore[no-untyped-def]
     """Heading from the newest station to the next: the last chord's, turned on as the chords have turned."""
     last, back = count - 1, max(0, count - 5)
-    chord = math.atan2(seen[last, 1] - seen[back, 1], seen[last, 0] - seen[back, 0])
+    chord = heading_between(seen, back, last)
     if count < 9:
         return chord
-    before = math.atan2(seen[back, 1] - seen[back - 4, 1], seen[back, 0] - seen[back - 4, 0])
+    before = heading_between(seen, back - 4, back)
     turned = math.atan2(math.sin(chord - before), math.cos(chord - before))
     return chord + 0.625 * turned  # from the chord's middle to half a step beyond its end

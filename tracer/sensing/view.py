@@ -37,6 +37,7 @@ GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages i
 GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
 GRAIN_STATIONS = 20
 EDGES_WIDTHS = 3.0  # to either side of such a station its edges are looked for
+STEP_WIDTHS = 0.1  # between the places that stand for a way where it is held against another
 
 
 @dataclass(frozen=True, slots=True)

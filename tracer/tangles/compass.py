@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 import cv2
@@ -41,6 +42,9 @@ MOST_SETTLED = 5  # of the cores, those that explain most to begin with
 SHARPEST = (
     0.3  # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
 )
+STOPS_RAD = math.radians(
+    25.0
+)  # a way that turns by more is run up to there, and on from there; chosen
 ARC_RAD = math.radians(2.0)  # between the places of an arc: they lie within 1 um of one of 6 mm
 
 
@@ -87,7 +91,7 @@ class Core(NamedTuple):
         if len(points) > 1:
             middle = 0.5 * (way[:1] + way[-1:])
             way = np.vstack([middle, way, middle])
-        return [way] if self.radius_mm > 0 else [way[k : k + 2] for k in range(len(way) - 1)]
+        return [way] if self.radius_mm > 0 else _between_corners(way)
 
     def _arcs(self, points: Array) -> Iterator[Array]:
         """The arc (n, 2) mm about each point of the core, counter-clockwise."""
@@ -102,9 +106,19 @@ class Core(NamedTuple):
             yield point + self.radius_mm * np.column_stack([np.cos(normal), np.sin(normal)])
 
 
+def _between_corners(way: Array) -> list[Array]:
+    """The stretches of a way (n, 2) mm between its sharp corners."""
+    steps = np.diff(way, axis=0)
+    headings = np.arctan2(steps[:, 1], steps[:, 0])
+    turned = np.abs(np.remainder(np.diff(headings) + math.pi, math.tau) - math.pi)
+    sharp = 1 + np.flatnonzero(turned > STOPS_RAD)
+    ends = [0, *sharp.tolist(), len(way) - 1]
+    return [way[begin : end + 1] for begin, end in pairwise(ends)]
+
+
 def explained(ink: SeenInk) -> Core | None:
     """The core that explains a ring's ink best with few figures; None for ink of which none can be begun."""
-    starts = [_drawn(ink, start) for start in _starts(ink)]
+    starts = [with_misfit(ink, start) for start in _starts(ink)]
     near = [start for start in starts if start.misfit < BEGIN * start.length_mm / ink.width_mm]
     likely = sorted(near, key=lambda core: core.cost)[:MOST_SETTLED]
     return best_of(ink, sorted(likely, key=lambda core: core.figures), _settled)
@@ -117,7 +131,7 @@ def filled_misfit(ink: SeenInk, core: Core) -> float:
     return ink.misfit(drawn)
 
 
-def _drawn(ink: SeenInk, core: Core) -> Core:
+def with_misfit(ink: SeenInk, core: Core) -> Core:
     """A core with its misfit."""
     drawn = np.empty(len(ink.places_mm))
     _ink(ink.places_mm, *core[:3], ink.softness_mm, False, drawn)
@@ -148,7 +162,7 @@ def _settled(ink: SeenInk, start: Core) -> Core | None:
     core = core_of(fit.x)
     is_pen = 0.5 * ink.half_mm < core.half_mm < 2 * ink.half_mm
     is_loop = is_pen and core.is_convex and ink.holds(np.vstack(core.stretches()))
-    return _drawn(ink, core) if is_loop else None
+    return with_misfit(ink, core) if is_loop else None
 
 
 def _starts(ink: SeenInk) -> Iterator[Core]:

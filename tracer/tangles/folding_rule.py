@@ -30,6 +30,8 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
 from morfax.motion.polyline import area_mm2, evenly, length_mm
+from morfax.tracer.sensing.leg import TURNS_BACK
+from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import bent_rule, beside_itself, pen
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
@@ -45,10 +47,8 @@ LIKE_PEN = 0.7, 1.4  # times as wide as was felt: another pen explains nothing
 MOST_SETTLED = 8  # of the rules, those that explain most to begin with
 BESIDE = 1.2  # half widths from the line: darker ink further away is a bar's
 FEWEST = 20  # places that a bar of ink has, at the least
-STEP = 0.1  # widths, between the places of a way that are held against each other
 APART = 0.8  # widths: the sides of a bay begin, at the least
 DEEP = 1.2  # widths: a bay is so deep at the least; a flatter one is hidden in the line
-FOLD = math.radians(150.0)  # at its mouth: it turns no further
 WITHIN = 0.4  # of mouth times depth lies within a bay: half in one that comes to a point
 FURTHEST = 4.0  # times as far as a bar is long, from its tip, the line is looked for
 
@@ -214,14 +214,14 @@ def _turned(before: Array, place: Array, after: Array) -> float:
 
 def _is_apart(rule: Rule, width_mm: float) -> bool:
     """Whether a rule does not cross itself, and its sides stay apart, or begin apart and meet in a point."""
-    corners, step_mm = rule.corners_mm, STEP * width_mm
+    corners, step_mm = rule.corners_mm, STEP_WIDTHS * width_mm
     way = evenly(rule.way, step_mm)
     if len(crossings_of(way, np.arange(len(way) - 1))):
         return False
     if len(corners) > 2:
         at_first = _turned(rule.first_mm, corners[0], corners[1])
         at_last = _turned(corners[-2], corners[-1], rule.last_mm)
-        if max(at_first, at_last) > FOLD:
+        if max(at_first, at_last) > TURNS_BACK:
             return False
         mouth = corners[[0, -1]]
         deep_mm = float(pen.away_from(corners, mouth).max())

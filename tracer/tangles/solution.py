@@ -24,7 +24,7 @@ from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.sensing.leg import TURNS_OFF, Leg, goes_straight, turn
+from morfax.tracer.sensing.leg import TURNS_BACK, TURNS_OFF, Leg, goes_straight, turn
 from morfax.tracer.tangles.likeness import Patch, Pen
 from morfax.tracer.tangles.redrawing import NONE, VERTEX, Redrawing
 from morfax.tracer.tangles.sketch import Sketch, redrawings
@@ -49,7 +49,6 @@ ROUGH_WIDTHS = 0.6  # to and fro within the line's own ink: that is rough
 # times the misfit of a redrawing: a tick in its place explains the ink as well
 MARK_AS_GOOD = 1.3
 GENTLE_RAD = math.radians(120)  # a strand that turns less at each vertex is a corner or a step
-BACK_RAD = math.radians(150)  # legs that turn by more lie beside each other
 
 
 class Approach(NamedTuple):
@@ -104,7 +103,7 @@ def unravelled(sketch: Sketch, approach: Approach) -> Solution:
 
 def _runs_back(legs: list[Leg]) -> bool:
     """Whether the only two legs lie beside each other: their inks run together and show little of a tip."""
-    return len(legs) == 2 and abs(turn(legs[0].heading_rad, legs[1].heading_rad)) > BACK_RAD
+    return len(legs) == 2 and abs(turn(legs[0].heading_rad, legs[1].heading_rad)) > TURNS_BACK
 
 
 def _planned_misfit(sketch: Sketch, plan: Plan | None) -> float:

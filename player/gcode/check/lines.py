@@ -14,7 +14,7 @@ import re
 from typing import NamedTuple
 
 from morfax.player.gcode.check.findings import Findings
-from morfax.player.gcode.gcode_text import WORD
+from morfax.player.gcode.gcode_text import PROGRAM_NUMBER, WORD
 from morfax.recorder.gcode.machine import Machine
 
 _COMMENT = re.compile(r"\(([^)]*)(\)|$)|;.*")
@@ -46,7 +46,7 @@ class ControlInput:
 
     def __init__(self, machine: Machine, findings: Findings) -> None:
         self.machine, self.takes, self.findings = machine, machine.takes, findings
-        self.begun = self.between_percents = self.ended = False
+        self.begun = self.between_percents = self.ended = self.has_words = False
 
     def words(self, raw: str) -> Words | None:
         """The words of a line; None for a line without any, or one that cannot be read."""
@@ -163,6 +163,8 @@ class ControlInput:
             rest = _NUMBER.sub("", compact)
             if rest[:1] == "#":  # a value is set; nothing moves
                 return None
+            if not self.has_words and PROGRAM_NUMBER.fullmatch(compact):
+                return None
             if _O_WORD.match(rest):
                 self._not_computed("is a subroutine, a loop or a condition (O)")
                 return None
@@ -181,6 +183,7 @@ class ControlInput:
             )
         if computed & _MOVES:
             self._not_computed(f"has a computed {' and '.join(sorted(computed & _MOVES))}")
+        self.has_words = True
         return Words(parts[1::3], parts[2::3], computed)
 
     def _not_computed(self, what: str) -> None:

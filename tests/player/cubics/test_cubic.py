@@ -22,7 +22,7 @@ from morfax.player.cubics.time_base import TimeBase
 from morfax.recorder.cubics.cubics import record_cubics
 from morfax.recorder.cubics.file import CubicFormat, CubicProgram, write_program
 from tests.player.cubics.registers import table, truncated_end
-from tests.recorder.steps.test_steps import SQUARE, circle
+from tests.recorder.steps.paths import SQUARE, circle
 
 UM = 1e-3
 

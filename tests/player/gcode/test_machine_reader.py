@@ -20,7 +20,7 @@ from morfax.recorder.gcode.blocks import record_blocks
 from morfax.recorder.gcode.machine import as_toml, machine, names
 from morfax.recorder.gcode.plan import Feeds
 from morfax.recorder.media import record
-from tests.recorder.gcode.test_machine import part
+from tests.recorder.gcode.parts import part
 
 UM = 1e-3
 READ_BACK_MM = 10 * UM  # the fit's own tolerance; a servo of the simulated machine adds some um

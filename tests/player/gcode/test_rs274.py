@@ -253,3 +253,13 @@ def test_the_ends_of_an_arc_may_lie_a_thousandth_of_its_radius_off_one_circle(
         return
     with pytest.raises(ProgramFault, match=r"may differ by 0.0100 mm"):
         parse_rs274(lines)
+
+
+def test_the_number_of_a_program_may_stand_before_its_words() -> None:
+    """As LinuxCNC's rs274 takes it. (Fails without `PROGRAM_NUMBER`, and if it is passed over anywhere.)"""
+    moves = ["G21 G90", "G0 X1", "G1 X5 F100", "M30"]
+    for number in ("O0000(PART 7)", "o1234"):
+        assert len(parse_rs274(["%", number, *moves]).moves) == 2
+    for lines in ([moves[0], "O1234", *moves[1:]], ["O12 G1 X3", *moves]):
+        with pytest.raises(ProgramFault, match="O12"):
+            parse_rs274(lines)

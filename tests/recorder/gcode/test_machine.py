@@ -10,18 +10,16 @@ import shutil
 import subprocess
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from morfax.motion.faults import CardFault, FileFault
-from morfax.motion.motion import Path as MotionPath
-from morfax.player.gcode.check.checked import check_lines
 from morfax.player.gcode.hpgl_reader import ABOVE_MM
 from morfax.player.gcode.machine_reader import read_program
 from morfax.recorder.gcode.blocks import record_blocks
 from morfax.recorder.gcode.machine import as_toml, machine, names
 from morfax.recorder.gcode.machine_fields import FIELDS
 from morfax.recorder.gcode.plan import Feeds
+from tests.recorder.gcode.parts import CORNERS_MM, part
 
 BUILT_IN = [
     "grbl-laser",
@@ -34,23 +32,6 @@ BUILT_IN = [
 ]
 # words of Grbl 1.1 (its wiki, "G-code quick reference"); one letter may stand once in a line
 GRBL_WORDS = r"G(0|1|2|3|4|17|21|40|49|54|80|90|94)|M(2|3|4|5)|[XYZIJFSP]-?\d+(\.\d+)?"
-CORNERS_MM = [(10, 10), (40, 10), (40, 30), (10, 30), (10, 10)]
-
-
-def part() -> MotionPath:
-    """A square with one round corner and a hole drilled in two pecks, cut 3 mm deep at 10 mm/s, "
-    "plunged at 4."""
-    turn = np.linspace(math.pi, math.pi / 2, 40)
-    rounded = np.column_stack([15 + 5 * np.cos(turn), 25 + 5 * np.sin(turn)])
-    around = np.vstack(
-        [CORNERS_MM[0], CORNERS_MM[1], CORNERS_MM[2], rounded[::-1], CORNERS_MM[0]]
-    )
-    cut = [(x, y, -3.0) for x, y in around]
-    hole = [(25.0, 20.0, z) for z in (2.0, -2.0, 2.0, -4.0, 2.0)]
-    points = np.array([(10, 10, 2.0), *cut, (10, 10, 2.0), *hole])
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    across = np.abs(np.diff(points[:, :2], axis=0)).max(axis=1) > 0
-    return MotionPath(np.r_[0.0, np.cumsum(steps / np.where(across, 10.0, 4.0))], points)
 
 
 def program(name: str, folder: Path, feeds: Feeds | None = None) -> list[str]:
@@ -238,6 +219,17 @@ def test_a_comment_cannot_end_itself_nor_hide_a_line() -> None:
     assert len(machine("grbl-pen").comment("x" * 500)) <= 79
 
 
+def test_a_comment_writes_letters_of_other_languages_as_people_write_them_in_ascii() -> None:
+    """(Fails without `WRITTEN`, or without the accents taken off: "B?gel", "pi?ce".)"""
+    named = "Bügel Größe 2–3 µm, pièce łańcuch, Ⅳ, 部.png"
+    assert (
+        machine("linuxcnc").comment(named)
+        == "(Buegel Groesse 2-3 um, piece lancuch, IV, ?.png)"
+    )
+    decomposed = "Bu\u0308gel"  # as file names of macOS are
+    assert machine("linuxcnc").comment(decomposed) == "(Buegel)"
+
+
 @pytest.mark.skipif(
     shutil.which("rs274") is None, reason="rs274 of linuxcnc-uspace is not installed"
 )
@@ -258,45 +250,3 @@ def test_linuxcnc_reads_every_program_to_its_end(name: str, tmp_path: Path) -> N
     assert "PROGRAM_END" in told.stdout
     cuts = [line for line in lines if re.match(r"G[123] ", line)]
     assert told.stdout.count("STRAIGHT_FEED") + told.stdout.count("ARC_FEED") == len(cuts)
-
-
-def test_lines_have_numbers_and_percent_stands_first_where_the_machine_wants_it(
-    tmp_path: Path,
-) -> None:
-    """As a Fanuc control has it: %, numbers, home at the end, %."""
-    text = as_toml("linuxcnc").replace(
-        "longest_line = 252", "longest_line = 80\nline_numbers = 10"
-    )
-    text = text.replace('begin = ["G21', 'begin = ["%", "G21').replace(
-        'end = ["M5", "M2"]', 'end = ["M5", "G0 X0 Y0", "M30", "%"]'
-    )
-    (tmp_path / "fanuc.toml").write_text(text)
-    record_blocks(part(), tmp_path / "a.nc", machine_name=str(tmp_path / "fanuc.toml"))
-    lines = (tmp_path / "a.nc").read_text().splitlines()
-    assert lines[0] == lines[-1] == "%" and lines[1].startswith("(for fanuc")
-    words = [line for line in lines if not line.startswith(("(", "%"))]
-    assert words[0] == "N10 G21 G17 G40 G49 G54 G80 G90 G94"
-    assert [line.split()[0] for line in words] == [
-        f"N{10 * k}" for k in range(1, len(words) + 1)
-    ]
-    read = read_program(tmp_path / "a.nc", machine_name=str(tmp_path / "fanuc.toml"))
-    assert read.moves[-1].end_mm[:2] == (0, 0) and read.moves[-1].end_mm[2] > 0
-    assert check_lines(lines, machine(str(tmp_path / "fanuc.toml"))).may_start
-
-
-def test_a_step_of_line_numbers_that_cannot_be_is_refused(tmp_path: Path) -> None:
-    for said, mistake in (
-        ("line_numbers = 500", "the step of line numbers, 1 to 100, or 0 for none"),
-        ("longest_line = 64\nline_numbers = 5", "longest_line must be 71 or more"),
-    ):
-        (tmp_path / "mine.toml").write_text(f'what = "mine"\n{said}\n')
-        with pytest.raises(CardFault, match=mistake):
-            machine(str(tmp_path / "mine.toml"))
-
-
-def test_a_built_in_machine_is_read_once_and_its_values_are_its_own() -> None:
-    usual = machine("grbl-router")
-    assert machine("grbl-router") is usual
-    other = machine("grbl-router", {"speed": 8000.0})
-    assert other.values["speed"] == 8000.0 != usual.values["speed"]
-    assert machine("grbl-router").values == usual.values

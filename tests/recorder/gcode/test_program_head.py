@@ -10,7 +10,7 @@ import pytest
 from morfax.motion.motion import Path as MotionPath
 from morfax.recorder.gcode.blocks import record_blocks
 from morfax.recorder.gcode.made import Made
-from tests.recorder.gcode.test_machine import part
+from tests.recorder.gcode.parts import part
 
 
 def head_of(path: MotionPath, folder: Path, machine_name: str = "linuxcnc") -> list[str]:

@@ -43,6 +43,7 @@ class Cable:
     fails: bool = False
     cable: queue.Queue[Any] = field(default_factory=queue.Queue)
     heard: list[Any] = field(default_factory=list)
+    streams: list[_Stream] = field(default_factory=list)
 
     CallbackStop = CallbackStop
     CallbackAbort = CallbackAbort
@@ -97,7 +98,8 @@ class Cable:
                 self.heard.append(out)
                 self.cable.put(out)
 
-        return _Stream(step, self.stops_at, finished_callback)
+        self.streams.append(_Stream(step, self.stops_at, finished_callback))
+        return self.streams[-1]
 
     def InputStream(self, *, callback: Callable[..., None], **how: Any) -> _Stream:  # noqa: N802
         """A stream that hands frames to its callback: those of the cable, then silence."""
@@ -110,7 +112,8 @@ class Cable:
             status = SimpleNamespace(input_overflow=number == self.overflow_at)
             callback(frames, len(frames), None, status)
 
-        return _Stream(step, self.stops_at, lambda: None)
+        self.streams.append(_Stream(step, self.stops_at, lambda: None))
+        return self.streams[-1]
 
 
 class _Stream:
@@ -121,6 +124,7 @@ class _Stream:
     ) -> None:
         self._step, self._stops_at, self._finished = step, stops_at, finished
         self._ended = threading.Event()
+        self.is_closed = False
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
@@ -148,3 +152,20 @@ class _Stream:
     def close(self) -> None:
         """Wait for the thread."""
         self._thread.join(timeout=1)
+        self.is_closed = True
+
+
+class Still:
+    """A device that calls back after so long, by the waits counted; none of it takes time."""
+
+    def __init__(self, still_s: float) -> None:
+        self.left_s = still_s
+
+    def wait(self, seconds: float) -> bool:
+        """One wait is over, without a call."""
+        self.left_s -= seconds
+        return False
+
+    def is_set(self) -> bool:
+        """It goes on."""
+        return False

@@ -21,7 +21,7 @@ from morfax.recorder.sound.programme import between_silences
 from morfax.recorder.tape.recording import record_live
 from morfax.recorder.tape.tape import TapeFormat
 from tests.player.worn import program
-from tests.recorder.sound.stand_in import Cable
+from tests.recorder.sound.stand_in import Cable, Still
 
 CHECKED = TapeFormat(checked=True)
 BY_HAND = {"reference_hz": 6000.0, "cycles_per_mm": 20.0}
@@ -72,6 +72,20 @@ def test_every_frame_goes_out_once_and_in_order(cable: Cable) -> None:
     begin = np.flatnonzero(np.abs(heard).max(axis=1))[0]
     assert np.array_equal(heard[begin : begin + len(frames)], frames)
     assert not heard[:begin].any() and not heard[begin + len(frames) :].any()
+    assert [stream.is_closed for stream in cable.streams] == [True]
+
+
+def test_a_second_of_silence_goes_before_the_tape_and_one_behind_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cable = Cable()
+    monkeypatch.setattr(devices, "sounddevice", lambda: cable)
+    monkeypatch.setattr(device_sink, "AHEAD_S", 60.0)
+    with sink() as out:
+        out.put(np.full((RATE_HZ, 4), 0.5, np.float32))
+    heard = np.flatnonzero(np.vstack(cable.heard).any(axis=1))
+    assert (heard[0], heard[-1]) == (RATE_HZ, 2 * RATE_HZ - 1)
+    assert len(np.vstack(cable.heard)) >= 3 * RATE_HZ
 
 
 def silence(seconds: float) -> np.ndarray:
@@ -97,6 +111,15 @@ def test_what_a_device_does_not_play_is_a_fault(
         for _ in range(10):
             out.put(silence(1.0))
     assert met.value.exit_code == 10
+    assert all(stream.is_closed for stream in cable.streams)  # the device is free for others
+
+
+def test_a_device_that_runs_out_of_samples_says_after_how_many_seconds(cable: Cable) -> None:
+    """Callbacks are of 0.1 s; the first two are the silence in front."""
+    cable.underflow_at = 9
+    with pytest.raises(DeviceFault, match=r" 0\.7") as met, sink() as out:
+        out.put(silence(2.0))
+    assert met.value.time_s == pytest.approx(0.7)
 
 
 def test_an_underrun_as_a_device_starts_costs_nothing(cable: Cable) -> None:
@@ -170,6 +193,20 @@ def test_without_sounddevice_a_line_says_what_to_install(
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(DeviceFault, match=r'pip install "morfax\[sound\]"'):
         devices.devices()
+
+
+@pytest.mark.parametrize(("still_s", "has_stopped"), [(4.0, False), (6.0, True)])
+def test_a_device_that_does_not_call_for_5_s_has_stopped(
+    monkeypatch: pytest.MonkeyPatch, still_s: float, has_stopped: bool
+) -> None:
+    monkeypatch.setattr(devices, "sounddevice", lambda: Cable())
+    out, still = sink(), Still(still_s)
+    out._done = still  # type: ignore[assignment]
+    if has_stopped:
+        with pytest.raises(DeviceFault, match="stopped"):
+            out._wait(lambda: still.left_s <= 0)
+    else:
+        out._wait(lambda: still.left_s <= 0)
 
 
 def carriers(seconds: float) -> np.ndarray:

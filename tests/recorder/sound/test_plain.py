@@ -52,6 +52,7 @@ def test_other_kinds_are_left_to_libsndfile(
 
 def test_a_file_cut_short_under_way_is_a_fault(tmp_path: Path) -> None:
     source = FileSource(written(tmp_path / "a.wav", "WAV", "PCM_16"))
+    assert source.name == str(tmp_path / "a.wav")  # by which its faults call it
     blocks = source.stored_blocks(500)
     next(blocks)
     os.truncate(source.file, source.file.stat().st_size - 400 * 8 - 3)
@@ -72,3 +73,21 @@ def test_a_flac_that_ends_early_is_cut_short(tmp_path: Path) -> None:
     (tmp_path / "a.flac").write_bytes(data[: len(data) // 2])
     with pytest.raises(TapeFault, match="cut short"):
         FileSource(tmp_path / "a.flac")
+
+
+def test_a_file_cut_short_says_how_long_it_is_and_how_long_it_should_be(tmp_path: Path) -> None:
+    file = tmp_path / "a.wav"
+    soundfile.write(file, np.zeros((48_000, 4)), 24_000, "PCM_16")
+    whole = file.stat().st_size
+    os.truncate(file, whole - 36_000 * 8)
+    with pytest.raises(TapeFault, match=r"0\.5\d* s.* 2\.0*"):
+        FileSource(file)
+
+
+@pytest.mark.parametrize(("sample", "kind"), [("PCM_16", np.int16), ("PCM_24", np.float32)])
+def test_samples_of_16_bit_come_as_they_are_stored_and_others_as_floats(
+    tmp_path: Path, sample: str, kind: type
+) -> None:
+    source = FileSource(written(tmp_path / "a.flac", "FLAC", sample))
+    assert {block.dtype for block in source.stored_blocks(400)} == {np.dtype(kind)}
+    source.close()

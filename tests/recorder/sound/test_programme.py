@@ -7,7 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from morfax.recorder.sound.programme import MARGIN, SETTLING, programme_within
+from morfax.recorder.sound.programme import (
+    MARGIN,
+    SETTLING,
+    between_silences,
+    programme_within,
+)
 
 RATE_HZ = 48_000
 WINDOW = 960  # 20 ms
@@ -49,3 +54,10 @@ def test_silence_and_a_click_are_no_programme() -> None:
 def test_a_programme_too_short_to_settle_and_to_fade_has_no_frames() -> None:
     first, last = programme_within(blocks(recording(50, SETTLING, 50), 7_001), RATE_HZ)
     assert first == last == (50 + SETTLING) * WINDOW
+
+
+@pytest.mark.parametrize("size", [7_001, 1_000_000])
+def test_what_comes_in_live_is_the_same_programme(size: int) -> None:
+    frames = recording(50, 100, 40)
+    heard = np.vstack(list(between_silences(blocks(frames, size), RATE_HZ, 9.0, "it")))
+    assert len(heard) == (100 - SETTLING - MARGIN) * WINDOW

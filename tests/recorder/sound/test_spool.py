@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import soundfile
 
 from morfax.motion.faults import TapeFault
 from morfax.recorder.sound.spool import LARGEST_AIFF_BYTES, Spool
@@ -30,3 +31,24 @@ def test_a_wav_may_be_longer(tmp_path: Path) -> None:
         spool.frames = LARGEST_AIFF_BYTES
         spool.put(FRAMES)
         spool.frames = len(FRAMES)
+
+
+@pytest.mark.parametrize("written", [999, 1001])
+def test_a_file_that_holds_another_number_of_frames_than_were_put_is_not_whole(
+    tmp_path: Path, written: int
+) -> None:
+    with (
+        pytest.raises(soundfile.SoundFileError),
+        Spool(tmp_path / "a.flac", 48_000, 2, ("FLAC", "PCM_16"), "") as spool,
+    ):
+        spool.put(FRAMES)
+        spool.frames = written
+
+
+def test_a_spool_is_called_as_the_file_that_it_will_be(tmp_path: Path) -> None:
+    kind = ("AIFF", "PCM_16")
+    with Spool(tmp_path / "part", 48_000, 2, kind, "", name=tmp_path / "a.aiff") as spool:
+        spool.frames = LARGEST_AIFF_BYTES
+        with pytest.raises(TapeFault, match=r"cannot write .*a\.aiff: an AIFF ends"):
+            spool.put(FRAMES)
+        spool.frames = 0

@@ -23,6 +23,10 @@ PAPER, INK = 0.85, 0.1  # of the light, thrown back
 RINGS = ((20.0, 20.0, 12.0), (50.0, 20.0, 12.0), (35.0, 20.0, 5.0))  # middles and radii, mm
 SHEET_MM = (70.0, 40.0)
 FLAT = np.full((120, 200), 235, np.float32)
+# of the light: by so much paper itself differs from place to place (5 of 255 levels)
+AS_PAPER = 0.02
+# of the light: beside an edge; the edges of a line at half its darkness move by a tenth of a pixel then
+AT_EDGE = 0.05
 
 
 def camera(light: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -65,7 +69,8 @@ def test_lines_across_a_shadows_edge_are_run_once_and_whole(
     length_mm = 2 * np.pi * sum(r for _, _, r in RINGS)
     run_mm = sum(line.length_mm for line in trace.lines)
     assert abs(run_mm - length_mm) < 0.01 * length_mm
-    # a shadow's edge of a millimetre tilts the profile of a line across it by a pixel's twentieth
+    # a shadow's edge of a millimetre tilts a line's profile by a twentieth of a pixel, 8.5 um at 150 dpi; the
+    # camera's noise adds as much
     off = np.min([np.abs(np.hypot(*(ways - (a, b)).T) - r) for a, b, r in RINGS], axis=0)
     assert np.sqrt(np.mean(off**2)) < 12 * UM
 
@@ -82,13 +87,13 @@ def test_even_light_is_left_as_it_is() -> None:
 
 @pytest.mark.parametrize("soft_px", [1, 20, 100])
 def test_the_light_follows_a_shadows_edge_hard_or_soft(soft_px: int) -> None:
-    """Within a twentieth of the light, where the edge is."""
+    """Close enough where the edge is, too."""
     light = 1 - 0.4 * np.clip((np.arange(200) - 100) / soft_px + 0.5, 0, 1)
     level = FLAT * light.astype(np.float32)
     lighting = even(level)
     assert lighting is not None
     found = lighting.light(9.0)
-    assert np.abs(found / light - 1).max() < 0.05
+    assert np.abs(found / light - 1).max() < AT_EDGE
 
 
 def test_beneath_a_filled_shape_the_light_is_that_beside_it() -> None:
@@ -100,8 +105,8 @@ def test_beneath_a_filled_shape_the_light_is_that_beside_it() -> None:
     lighting = even(level)
     assert lighting is not None
     found = lighting.beneath_shapes(0.8 * 0.5, 4, 9.0).light(1.0)
-    assert np.abs(found[:, :148] - 1).max() < 0.02
-    assert np.abs(found[:, 153:] - 0.8).max() < 0.02
+    assert np.abs(found[:, :148] - 1).max() < AS_PAPER
+    assert np.abs(found[:, 153:] - 0.8).max() < AS_PAPER
 
 
 def test_a_grey_picture_on_white_paper_is_no_shape_if_lines_are_drawn_on_it() -> None:
@@ -114,7 +119,7 @@ def test_a_grey_picture_on_white_paper_is_no_shape_if_lines_are_drawn_on_it() ->
         lighting = Lighting.of(level, shown)
         assert lighting is not None
         found = lighting.beneath_shapes(0.8 * 0.5, 4, 9.0).light(1.0)
-        assert np.abs(found[40:80, 70:130] - light).max() < 0.02
+        assert np.abs(found[40:80, 70:130] - light).max() < AS_PAPER
 
 
 def test_a_disc_of_pencil_under_a_lamp_stays_dark() -> None:

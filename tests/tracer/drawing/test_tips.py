@@ -13,7 +13,8 @@ from morfax.jobs.remarks_on_ink import of_ink
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
-from tests.tracer.drawing.test_shapes import STEPPED, filled, nearest_um
+from tests.tracer.drawing.filled import filled
+from tests.tracer.drawing.test_shapes import STEPPED, nearest_um
 from tests.tracer.inked import UM, Points
 
 TIP = np.array([32.03, 19.07])

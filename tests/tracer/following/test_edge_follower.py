@@ -15,7 +15,8 @@ from morfax.tracer.head.leaders import CELL, STATIONS
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
-from tests.tracer.drawing.test_shapes import CIRCLE, STEPPED, filled, star
+from tests.tracer.drawing.filled import CIRCLE, filled
+from tests.tracer.drawing.test_shapes import STEPPED, star
 from tests.tracer.following.test_agreement import BROKEN
 from tests.tracer.inked import UM, arc
 

@@ -24,7 +24,8 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
-from tests.tracer.drawing.test_shapes import CIRCLE, STEPPED, filled, star
+from tests.tracer.drawing.filled import CIRCLE, filled
+from tests.tracer.drawing.test_shapes import STEPPED, star
 from tests.tracer.inked import DPI, UM, Points, arc
 
 SHAPES = {"disc": CIRCLE, "plate": STEPPED, "star": star()}

@@ -303,13 +303,16 @@ def test_the_cells_ahead_stand_where_the_sweep_s_curve_leads(
         ((0.5, 0.0, 0.0, 5.1), False),  # too soon
     ],
 )
+@pytest.mark.parametrize("goes_rad", [0.0, 2.0])
 def test_home_is_just_ahead_on_the_line(
-    tuning: Tuning, home: tuple[float, float, float, float], there: bool
+    tuning: Tuning, home: tuple[float, float, float, float], there: bool, goes_rad: float
 ) -> None:
     """Within a lead, three tenths of it aside, and 37 degrees of its heading; a lead of 1 mm here."""
     state, (along, aside, heading, travel) = moving(), home
-    state.travel_mm = 5.0
-    at = Home(PLACE[0] + along, PLACE[1] + aside, heading, travel)
+    state.travel_mm, state.heading_rad = 5.0, goes_rad
+    c, s = math.cos(goes_rad), math.sin(goes_rad)
+    x_mm, y_mm = PLACE + np.array([along * c - aside * s, along * s + aside * c])
+    at = Home(x_mm, y_mm, goes_rad + heading, travel)
     assert bool(kernel._at_home(state, tuning._replace(lead_mm=1.0), at)) is there
 
 

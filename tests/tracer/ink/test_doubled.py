@@ -257,6 +257,13 @@ def test_lines_of_few_pixels_do_not_tell() -> None:
     assert doubled_mm(two_pens(0.2, 0.28, None)) == 0.0
 
 
+def test_lines_with_grain_do_not_tell() -> None:
+    """A pencil line on a photograph was told as two along 343 of its 520 mm."""
+    clean = two_pens(0.5, 0.65, None)
+    assert doubled_mm(clean) > 0
+    assert doubled_mm(replace(clean, grainy=True)) == 0
+
+
 def test_hard_pixels_tell_a_width_to_one_of_them() -> None:
     """A line of five and six pixels was ink of two lines, of which one was told as left out, or both were."""
     seen = inked(*near_lines(True), CLEAR)

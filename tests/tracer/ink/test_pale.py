@@ -62,6 +62,18 @@ def test_a_smudge_on_grained_paper_is_no_pale_line_and_a_line_beside_it_is_one()
     assert sum(line.length_mm for line in found) - on_bar_mm < 25
 
 
+def test_strands_that_a_slit_makes_of_the_papers_grain_are_no_pale_lines() -> None:
+    """As on a photograph of pencil on rough paper: 1970 mm of strands beside a line of 520 mm."""
+    bare = with_pale_bar(0.6, 0.02)
+    white = np.random.default_rng(3).normal(0, 1, bare.darkness.shape)
+    strands = cv2.GaussianBlur(white, (0, 0), sigmaX=20, sigmaY=2)
+    seen = np.asarray(bare.darkness + 0.1 * strands / strands.std(), np.float32)
+    rough = replace(bare, darkness=np.maximum(seen, 0))
+    assert sum(line.length_mm for line in pale_lines(rough)) > 25
+    found = pale_lines(replace(rough, grainy=True))
+    assert sum(line.length_mm for line in found if abs(line.y_mm - 20) > 0.5) < 10
+
+
 def test_a_line_of_one_hard_pixel_is_ink() -> None:
     """It was followed, and told as left out: a third of a plan of 1-bit pixels."""
     sheet = with_pale_bar(0.0, 0.0)

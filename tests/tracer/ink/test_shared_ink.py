@@ -14,7 +14,7 @@ from morfax.tracer.ink.shared_ink import SLACK, SharedInk, kept_in_ink
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
-from tests.tracer.inked import UM, WIDTH_MM, Points, inked, polyline
+from tests.tracer.inked import UM, WIDTH_MM, Points, arc, inked, polyline
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -122,3 +122,14 @@ def test_two_bows_that_touch_do_not_cross(seed: int) -> None:
     for truth in (outer, inner):
         off = [distance(line.xy_mm[::4], truth).path_to_reference for line in run.lines]
         assert min(summary.max_mm for summary in off) < 15 * UM
+
+
+def test_a_circle_that_touches_a_line_is_no_corner_there() -> None:
+    """Between clean ends it turns by 87 degrees, as a corner might; its own rim is felt all along."""
+    circle = arc((14, 6.8), 2.8)
+    drawing = inked(polyline((4, 4), (24, 4)), circle, width_mm=0.35, dpi=200, seed=1)
+    closed = [line for line in trace_ink(drawing).lines if line.ending == "closed"]
+    assert len(closed) == 1
+    away_mm = np.hypot(*(closed[0].xy_mm - (14, 6.8)).T)
+    # a pixel is 0.127 mm
+    assert np.abs(away_mm - 2.8).max() < 0.1

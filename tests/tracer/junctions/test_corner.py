@@ -197,6 +197,16 @@ def test_where_an_arc_has_no_room_a_bend_misses_the_vertex_by_what_the_ink_does(
     assert way[0][-1] == pytest.approx(near.outgoing.end_mm, abs=1e-9)
 
 
+def test_a_bend_begins_where_the_leg_ends_however_near_the_head_stands() -> None:
+    missing, half = 0.2, math.radians(30)
+    touch_mm = missing * WIDTH_MM * math.tan(half) / (1 / math.cos(half) - 1)
+    end_mm = 0.9 * touch_mm
+    view = ink(60, 0.5 - missing)
+    (way,) = corners.through_corner(view, stands(end_mm + 0.05), turned(60, end_mm), 0.0)
+    beyond = (way[:, 0] > -end_mm) & (way[:, 0] < 0.12 - end_mm)
+    assert np.abs(way[beyond, 1]).max() > 1e-5  # off the leg's line within 0.12 mm
+
+
 def test_legs_that_end_too_near_for_the_missing_ink_make_one_cubic() -> None:
     near = turned(60, 0.1)
     (way,) = corners.through_corner(ink(60, 0.5 - 0.31), stands(1.0), near, 0.0)

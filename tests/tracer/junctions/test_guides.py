@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.following.line import Line
-from morfax.tracer.junctions.guides import AGAIN_MM, GuideLine, Junctions
+from morfax.tracer.junctions.guides import AGAIN_MM, GuideLine, Junctions, _first_near
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
@@ -43,12 +43,21 @@ def test_a_guide_line_is_left_for_ends_and_is_come_back_from() -> None:
         and junctions.comes_back(HERE, 1.0)
         and not junctions.comes_back(THERE, 1.0)
     )
+    assert junctions.guides(way) == ()  # it has been to the end, and is not yet back
     junctions.is_back(200, 30.0)
     assert junctions.next(31.0) == -1 + len(junctions.places_mm) or not junctions.places_mm
     assert not junctions.comes_back(HERE, 1.0) and not junctions.turn_round(250)
     (guide,) = junctions.guides(way)
     assert isinstance(guide, GuideLine) and guide.tip == 151
     assert way[guide.leave] == pytest.approx(HERE) and way[guide.back] == pytest.approx(HERE)
+
+
+def test_the_head_is_back_when_it_first_comes_by_the_junction() -> None:
+    """Later it may come by nearer."""
+    away_mm = np.array([1.0, 0.045, 0.04, 1.0, 0.01, 1.0])
+    way = np.column_stack([10.0 + away_mm, np.zeros(6)])
+    assert _first_near(way, np.array([10.0, 0.0])) == 2
+    assert _first_near(way[[0, 3, 5]] + 0.1, np.array([10.0, 0.0])) == 0  # not so near at all
 
 
 def test_the_end_of_a_line_that_is_no_guide_is_the_end() -> None:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
+from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.junctions.rings import corner_in, legs_around
+from morfax.tracer.junctions.rings import corner_in, fork_in, legs_around
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
@@ -123,3 +124,20 @@ def test_a_line_close_by_is_no_leg() -> None:
     """Its ink is on the rings, but not joined to the junction's."""
     drawing = inked(polyline((4, 10), CENTRE, (10, 16)), polyline((11, 7), (11, 16)))
     assert legs_seen(drawing, CENTRE, WEST) == pytest.approx([90], abs=0.5)
+
+
+@pytest.mark.parametrize("along_deg", [0.0, 90.0, 210.0])
+@pytest.mark.parametrize("forks", [True, False])
+def test_a_fork_is_where_ink_goes_straight_on_and_the_line_bends_away(
+    along_deg: float, forks: bool
+) -> None:
+    """A line of 6 mm that bends to the left on a radius of 3 mm; another goes straight on, or none does."""
+    a = math.radians(along_deg)
+    turned = np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]])
+    middle = np.array([16.0, 14.0])
+    bend = np.radians(np.arange(0, 91, 1.0))
+    line = np.vstack([[-6.0, 0.0], 3 * np.column_stack([np.sin(bend), 1 - np.cos(bend)])])
+    lines = [line @ turned + middle, np.array([[0.0, 0.0], [6.0, 0.0]]) @ turned + middle]
+    seen = stations(evenly(lines[0], 0.05))
+    found = fork_in(view(inked(*lines[: 1 + forks])), seen, 0)
+    assert (found is not None) is forks

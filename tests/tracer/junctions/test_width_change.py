@@ -8,6 +8,7 @@ where the middles meet, 50 um as for any right-angled corner.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import cv2
@@ -18,8 +19,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.contour import distance, length_mm
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.junctions.width_change import _straight_ahead, another_pen
 from morfax.tracer.program.trace import trace
-from morfax.tracer.sensing.photocell import Cells
+from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.sensing.photocell import Cells, behind_aperture
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
 
@@ -132,3 +135,33 @@ def test_larger_cells_see_within_their_reach_what_they_see_of_the_whole_sheet() 
     assert some.width_mm == all_of_it.width_mm
     beyond = np.array([30.0, 10.0])
     assert some.darkness_at(beyond) == 0.0 != all_of_it.darkness_at(beyond)
+
+
+@pytest.mark.parametrize(("widths", "is_one"), [(5.0, False), (11.0, True)])
+def test_another_pen_s_line_is_as_wide_for_eight_widths(widths: float, is_one: bool) -> None:
+    """Two lines that run together are as wide for less."""
+    wide_mm, begin_mm = 0.8, 8.0
+    drawn = together(
+        (polyline((4, 10), (begin_mm + widths * wide_mm, 10)), wide_mm),
+        (polyline((begin_mm + widths * wide_mm, 10), (26, 10)), 0.5),
+        seed=1,
+    )
+    view = View(behind_aperture(drawn, 0.15), 0.5)
+    leg = leg_of(
+        replace(view, width_mm=wide_mm).feel(np.array([begin_mm - 2, 10.0]), 0.0, 2.0),
+        True,
+        view.leg_mm,
+    )
+    assert another_pen(view, leg) is is_one
+
+
+@pytest.mark.parametrize(("times", "is_line"), [(3.0, True), (4.2, False)])
+def test_what_is_more_than_three_and_a_half_times_as_wide_ahead_is_no_line(
+    times: float, is_line: bool
+) -> None:
+    drawn = together(
+        (polyline((4, 12), (14, 12)), 0.5), (polyline((14, 12), (30, 12)), 0.5 * times), seed=1
+    )
+    view = View(behind_aperture(drawn, 0.15), 0.5)
+    incoming = leg_of(view.feel(np.array([8.0, 12.0]), 0.0, 4.0), True, view.leg_mm)
+    assert bool(list(_straight_ahead(view, incoming))) is is_line

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import nearest_mm, with_places
+from morfax.motion.polyline import length_mm, nearest_mm, with_places
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.settings import Settings
@@ -113,3 +113,79 @@ def test_a_narrow_line_that_is_open_at_one_end_is_no_slot(apart_mm: float) -> No
             line for line in trace(inked(PLATE, bent, seed=1)).lines if line.ending == "closed"
         ]
         assert len(closed) == 1
+
+
+def around(spine: Points, wide_mm: float) -> Points:
+    """The closed line about a spine (n, 2), half of a width to either side; square ends."""
+    ahead = np.gradient(spine, axis=0)
+    left = (
+        0.5
+        * wide_mm
+        * np.column_stack([-ahead[:, 1], ahead[:, 0]])
+        / np.hypot(*ahead.T)[:, None]
+    )
+    return np.vstack([spine + left, (spine - left)[::-1], (spine + left)[:1]])
+
+
+X_MM = np.linspace(8, 30, 120)
+WAVE = np.column_stack([X_MM, 18 + 2 * np.sin(X_MM / 3)])
+HOOK = polyline((10, 12), (30, 12), (30, 20), (29.3, 20), (29.3, 12.7), (10, 12.7), (10, 12))
+
+
+@pytest.mark.parametrize(
+    ("drawn", "width_mm"),
+    [
+        (around(arc((22, 8), 12.0, 50, 130), 0.7), 0.5),
+        (around(WAVE, 0.65), 0.5),
+        (around(WAVE, 0.5), 0.35),
+        (slot(20.0, 0.7) + np.array([8.0, 0.0]), 0.5),
+        (HOOK, 0.5),
+    ],
+)
+def test_a_narrow_loop_of_any_shape_is_cut_true_and_once(
+    drawn: Points, width_mm: float
+) -> None:
+    """Within 0.1 mm, a pixel and a fifth, at the corner of a hook, which the rim does not show; half of that
+    elsewhere.
+    """
+    drawing = inked(PLATE, drawn, width_mm=width_mm, seed=1)
+    once_mm = float(np.hypot(*np.diff(drawn, axis=0).T).sum())
+    for trace in (trace_lines(drawing), trace_ink(drawing)):
+        line = small_line(trace)
+        assert off_mm(line, drawn) < (100 if drawn is HOOK else 50) * UM
+        assert line.length_mm == pytest.approx(once_mm, rel=0.02)
+
+
+def test_a_way_that_runs_a_piece_of_a_narrow_loop_twice_gives_place_to_one_that_does_not() -> (
+    None
+):
+    """Its pen would leave the same ink; the way as it was drawn stays."""
+    drawn = around(arc((22, 8), 12.0, 50, 130), 1.0)
+    loops = SmallLoops(inked(PLATE, drawn, seed=1).sheet, Settings())
+    way = with_places(drawn, 2 * UM)
+    assert loops.of_way(way, 0.5) is None
+    back = way[3000:3400]
+    twice = loops.of_way(np.vstack([way[:3400], back[::-1], way[3000:]]), 0.5)
+    assert twice is not None
+    assert twice.length_mm == pytest.approx(length_mm(drawn), rel=0.02)
+
+
+@pytest.mark.parametrize("wide_mm", [0.8, 1.0, 1.2])
+def test_a_broad_dash_is_no_narrow_loop(wide_mm: float) -> None:
+    """As broad as two lines and long, but there is no seam between them."""
+    half = 0.5 * (wide_mm - 0.5)
+    arcs = [arc((22, 8), 12 + off, 50, 130) for off in np.linspace(-half, half, 5)]
+    sheet = inked(PLATE, *arcs, seed=1).sheet
+    patch = sheet.patch_at(np.array([22.0, 20.0]))
+    assert SmallLoops(sheet, Settings()).of_patch(patch, 0.5) is None
+
+
+@pytest.mark.parametrize(
+    "other", [polyline((22, 20.3), (22, 24)), polyline((22, 19.4), (22, 20.6))]
+)
+def test_a_narrow_loop_that_a_line_joins_or_crosses_is_none_alone(other: Points) -> None:
+    """The rim goes out along the one and back; the other lies within it."""
+    loop = around(arc((22, 8), 12.0, 50, 130), 1.2)
+    sheet = inked(PLATE, loop, other, seed=1).sheet
+    patch = sheet.patch_at(np.array([22.0, 20.6]))
+    assert SmallLoops(sheet, Settings()).of_patch(patch, 0.5) is None

@@ -141,3 +141,24 @@ def test_where_an_edge_ends_the_scout_stops() -> None:
     pose = 5 * PITCH_MM, 30 * PITCH_MM, 0.0
     seen = edge_scout.along_edge(cells, pose, STEP_MM, 400)
     assert 40 * PITCH_MM < seen[:, 0].max() < 60 * PITCH_MM
+
+
+@COMPILED_AND_PLAIN
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("off_deg", [-4.0, 1.0, 3.0])
+def test_round_about_a_place_the_edge_goes_on_where_the_circle_meets_it(
+    side: int, off_deg: float, plain: bool
+) -> None:
+    """On a ramp of darkness whose level of a half runs at 30 degrees, whatever the heading to begin with."""
+    along = math.radians(30)
+    into = along + side * math.pi / 2
+    x = np.arange(40) + 0.5
+    y = 40 - x[:, None]
+    ramp = 0.5 + 0.02 * ((x - 20) * math.cos(into) + (y - 20) * math.sin(into))
+    cells = Cells(ramp.astype(np.float32), PITCH_MM, 0.5)
+    here, step_mm = 20 * PITCH_MM, 5 * PITCH_MM
+    pose = here, here, along + math.radians(off_deg)
+    found = kernel(edge_scout._round_about, plain)(cells, pose, side, step_mm)
+    told = here + step_mm * math.cos(along), here + step_mm * math.sin(along)
+    # the sine of a turn of ten degrees is straight within 4e-4 of it
+    assert found == pytest.approx(told, abs=4e-4 * step_mm)

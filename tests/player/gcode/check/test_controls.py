@@ -215,3 +215,15 @@ def rs274(lines: list[str], folder: Path) -> int:
     (folder / "part.ngc").write_text("\n".join([*lines, "M2", ""]))
     words = ["rs274", "-t", "tool.tbl", "-g", "part.ngc"]
     return subprocess.run(words, cwd=folder, capture_output=True, timeout=300).returncode
+
+
+@pytest.mark.parametrize("number", ["O0000(PART 7)", "o1234"])
+def test_the_number_of_a_program_is_a_line_of_linuxcnc_before_its_words(number: str) -> None:
+    """rs274 takes both; Grbl has no letter O. (Told as a subroutine without `PROGRAM_NUMBER`.)"""
+    for name, is_told in (("linuxcnc", False), ("grbl-router", True)):
+        for lines, is_found in (
+            ([number, *BEFORE, "M2"], is_told),
+            ([*BEFORE, number, "M2"], True),
+        ):
+            rules = {found.rule for found in check_lines(lines, machine(name)).findings}
+            assert bool(rules & {"not read", "word"}) == is_found, (name, lines)

@@ -1,0 +1,77 @@
+"""The rim of a line whose sides run together is felt where its ink ends, and the way lies within it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from morfax.motion.polyline import area_mm2, length_mm
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.ink import rim as rim_module
+from morfax.tracer.ink.rim import Rim, felt_rim
+from tests.tracer.inked import UM, Points, arc, inked, polyline
+
+HALF_MM = 0.25
+
+
+def felt(outline: Points, *lines: Points) -> Rim:
+    """The rim felt about an outline on a quiet scan of lines of 0.5 mm."""
+    view = view_of(inked(*lines).sheet, None, 2 * HALF_MM)
+    found = felt_rim(view, outline)
+    assert found is not None
+    return found
+
+
+def test_the_rim_of_a_disc_is_a_circle() -> None:
+    """Of a disc of 1 mm, from an outline that is 0.1 mm off: half as far beyond the circle of 0.75 mm as the
+    pen's line is wide, within a tenth of a pixel, and bent by 1/mm to the left.
+    """
+    line = polyline((12, 2), (20, 2))
+    disc = line, arc((6, 6), 0.75), arc((6, 6), 0.4), arc((6, 6), 0.1)
+    found = felt(arc((6.05, 5.95), 1.05)[:-1], *disc)
+    view = view_of(inked(line).sheet, None, 2 * HALF_MM)
+    right_mm, left_mm = view.edges(np.array([16.0, 2.0]), 0.0, 1.0)
+    away_mm = np.hypot(*(found.places_mm - (6, 6)).T) - 0.5 * (left_mm - right_mm)
+    assert away_mm == pytest.approx(np.full(len(away_mm), 0.75), abs=8 * UM)
+    assert np.mean(found.bends_per_mm) == pytest.approx(1.0, abs=0.02)
+    assert area_mm2(found.places_mm) > 0
+
+
+def test_the_way_within_a_circle_is_a_smaller_circle() -> None:
+    turned = np.linspace(0, math.tau, 400)[:-1]
+    places = 2.0 * np.column_stack([np.cos(turned), np.sin(turned)])
+    way = Rim(places, turned + 0.5 * math.pi, np.full(len(turned), 0.5)).way(0.25)
+    assert np.hypot(*way.T) == pytest.approx(np.full(len(way), 1.75))
+
+
+def test_a_corner_towards_the_ink_is_sharp() -> None:
+    """A rim that turns right at (0, 0), from the heading of X to that of -Y: the way 0.25 mm to its left
+    turns at (0.25, 0.25), and does not run round the corner in an arc.
+    """
+    s, none = 0.05 * np.arange(1, 60), np.zeros(59)
+    places = np.vstack([np.column_stack([-s[::-1], none]), np.column_stack([none, -s])])
+    headings, bends = np.r_[none, none - 0.5 * math.pi], np.zeros(118)
+    # parabolas turn it over four places
+    headings[57:61], bends[57:61] = (-0.2, -0.6, -1.0, -1.4), -8.0
+    way = Rim(places, headings, bends).way(0.25)
+    off_mm = np.hypot(*(way - (0.25, 0.25)).T)
+    assert off_mm.min() == pytest.approx(0.0, abs=1 * UM)
+    beside = np.minimum(np.abs(way[:, 0] - 0.25), np.abs(way[:, 1] - 0.25))
+    assert beside.max() < 1 * UM
+
+
+def test_ink_that_is_hardly_there_has_no_rim() -> None:
+    view = view_of(inked(polyline((4, 4), (12, 4))).sheet, None, 2 * HALF_MM)
+    assert felt_rim(view, arc((6, 4), 0.1)[:-1]) is None
+    assert felt_rim(view, arc((8, 30), 2.0)[:-1]) is None
+
+
+def test_the_kernel_feels_what_its_plain_python_feels(monkeypatch: pytest.MonkeyPatch) -> None:
+    line = polyline((4, 4), (10, 4))
+    outline = polyline((3.8, 3.8), (10.2, 3.8), (10.2, 4.2), (3.8, 4.2))
+    compiled = felt(outline, line)
+    monkeypatch.setattr(rim_module, "_feel", rim_module._feel.py_func)
+    assert np.array_equal(felt(outline, line).places_mm, compiled.places_mm)
+    assert length_mm(compiled.places_mm) == pytest.approx(12 + math.tau * HALF_MM, rel=0.02)

@@ -1,0 +1,85 @@
+"""Struck off: a stroke ends where it comes to another's ink; ink of two lines is left to both."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.motion.polyline import evenly, length_mm
+from morfax.tracer.ink.struck_off import struck_off
+from morfax.tracer.ink.track import InkStroke
+from tests.tracer.inked import UM, WIDTH_MM, Points, inked, polyline
+
+LINE = polyline((5, 10), (45, 10))
+EVERY_MM = 0.2 * WIDTH_MM  # places that are voted on
+
+
+def stroke_along(way: Points, *, closed: bool = False) -> InkStroke:
+    """A stroke as the head leaves it: positions about a micrometre apart."""
+    return InkStroke(evenly(way, 2 * UM), length_mm(way), closed, WIDTH_MM)
+
+
+def leads_into(aside_mm: float, along_mm: float) -> Points:
+    """A line that comes down to `LINE` at 45 degrees and runs along it, so far beside it, to its end."""
+    return polyline((15, 20), (25, 10 + aside_mm), (25 + along_mm, 10 + aside_mm))
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("aside_mm", [20 * UM, 150 * UM])
+def test_the_end_along_which_another_runs_is_cut_off(aside_mm: float, turned: bool) -> None:
+    way = leads_into(aside_mm, 6.0)
+    drawn = inked(LINE, polyline((15, 20), (25, 10)))
+    other = stroke_along(way[::-1] if turned else way)
+    line, cut = struck_off(drawn, [stroke_along(LINE), other])
+    assert line.length_mm == length_mm(LINE)
+    end = cut.way_mm[0 if turned else -1]
+    # from there on its pen is within the other's ink, and it keeps what leads there
+    assert end == pytest.approx([25, 10 + aside_mm], abs=WIDTH_MM)
+    assert cut.length_mm == pytest.approx(other.length_mm - 6, abs=WIDTH_MM)
+
+
+@pytest.mark.parametrize("share", [0.25, 0.45])
+def test_where_the_ink_is_that_of_two_lines_both_go_on(share: float) -> None:
+    way = leads_into(share * WIDTH_MM, 6.0)
+    strokes = [stroke_along(LINE), stroke_along(way)]
+    kept = struck_off(inked(LINE, way), strokes)
+    assert [stroke.length_mm for stroke in kept] == [stroke.length_mm for stroke in strokes]
+
+
+def test_a_stroke_within_anothers_ink_is_none() -> None:
+    within = polyline((20, 10.02), (24, 10.02))
+    kept = struck_off(inked(LINE), [stroke_along(within), stroke_along(LINE)])
+    assert [stroke.length_mm for stroke in kept] == [length_mm(LINE)]
+
+
+def test_of_two_that_end_in_each_other_one_goes_on() -> None:
+    one, other = polyline((5, 10), (30, 10)), polyline((24, 10), (45, 10))
+    kept = struck_off(inked(LINE), [stroke_along(one), stroke_along(other)])
+    assert kept[0].length_mm == length_mm(one)
+    assert kept[1].way_mm[0] == pytest.approx([30, 10], abs=1.5 * EVERY_MM)
+
+
+def test_what_crosses_pokes_out_or_comes_round_is_left() -> None:
+    across = polyline((20, 5), (20, 15))
+    poking = polyline((30, 20), (30, 9))  # half a width beyond the line's ink
+    ring = polyline((36, 10), (38, 10), (38, 14), (34, 14), (34, 10), (36, 10))
+    strokes = [stroke_along(LINE), stroke_along(across), stroke_along(poking)]
+    strokes.append(stroke_along(ring, closed=True))
+    kept = struck_off(inked(LINE, across, poking, ring), strokes)
+    assert [stroke.length_mm for stroke in kept] == [stroke.length_mm for stroke in strokes]
+
+
+def test_a_stroke_that_comes_back_along_itself_ends_there() -> None:
+    """A bar between two lines of a ring, which the way goes down and up again."""
+    way = polyline((10, 10), (10, 20), (20, 20), (20, 10.02), (10, 10.02), (10, 16))
+    (cut,) = struck_off(inked(way), [stroke_along(way)])
+    assert cut.length_mm == pytest.approx(length_mm(way) - 6, abs=WIDTH_MM)
+
+
+def test_who_led_is_known_of_what_is_left() -> None:
+    stroke = stroke_along(LINE)
+    count = len(stroke.way_mm)
+    led = stroke.led.along(np.repeat([0, 1], (count // 2, count - count // 2)))
+    part = stroke._replace(led=led).part(10.0, 5.0)
+    assert part.length_mm == pytest.approx(25, abs=5 * UM)
+    assert part.led.of(len(part.way_mm)).mean() == pytest.approx(15 / 25, abs=0.001)

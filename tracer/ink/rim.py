@@ -1,0 +1,143 @@
+"""The rim: the outer edge of a closed line whose sides run together, and the way of the pen within it.
+
+    ╭───────────────╮     slots, slits and kerfs of any shape: between the sides the cells see little paper or
+    │ ╭───────────╮ │     none, but the outer edge of the ink is as clear as that of any line; the line lies
+    ╰─┴───────────┴─╯     half a pen's width within it
+
+Where the line turns away from the paper within, the rim's corner is round or sharp like the line's; where it
+turns towards that, the rim is sharp in either case, and the line is taken to be.
+
+Signals: the cells, and places (n, 2) mm about on the rim, in; the rim as it was felt, and the closed way
+(n, 2) mm at a distance within it, out.
+
+Source: our own; patent ES 361967 follows the middle of a line. Questions: whether it is one broad line or two
+narrow ones the rim does not tell; the ink within does (see `program.small_loops`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
+from morfax.motion.plane import cross, direction, meeting
+from morfax.motion.polyline import at_lengths, length_mm
+from morfax.tracer.ink.run import parabolas
+from morfax.tracer.sensing.ray import Ray, crossing_mm
+from morfax.tracer.sensing.view import View
+
+# In widths of the pen, by trial on slots of all shapes:
+SMOOTH = 0.3  # to either side of a place the steps of pixels are smoothed by
+REACH = 0.6  # to either side the edge is looked for
+PARABOLA = (
+    0.4  # to either side of a place: no longer, or it cuts the round corner of a square end
+)
+TIGHT = 1.0  # radius: where the rim turns so towards the ink, the line has a corner
+BEYOND = 0.25  # before and after such a corner the parabolas are bent by it
+LONGEST_MITRE = 3.0
+SLIGHT = 0.3  # sine of the turn: a corner that turns by less is left round
+FEWEST = 20  # places of a rim
+TIMES = 2  # it is felt: across the steps of pixels, and across what was felt
+
+
+class Rim(NamedTuple):
+    """A rim as it was felt, counter-clockwise: places (n, 2) mm, headings rad, bends 1/mm to the left."""
+
+    places_mm: Array
+    headings_rad: Array
+    bends_per_mm: Array
+
+    def way(self, within_mm: float) -> Array:
+        """The closed way (n, 2) mm, not closed up, that lies so far within the rim."""
+        way = self.places_mm + within_mm * _left(self.headings_rad)
+        width_mm = 2 * within_mm
+        tight = self.bends_per_mm * TIGHT * width_mm < -1.0
+        if not tight.any() or tight.all():
+            return way
+        # begun where the rim is no corner
+        first = int(np.argmin(tight))
+        way, headings = np.roll(way, -first, axis=0), np.roll(self.headings_rad, -first)
+        changes = np.diff(np.roll(tight, -first).astype(np.int8), prepend=0, append=0)
+        apart_mm = float(np.hypot(*(self.places_mm[1] - self.places_mm[0])))
+        beyond = max(1, round(BEYOND * width_mm / apart_mm))
+        corners = np.flatnonzero(changes).reshape(-1, 2) + np.array([-beyond, beyond])
+        return _mitred(way, headings, corners, LONGEST_MITRE * width_mm)
+
+
+def felt_rim(view: View, outline: Array) -> Rim | None:
+    """The rim that the cells feel about an outline (n, 2) mm, counter-clockwise, not closed up; None for ink
+    that is too small.
+    """
+    width_mm, step_mm = view.width_mm, view.step_mm
+    places = _evenly(outline, step_mm)
+    if len(places) < FEWEST:
+        return None
+    places = _averaged(places, max(1, round(SMOOTH * width_mm / step_mm)))
+    half_mm = PARABOLA * width_mm
+    about = 2 * int(half_mm / step_mm) + 2  # places that go round again
+    for _ in range(TIMES):
+        places = _evenly(places, step_mm)
+        ahead = np.roll(places, -2, axis=0) - np.roll(places, 2, axis=0)
+        headings = np.arctan2(ahead[:, 1], ahead[:, 0])
+        off_mm = np.empty(len(places))
+        _feel(view.cells, places, headings, REACH * width_mm, off_mm)
+        is_felt = np.isfinite(off_mm)
+        places = (places + off_mm[:, None] * _left(headings))[is_felt]
+        if len(places) < FEWEST:
+            return None
+        felt = parabolas(_round_again(places, about), half_mm, step_mm)
+        places, headings, bends = (each[about:-about] for each in felt)
+    return Rim(places, headings, bends)
+
+
+@njit(cache=True)
+def _feel(cells, places, headings, reach_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` with how far to the left of each place (n, 2) the ink begins, mm; NaN where it does not."""
+    for k in range(len(places)):
+        c, s = -np.sin(headings[k]), np.cos(headings[k])
+        x, y = places[k, 0] - reach_mm * c, places[k, 1] - reach_mm * s
+        out[k] = crossing_mm(cells, Ray(x, y, c, s, 0.0), 0.0, 2.0 * reach_mm, 0.0) - reach_mm
+
+
+def _mitred(way: Array, headings: Array, corners: NDArray[np.int64], most_mm: float) -> Array:
+    """A closed way (n, 2) with a sharp corner in place of its places from a first one to a last one, each
+    (n, 2), no longer than that.
+    """
+    parts, at = list[Array](), 0
+    for before, after in np.minimum(corners, len(way) - 1).tolist():
+        into, out_of = direction(headings[before]), direction(headings[after])
+        if before < at or abs(cross(into, out_of)) < SLIGHT:
+            continue
+        corner = meeting(way[before], into, way[after], out_of)
+        if 0 < (corner - way[before]) @ into < most_mm:
+            parts += [way[at : before + 1], corner[None]]
+            at = after
+    return np.vstack([*parts, way[at:]])
+
+
+def _left(headings: Array) -> Array:
+    """Unit ways (n, 2) to the left of headings (n,)."""
+    return np.column_stack([-np.sin(headings), np.cos(headings)])
+
+
+def _evenly(places: Array, step_mm: float) -> Array:
+    """Places of a closed way a step apart, (n, 2) mm."""
+    closed = np.vstack([places, places[:1]])
+    round_mm = length_mm(closed)
+    return at_lengths(closed, np.linspace(0.0, round_mm, 1 + round(round_mm / step_mm))[:-1])
+
+
+def _averaged(places: Array, half: int) -> Array:
+    """Places of a closed way, each in the middle of so many to either side, (n, 2) mm."""
+    weights = np.full(2 * half + 1, 1 / (2 * half + 1))
+    about = _round_again(places, half)
+    return np.column_stack([np.convolve(column, weights, "valid") for column in about.T])
+
+
+def _round_again(places: Array, count: int) -> Array:
+    """Places of a closed way, with so many of its last ones before and of its first ones after, (m, 2) mm."""
+    at = np.arange(-count, len(places) + count)
+    return np.ascontiguousarray(np.take(places, at, axis=0, mode="wrap"))
