@@ -123,9 +123,10 @@ class Attempts:
         ):  # a large sheet's tiles are not copied
             return None, None
         view, place = stance.view, tuple(stance.place_mm.tolist())
-        seen = view.width_mm, view.usual_mm, view.level, view.cells.shape
+        cells = view.cells
+        seen = view.width_mm, view.usual_mm, view.level, cells.shape, cells.beyond
         start = place, stance.heading_rad, stance.reference_mm, seen, repr(self.settings)
-        return memory.head(self.drawing, start, turns, view.cells.darkness)
+        return memory.head(self.drawing, start, turns, cells.darkness)
 
     def asked_for(
         self,

@@ -162,9 +162,15 @@ class Branches:
 
 def _key(stance: Stance) -> Key:
     """What a run from a stance depends on. What the cells see is the same if it is the same array."""
-    view = stance.view
-    *_, level, tiles = cells = view.cells
-    sees = id(cells.darkness), id(tiles), level, view.pitch_mm, view.grainy, view.parted
+    view, cells = stance.view, stance.view.cells
+    sees = (
+        id(cells.darkness),
+        id(cells.tiles),
+        cells.level,
+        view.pitch_mm,
+        view.grainy,
+        view.parted,
+    )
     line = view.width_mm, view.usual_mm, view.enlarged, view.on_edge
     return (
         *stance.place_mm.tolist(),

@@ -115,7 +115,7 @@ def _follow(cells, head, known, gauged, out):  # type: ignore[no-untyped-def]
             return done, why
         if is_near_itself(marks, gauged[1]):
             return done, why
-        now = Cells(cells.darkness, cells.pitch_mm, gauged[0], cells.tiles)
+        now = Cells(cells.darkness, cells.pitch_mm, gauged[0], cells.tiles, cells.beyond)
         trusted_mm = _felt_clean(now, head, known, gauged)
         if trusted_mm <= 0.0:
             return done, why
@@ -141,7 +141,7 @@ def _felt_clean(cells, head, known, gauged):  # type: ignore[no-untyped-def]
     )
     if math.isnan(level):
         level, width_mm, usual_mm = cells.level, gauged[1], gauged[2]
-    now = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles)
+    now = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles, cells.beyond)
     own_mm = leg_mm(width_mm, cells.pitch_mm)
     long_mm = back_mm + t.guard_lead_mm + own_mm
     seen = felt(now, pose, width_mm, (line.step_mm, long_mm))

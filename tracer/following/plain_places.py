@@ -183,7 +183,7 @@ def _score(cells, places, sizes_mm, out):  # type: ignore[no-untyped-def]
     for k in range(len(places)):
         x, y = places[k, 0], places[k, 1]
         level = LEVEL * max(darkness_at(cells, x, y), FAINTEST)
-        now = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles)
+        now = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles, cells.beyond)
         out[k, 0], out[k, 1] = _felt_about(now, places[k], sizes_mm)
 
 

@@ -133,7 +133,7 @@ def _as_before(sheet: Sheet, stroke: Stroke, sought: _Sought) -> Iterator[Stance
     found = _ends(view, before, old, sought)
     found += _plain(view, old, sought.start_mm, _catch_mm(before))
     # 2. the same on the ink as it is now, where that is still this line
-    now = sought.view(sheet, old).cells.darkness
+    now = sought.view(sheet, old).cells
     for stance in found:
         if stroke.is_at(stance.place_mm) and is_far(stance, changed_mm):
             yield on_ink(stance, now)

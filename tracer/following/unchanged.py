@@ -17,9 +17,10 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.drawing.drawing import Darkness, Drawing
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.knots import changes_mm
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.sensing.photocell import Cells
 
 FAR_MM = 12.0  # to changed ink: as far as a head sees that feels for legs and tangles; by trial
 
@@ -39,7 +40,7 @@ def is_far(stance: Stance, changed_mm: Array) -> bool:
     return bool(np.hypot(*np.maximum(beyond, 0.0).T).min() > FAR_MM)
 
 
-def on_ink(stance: Stance, darkness: Darkness) -> Stance:
-    """The same stance on other ink."""
-    cells = stance.view.cells._replace(darkness=darkness)
+def on_ink(stance: Stance, now: Cells) -> Stance:
+    """The same stance on other ink, as cells see it now."""
+    cells = stance.view.cells._replace(darkness=now.darkness, beyond=now.beyond)
     return replace(stance, view=replace(stance.view, cells=cells))

@@ -37,7 +37,7 @@ from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.sensing.photocell import ABOUT_MM
+from morfax.tracer.sensing.behind_spot import ABOUT_MM
 
 if TYPE_CHECKING:
     from morfax.tracer.ink.chains import Chain, Junctions

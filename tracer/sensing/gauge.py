@@ -41,7 +41,7 @@ def gauge(cells, pose, widths_mm, step_mm, follows):  # type: ignore[no-untyped-
         found[k] = darkness_at(cells, x_mm + ahead_mm * c, y_mm + ahead_mm * s)
     ink = median(found)
     level = LEVEL * min(max(ink, cells.level), DARKEST * cells.level)
-    here = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles)
+    here = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles, cells.beyond)
     # 2. the width at that level
     reach_mm = REACH * width_mm + REACH_PX * cells.pitch_mm
     for k in range(PLACES):

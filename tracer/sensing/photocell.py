@@ -21,29 +21,21 @@ the aperture (standard deviation a quarter of it).
 from __future__ import annotations
 
 import math
-import mmap
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.compiled import keeps_kinds, njit
-from morfax.tracer.drawing.blocks import BLOCK_PX
-from morfax.tracer.drawing.contrast import FAINT
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.strokes import Window
 from morfax.tracer.drawing.tiles import Tiles
 from morfax.tracer.sensing import aperture
+from morfax.tracer.sensing.behind_spot import Beyond, near_ink, part_behind
 
 TWO_PI = 2.0 * math.pi
 LEVEL = 0.5  # an edge is at this share of the line's darkness
 STEP_PX = 0.35  # how finely cells look along a ray and round a ring: three steps to a pixel
-HALO_SPREADS = 5.0  # standard deviations of a spot that OpenCV looks at, and one more
-# from what is drawn: no cell that is held against a level looks further; by trial
-ABOUT_MM = 4.0
-TILE_BLOCKS = 16  # blocks of a sheet to the side of a tile that is seen behind a spot at a time
-MOSTLY = 0.6  # of the tiles: the whole sheet at once takes less
 LEAST_SPREAD_PX = 0.2  # a smaller aperture changes no pixel by more than a scanner's noise
 
 
@@ -54,26 +46,42 @@ class _Seen(NamedTuple):
     pitch_mm: float
     level: float
     tiles: aperture.MadeTiles = aperture.NONE
+    beyond: Beyond = (0, 0, 0, 0)
 
 
 @keeps_kinds
 class Cells(_Seen):
     """What the cells see of a sheet: the darkness behind their aperture, (rows, columns) float32, on pixels
     of `pitch_mm`; and the darkness at which they see an edge. That of a large sheet is empty: it is made
-    where the cells look, in `tiles`.
+    where the cells look, in `tiles`. Of a part of a sheet the darkness is that part's, and `beyond` it is
+    paper.
     """
 
     @property
     def shape(self) -> tuple[int, int]:
         """Rows and columns of the sheet."""
+        above, left, below, right = self.beyond
         rows, columns = self.darkness.shape
-        return rows + self.tiles.rows, columns + self.tiles.columns
+        return (
+            above + rows + below + self.tiles.rows,
+            left + columns + right + self.tiles.columns,
+        )
 
     def window(self, top: int, bottom: int, left: int, right: int) -> Darkness:
         """What the cells see in some rows and columns, those of them that are on the sheet."""
         if self.tiles.rows:
             return aperture.window(self.tiles, top, bottom, left, right)
-        return self.darkness[top:bottom, left:right]
+        if not any(self.beyond):
+            return self.darkness[top:bottom, left:right]
+        (all_rows, all_columns), (above, beside) = self.shape, self.beyond[:2]
+        shape = max(min(bottom, all_rows) - top, 0), max(min(right, all_columns) - left, 0)
+        seen, (rows, columns) = np.zeros(shape, np.float32), self.darkness.shape
+        first, last = max(top, above), min(top + shape[0], above + rows)
+        begin, end = max(left, beside), min(left + shape[1], beside + columns)
+        if first < last and begin < end:
+            own = self.darkness[first - above : last - above, begin - beside : end - beside]
+            seen[first - top : last - top, begin - left : end - left] = own
+        return seen
 
     def wider(self, spread_px: float, places: Array, beyond_mm: float) -> Cells:
         """The same behind a further spot of a standard deviation, about some places (n, 2) sheet mm; a small
@@ -81,13 +89,14 @@ class Cells(_Seen):
         """
         if self.tiles.rows:
             return self._replace(darkness=nothing(), tiles=self.tiles.wider(spread_px))
-        rows, columns = self.darkness.shape
+        rows, columns = self.shape
         (left, low), (right, high) = np.stack(bounds(places)) / self.pitch_mm
-        beyond = beyond_mm / self.pitch_mm + 1.0
-        top, bottom = max(0, math.floor(rows - high - beyond)), math.ceil(rows - low + beyond)
-        first, last = max(0, math.floor(left - beyond)), math.ceil(right + beyond)
+        about = beyond_mm / self.pitch_mm + 1.0
+        top, bottom = max(0, math.floor(rows - high - about)), math.ceil(rows - low + about)
+        first, last = max(0, math.floor(left - about)), math.ceil(right + about)
         window = top, first, min(rows, bottom), min(columns, last)
-        return self._replace(darkness=_blurred(self.darkness, spread_px, window))
+        darkness, beyond = part_behind(self.window, self.shape, spread_px, window)
+        return self._replace(darkness=darkness, beyond=beyond)
 
 
 def behind_aperture(
@@ -100,10 +109,12 @@ def behind_aperture(
         made = aperture.MadeTiles.of(darkness, spread_px)
         return Cells(nothing(), drawing.pitch_mm, level, made)
     if sigma_px >= LEAST_SPREAD_PX and window is None:
-        darkness = _near_ink(drawing, sigma_px)
-    elif sigma_px >= LEAST_SPREAD_PX and window is not None:
-        darkness = _blurred(darkness, sigma_px, window)
-    return Cells(darkness, drawing.pitch_mm, level)
+        darkness = near_ink(drawing, sigma_px)
+    whole = Cells(darkness, drawing.pitch_mm, level)
+    if sigma_px < LEAST_SPREAD_PX or window is None:
+        return whole
+    darkness, beyond = part_behind(whole.window, whole.shape, sigma_px, window)
+    return whole._replace(darkness=darkness, beyond=beyond)
 
 
 def without_aperture(drawing: Drawing, level: float) -> Cells:
@@ -116,60 +127,6 @@ def nothing() -> Darkness:
     return np.empty((0, 0), np.float32)
 
 
-def _bare(shape: tuple[int, ...]) -> Darkness:
-    """A sheet of plain paper: it takes memory, and time, only where something is written on it."""
-    room = mmap.mmap(-1, max(4 * math.prod(shape), 1))
-    return np.frombuffer(room, np.float32, math.prod(shape)).reshape(shape)
-
-
-def _near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
-    """A sheet behind a spot, as far as anything is drawn; plain paper far from it is zeros."""
-    darkness = drawing.darkness
-    inked = (drawing.darkest > FAINT).view(np.uint8)
-    if not inked.any():
-        return _bare(darkness.shape)
-    # 1. the tiles that are near something, in stretches of each row of tiles
-    tiles = [-(-side // TILE_BLOCKS) for side in inked.shape]
-    padded = np.zeros([side * TILE_BLOCKS for side in tiles], np.uint8)
-    about = 2 * math.ceil(ABOUT_MM / (BLOCK_PX * drawing.pitch_mm)) + 1
-    padded[: inked.shape[0], : inked.shape[1]] = cv2.dilate(
-        inked, np.ones((about, about), np.uint8)
-    )
-    near = padded.reshape(tiles[0], TILE_BLOCKS, tiles[1], TILE_BLOCKS).any(axis=(1, 3))
-    if near.mean() > MOSTLY:
-        return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
-    # 2. each stretch behind the spot
-    seen, halo = _bare(darkness.shape), math.ceil(HALO_SPREADS * sigma_px) + 1
-    side = TILE_BLOCKS * BLOCK_PX
-    edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    row, begin = np.nonzero(edges == 1)
-    right = np.nonzero(edges == -1)[1]
-    for top, first, last in (side * np.column_stack([row, begin, right])).tolist():
-        _blur(darkness, sigma_px, (top, first, top + side, last), halo, seen)
-    return seen
-
-
-def _blurred(darkness: Darkness, sigma_px: float, window: Window) -> Darkness:
-    """A window of a sheet behind a spot; the rest is zeros, which take neither time nor memory."""
-    seen = _bare(darkness.shape)
-    _blur(darkness, sigma_px, window, math.ceil(HALO_SPREADS * sigma_px) + 1, seen)
-    return seen
-
-
-def _blur(
-    darkness: Darkness, sigma_px: float, window: Window, halo: int, seen: Darkness
-) -> None:
-    """Fill in a window of a sheet behind a spot that looks a halo beyond it."""
-    top, left, bottom, right = window
-    above = max(0, top - halo)
-    beside = max(0, left - halo)
-    soft = cv2.GaussianBlur(
-        darkness[above : bottom + halo, beside : right + halo], (0, 0), sigma_px
-    )
-    own = soft[top - above : bottom - above, left - beside : right - beside]
-    seen[top:bottom, left:right] = own
-
-
 @njit(cache=True, inline="always")
 def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     """Darkness under a cell at a place in sheet mm; paper outside the sheet.
@@ -180,12 +137,14 @@ def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
     rows, columns = seen.shape
     if rows == 0:
         return aperture.darkness_at(cells.tiles, x_mm / pitch_mm, y_mm / pitch_mm)
+    above_px, left_px, below_px, _ = cells.beyond
     x = x_mm / pitch_mm - 0.5
-    y = rows - y_mm / pitch_mm - 0.5
+    y = (above_px + rows + below_px) - y_mm / pitch_mm - 0.5
     i, j = math.floor(y), math.floor(x)
+    fx, fy = x - j, y - i
+    i, j = i - above_px, j - left_px
     if i < 0 or j < 0 or i >= rows - 1 or j >= columns - 1:
         return 0.0
-    fx, fy = x - j, y - i
     i, j = int(i), int(j)
     above = seen[i, j] * (1 - fx) + seen[i, j + 1] * fx
     below = seen[i + 1, j] * (1 - fx) + seen[i + 1, j + 1] * fx

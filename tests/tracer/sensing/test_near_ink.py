@@ -4,7 +4,8 @@ import cv2
 import numpy as np
 
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.sensing.photocell import ABOUT_MM, behind_aperture
+from morfax.tracer.sensing.behind_spot import ABOUT_MM
+from morfax.tracer.sensing.photocell import behind_aperture
 
 PITCH_MM = 25.4 / 600
 APERTURE_MM = 0.3

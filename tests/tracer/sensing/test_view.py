@@ -113,7 +113,7 @@ def test_larger_cells_about_a_place_see_as_far_as_is_asked() -> None:
         [0.2, 0.2],
         [columns * cells.pitch_mm - 0.2, rows * cells.pitch_mm - 0.2],
     ):
-        seen = cells.wider(2.0, np.array([place]), 1.5).darkness
+        seen = cells.wider(2.0, np.array([place]), 1.5).window(0, rows, 0, columns)
         x, y = np.meshgrid(np.arange(columns) + 0.5, rows - np.arange(rows) - 0.5)
         near = np.hypot(x * cells.pitch_mm - place[0], y * cells.pitch_mm - place[1]) < 1.5
         # the same but for how a spot is cut off at the end of its skirts

@@ -1,0 +1,103 @@
+"""A sheet behind a spot: the darkness that cells see, made for a whole sheet, near its ink, or for a part.
+
+Signals: darkness (rows, columns) and the spot's standard deviation, pixels, in; the darkness behind the spot
+out. On large sheets it is made where the head goes (see `aperture`).
+
+Source: our own; the spot is OpenCV's Gaussian.
+"""
+
+from __future__ import annotations
+
+import math
+import mmap
+from collections.abc import Callable
+
+import cv2
+import numpy as np
+
+from morfax.tracer.drawing.blocks import BLOCK_PX
+from morfax.tracer.drawing.contrast import FAINT
+from morfax.tracer.drawing.drawing import Darkness, Drawing
+from morfax.tracer.drawing.strokes import Window
+
+HALO_SPREADS = 5.0  # standard deviations of a spot that OpenCV looks at, and one more
+# from what is drawn: no cell that is held against a level looks further; by trial
+ABOUT_MM = 4.0
+TILE_BLOCKS = 16  # blocks of a sheet to the side of a tile that is seen behind a spot at a time
+MOSTLY = 0.6  # of the tiles: the whole sheet at once takes less
+
+# rows above a part of a sheet, columns to the left of it, rows below, columns to the right
+Beyond = tuple[int, int, int, int]
+Seen = Callable[[int, int, int, int], Darkness]  # rows from, to; columns from, to
+
+
+def _bare(shape: tuple[int, ...]) -> Darkness:
+    """A sheet of plain paper: it takes memory, and time, only where something is written on it."""
+    room = mmap.mmap(-1, max(4 * math.prod(shape), 1))
+    return np.frombuffer(room, np.float32, math.prod(shape)).reshape(shape)
+
+
+def near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
+    """A sheet behind a spot, as far as anything is drawn; plain paper far from it is zeros."""
+    darkness = drawing.darkness
+    inked = (drawing.darkest > FAINT).view(np.uint8)
+    if not inked.any():
+        return _bare(darkness.shape)
+    # 1. the tiles that are near something, in stretches of each row of tiles
+    tiles = [-(-side // TILE_BLOCKS) for side in inked.shape]
+    padded = np.zeros([side * TILE_BLOCKS for side in tiles], np.uint8)
+    about = 2 * math.ceil(ABOUT_MM / (BLOCK_PX * drawing.pitch_mm)) + 1
+    padded[: inked.shape[0], : inked.shape[1]] = cv2.dilate(
+        inked, np.ones((about, about), np.uint8)
+    )
+    near = padded.reshape(tiles[0], TILE_BLOCKS, tiles[1], TILE_BLOCKS).any(axis=(1, 3))
+    if near.mean() > MOSTLY:
+        return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
+    # 2. each stretch behind the spot
+    seen, halo = _bare(darkness.shape), math.ceil(HALO_SPREADS * sigma_px) + 1
+    side = TILE_BLOCKS * BLOCK_PX
+    edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    row, begin = np.nonzero(edges == 1)
+    right = np.nonzero(edges == -1)[1]
+    for top, first, last in (side * np.column_stack([row, begin, right])).tolist():
+        _blur(darkness, sigma_px, (top, first, top + side, last), halo, seen)
+    return seen
+
+
+def part_behind(
+    seen: Seen, shape: tuple[int, int], sigma_px: float, window: Window
+) -> tuple[Darkness, Beyond]:
+    """A window of a sheet of a shape behind a spot, within a rim of paper where the sheet goes on; and how
+    much of the sheet is beyond. `seen` gives the sheet's darkness.
+    """
+    rows, columns = shape
+    top, left, bottom, right = (
+        window[0],
+        window[1],
+        min(window[2], rows),
+        min(window[3], columns),
+    )
+    first, last = max(0, top - 1), min(rows, bottom + 1)
+    begin, end = max(0, left - 1), min(columns, right + 1)
+    halo = math.ceil(HALO_SPREADS * sigma_px) + 1
+    above, beside = max(0, top - halo), max(0, left - halo)
+    about = seen(above, min(bottom + halo, rows), beside, min(right + halo, columns))
+    soft = cv2.GaussianBlur(about, (0, 0), sigma_px)
+    part = np.zeros((last - first, end - begin), np.float32)
+    own = soft[top - above : bottom - above, left - beside : right - beside]
+    part[top - first : bottom - first, left - begin : right - begin] = own
+    return part, (first, begin, rows - last, columns - end)
+
+
+def _blur(
+    darkness: Darkness, sigma_px: float, window: Window, halo: int, seen: Darkness
+) -> None:
+    """Fill in a window of a sheet behind a spot that looks a halo beyond it."""
+    top, left, bottom, right = window
+    above = max(0, top - halo)
+    beside = max(0, left - halo)
+    soft = cv2.GaussianBlur(
+        darkness[above : bottom + halo, beside : right + halo], (0, 0), sigma_px
+    )
+    own = soft[top - above : bottom - above, left - beside : right - beside]
+    seen[top:bottom, left:right] = own
