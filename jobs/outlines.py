@@ -1,4 +1,4 @@
-"""Drawings from CAD for the jobs: the path of a DXF, an SVG or a plotter file; and a tape of it to play.
+"""Drawings from CAD for the jobs: the path of a DXF, an SVG or a plotter file.
 
 Signals: a file in; out a Path with the tool in the work along its lines, inner ones before outer ones and the
 idle way short. What was left out of the file goes to the listener.
@@ -6,9 +6,6 @@ idle way short. What was left out of the file goes to the listener.
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
@@ -44,20 +41,6 @@ def check_unit(unit: str | None, *files: FilePath) -> None:
     raise WrongUse(
         f"--unit is for drawings from CAD, {', '.join(medium.OUTLINES)}; leave it out for {names}"
     )
-
-
-@contextmanager
-def as_tape(file: FilePath, unit: str | None, listener: Listener) -> Iterator[FilePath]:
-    """A tape of a drawing from CAD, for as long as it is played; any other file as it is."""
-    if not medium.is_outline(file):
-        yield file
-        return
-    from morfax.jobs.record import RecordJob
-
-    with tempfile.TemporaryDirectory(prefix="morfax-") as folder:
-        tape = FilePath(folder) / f"{file.stem}.wav"
-        RecordJob(file, tape, drawn_unit=unit).run(listener)
-        yield tape
 
 
 def _in_order(outline: Outline) -> Outline:

@@ -12,6 +12,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, TextIO
 
 from morfax.jobs import files as medium
+from morfax.jobs import outlines
 from morfax.jobs.listener import Listener, watched
 from morfax.jobs.live import PIPE, Intake
 from morfax.jobs.machining import chosen
@@ -227,7 +228,6 @@ def read_or_play(
     drawn_unit: str | None = None,
 ) -> Path:
     """Read a path file or a drawing from CAD, at the feed if it has no times; or play a tape or a program."""
-    from morfax.jobs import outlines
     from morfax.motion.pathfile import FEED_MM_S, read_path
 
     kind, feed_mm_s = medium.kind_of(file), feed_mm_s or FEED_MM_S

@@ -24,8 +24,6 @@ import numpy as np
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import ends_of
-from morfax.tracer.program.best_run import SHORT
-from morfax.tracer.program.joined_lines import NEW, SAME_WIDTHS
 from morfax.tracer.program.net_outline import (
     NEARLY_ALL,
     are_nets,
@@ -36,7 +34,14 @@ from morfax.tracer.program.net_outline import (
     outline_of,
     touches_itself,
 )
-from morfax.tracer.program.selection import LETTER_MM, Contour, least_mm
+from morfax.tracer.program.selection import (
+    LETTER_MM,
+    NEW,
+    SAME_WIDTHS,
+    SHORT,
+    Contour,
+    least_mm,
+)
 from morfax.tracer.program.setup import Setup
 
 if TYPE_CHECKING:

@@ -44,6 +44,10 @@ PLAIN = 0.06
 STARTS = 8  # places at which the head may be put down on a line, ...
 STARTS_WIDTHS = 4.0  # ... this far apart
 LOOKED_AT = 400  # places of a line that are looked at for them
+# of the ink that is joined to it: a shorter run is along another line, which crosses this one
+SHORT = 0.5
+SAME_WIDTHS = 0.7  # a place nearer to another line is that line's, ...
+NEW = 0.6  # ... and a line is new if so much of its way is no other line's
 COVERED = 0.8  # a stroke is a part of a followed line if this share of it lies on that line
 ABOUT_REFERENCE_MM = 1.0  # ink as far beyond the largest reference point is still a part of it
 COMPARED = 40  # places of a stroke that are compared with a followed line
