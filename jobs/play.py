@@ -12,14 +12,15 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal
 
-from morfax.jobs import files as medium
-from morfax.jobs import following, outlines
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.live import PIPE, Intake
-from morfax.jobs.passage import Passage
-from morfax.jobs.playing import ByHand, Playing
+from morfax.jobs.machine.playing import ByHand, Playing
+from morfax.jobs.machine.recording import RecordingUnit
+from morfax.jobs.media import files as medium
+from morfax.jobs.media import outlines
+from morfax.jobs.media.live import PIPE, Intake
+from morfax.jobs.readings import following
+from morfax.jobs.readings.passage import Passage
 from morfax.jobs.record import RecordJob
-from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from morfax.motion.faults import LineFault
 from morfax.tracer.following.attempts import Attempts, longest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.program.selection import SHORT
+from morfax.tracer.program.lines.selection import SHORT
 from morfax.tracer.program.setup import Setup
 
 ELSEWHERE = 5  # places at which the head is put down when a run leads nowhere; by trial

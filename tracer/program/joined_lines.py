@@ -31,8 +31,8 @@ from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
-from morfax.tracer.program.left_ink import LeftInk
-from morfax.tracer.program.selection import LETTER_MM, NEW, SAME_WIDTHS, Contour, least_mm
+from morfax.tracer.program.against_ink.left_ink import LeftInk
+from morfax.tracer.program.lines.selection import LETTER_MM, NEW, SAME_WIDTHS, Contour, least_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_through
 
