@@ -27,9 +27,8 @@ LETTER = 0.62  # width of a letter over its size; DejaVu's own is 0.6 on average
 AWAY_PT = (7.0, 14.0, 24.0, 36.0, 50.0)  # from a place to its name
 BESIDE_PT, LEADER_PT = 12.0, 0.4  # a name further off has a leader, so thick
 LINE_COST, SPOT_COST, NAME_COST = 1.0, 2.0, 100.0
-FEW_NAMES = (
-    12  # more are shortened to a letter and a number; the legend says what the letter means
-)
+# more are shortened to a letter and a number; the legend says what the letter means
+FEW_NAMES = 12
 SIDES = ((1, 1), (-1, 1), (1, -1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
 
 
