@@ -12,9 +12,9 @@ from itertools import groupby
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import files as medium
 from morfax.jobs.figures import Figures
 from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.media import files as medium
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:

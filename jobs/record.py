@@ -7,15 +7,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal
 
-from morfax.jobs import files as medium
-from morfax.jobs import outlines
 from morfax.jobs.listener import SILENT, Listener, watched
-from morfax.jobs.live import PIPE, Outlet
-from morfax.jobs.playing import ByHand, read_or_play
-from morfax.jobs.recording import RecordingUnit, rehearsed
+from morfax.jobs.machine.playing import ByHand, read_or_play
+from morfax.jobs.machine.recording import RecordingUnit, rehearsed
+from morfax.jobs.media import files as medium
+from morfax.jobs.media import outlines
+from morfax.jobs.media.live import PIPE, Outlet
+from morfax.jobs.settings.zero import Zero, of_path_mm
+from morfax.jobs.settings.zero import figures as zero_figures
 from morfax.jobs.wrong_use import WrongUse, settings_checked
-from morfax.jobs.zero import Zero, of_path_mm
-from morfax.jobs.zero import figures as zero_figures
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures

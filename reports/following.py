@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from morfax.jobs.following import Speeds
+    from morfax.jobs.readings.following import Speeds
     from morfax.player.monitor.chart import Chart
 
 SUFFIXES = (".png", ".svg", ".pdf", ".csv")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from morfax.reports.plate import Line, with_gaps
 
 if TYPE_CHECKING:
-    from morfax.jobs.who_led import WhoLed
+    from morfax.jobs.remarks.who_led import WhoLed
 
 COLOURS = ("#c1121f", "#f2a000", "#1f5fa8", "#7a3fa0")  # in the order of `LEADERS`
 LINE_PT = 1.8

@@ -36,7 +36,7 @@ from morfax.reports.plate import (
 )
 
 if TYPE_CHECKING:
-    from morfax.jobs.who_led import WhoLed
+    from morfax.jobs.remarks.who_led import WhoLed
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.ink.left_out import Area
 

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from morfax.jobs.listener import SILENT
-from morfax.jobs.settings import DrawingFile, ProgramSettings, TraceSettings
-from morfax.jobs.tracing import Tracing
+from morfax.jobs.settings.settings import DrawingFile, ProgramSettings, TraceSettings
+from morfax.jobs.tracing.tracing import Tracing
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.motion import thin
 from morfax.motion.segments import Limits

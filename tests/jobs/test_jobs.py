@@ -21,16 +21,16 @@ from PIL import Image
 from morfax.jobs.age import AgeJob
 from morfax.jobs.check import CheckJob
 from morfax.jobs.compare import CompareJob
-from morfax.jobs.contour_settings import ContourSettings
 from morfax.jobs.inspect import InspectJob
-from morfax.jobs.line_settings import LineSettings
+from morfax.jobs.machine.playing import ByHand
+from morfax.jobs.machine.recording import RecordingUnit
 from morfax.jobs.mend import MendJob
 from morfax.jobs.play import ControlSettings, PlayJob
-from morfax.jobs.playing import ByHand
 from morfax.jobs.record import RecordJob
-from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.run import RunJob
-from morfax.jobs.settings import (
+from morfax.jobs.settings.contour_settings import ContourSettings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import (
     MEASURED,
     READ,
     DrawingFile,
@@ -403,7 +403,7 @@ def test_jobs_know_no_terminal_and_load_no_machine() -> None:
         f"print([name for name in {absent} if name in sys.modules])\n"
         "from pathlib import Path\n"
         "from morfax.jobs import TraceJob\n"
-        "from morfax.jobs.settings import DrawingFile\n"
+        "from morfax.jobs.settings.settings import DrawingFile\n"
         "from morfax.jobs.trace import TraceOutputs\n"
         "import tempfile\n"
         "with tempfile.TemporaryDirectory() as folder:\n"

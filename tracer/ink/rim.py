@@ -11,7 +11,7 @@ Signals: the cells, and places (n, 2) mm about on the rim, in; the rim as it was
 (n, 2) mm at a distance within it, out.
 
 Source: our own; patent ES 361967 follows the middle of a line. Questions: whether it is one broad line or two
-narrow ones the rim does not tell; the ink within does (see `program.small_loops`).
+narrow ones the rim does not tell; the ink within does (see `program.laid.small_loops`).
 """
 
 from __future__ import annotations

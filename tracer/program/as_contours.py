@@ -26,14 +26,14 @@ from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
-from morfax.tracer.program import selection
-from morfax.tracer.program.bars import THICK, bars_along
-from morfax.tracer.program.narrow_bays import explained, is_clear, with_bars
+from morfax.tracer.program.against_ink.bars import THICK, bars_along
+from morfax.tracer.program.against_ink.unexplained import Unexplained
+from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.laid.narrow_bays import explained, is_clear, with_bars
+from morfax.tracer.program.lines import selection
+from morfax.tracer.program.lines.small_rings import pen_mm
 from morfax.tracer.program.one_of_each import one_of_each
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.small_rings import pen_mm
-from morfax.tracer.program.unexplained import Unexplained
-from morfax.tracer.program.window import Window
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.pen import NOWHERE_MM

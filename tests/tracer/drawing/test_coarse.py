@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from morfax.jobs.scale_doubts import scale_doubts
+from morfax.jobs.remarks.scale_doubts import scale_doubts
 from morfax.motion.contour import distance
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.coarse import finer

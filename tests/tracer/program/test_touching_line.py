@@ -15,9 +15,9 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import trace
-from morfax.tracer.program.net_outline import of_net
+from morfax.tracer.program.against_ink.unexplained import unexplained
+from morfax.tracer.program.nets.net_outline import of_net
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.unexplained import unexplained
 from tests.tracer.inked import WIDTH_MM, Points, inked
 
 SIZE_MM, EDGE_MM, ROUGH = 22.0, 1.6, 0.5
