@@ -88,7 +88,7 @@ def note(seen_px: float, pitch_mm: float) -> str:
 def is_hard(darkness: Darkness) -> bool:
     """Whether pixels are paper or ink, and hardly any lies between: no lens has softened the lines."""
     not_paper = darkness[darkness > 1 - FULL]
-    return bool(np.mean(not_paper < FULL) < BETWEEN)
+    return bool(not_paper.size and np.mean(not_paper < FULL) < BETWEEN)
 
 
 def _left_of(darkness: Darkness, soft: Darkness) -> np.float32:

@@ -23,7 +23,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.neighbours import pairs_within
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS, strands
+from morfax.tracer.ink.both_lines import strands
+from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS
 from morfax.tracer.ink.felt import FEWEST_STATIONS, Parted, whole
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
