@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.reports import lettering
 from morfax.reports.lettering import PX_PER_PT
+from morfax.reports.looks import ON_PATHS
 from morfax.reports.plate import Line, Mark, Place, Plate, Spot, Words, filled_in, fitted
 
 CELL_PT = 2.0
@@ -111,7 +112,9 @@ class _Grid:
         if np.hypot(*nearest_pt) < BESIDE_PT:
             return []
         end_mm = words.place_mm + nearest_pt / self.pt_per_mm
-        return [Line(np.array([words.place_mm, end_mm]), words.colour, LEADER_PT, order=3)]
+        return [
+            Line(np.array([words.place_mm, end_mm]), words.colour, LEADER_PT, order=ON_PATHS)
+        ]
 
     def _pt(self, places_mm: Array) -> Array:
         """Places from the lower left corner of the axes, points."""
