@@ -22,7 +22,7 @@ from morfax.motion.polyline import area_mm2
 from morfax.reports.numbered import draw_numbered
 from morfax.tracer.corrections.corrections import Correction, Place, Span
 from tests.console.conftest import SAMPLES
-from tests.jobs.test_jobs import Recording
+from tests.jobs.worked import Recording
 
 RUB = Correction("rub", (Place(42.8, 6.99, "mm"),), Span(3, "mm"), why="a tear")
 STOP = Correction("stop", (Place(300, 200),))

@@ -5,18 +5,13 @@ sent to another process.
 from __future__ import annotations
 
 import pickle
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 import pytest
-from PIL import Image
 
 from morfax.jobs.age import AgeJob
 from morfax.jobs.check import CheckJob
@@ -44,61 +39,15 @@ from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import (
     CardFault,
-    Fault,
-    FileFault,
-    FollowingFault,
     LineFault,
-    LockFault,
 )
 from morfax.motion.pathfile import read_path
 from morfax.motion.polyline import area_mm2
 from morfax.player.gcode.check.motion_rules import Stock
 from tests.console.conftest import SAMPLES
+from tests.jobs.worked import BRACKET, CURVE, PROGRAM, UM, Recording, worked
 
-UM = 1e-3
-CURVE = DrawingFile(SAMPLES / "curve.png")
-PROGRAM = DrawingFile(SAMPLES / "program.png")
-CARD = TraceSettings(program=ProgramSettings(card_file=SAMPLES / "program.toml"))
-MODULES = [
-    "trace",
-    "run",
-    "record",
-    "play",
-    "check",
-    "compare",
-    "systems",
-    "inspect",
-    "mend",
-    "age",
-    "listener",
-    "settings",
-    "kernels",
-]
-
-
-@dataclass
-class Recording:
-    """A listener that takes down all that it hears."""
-
-    said: list[tuple[str, str]] = field(default_factory=list)
-    done: dict[str, list[float]] = field(default_factory=dict)
-
-    @contextmanager
-    def progress(self, what: str, total: float) -> Iterator[Callable[[float], None]]:
-        self.done[what] = []
-        yield lambda done: self.done[what].append(done / (total or 1))
-
-    def note(self, text: str) -> None:
-        self.said.append(("note", text))
-
-    def detail(self, text: str) -> None:
-        self.said.append(("detail", text))
-
-    def warning(self, text: str) -> None:
-        self.said.append(("warning", text))
-
-    def compiling(self, what: str, packages: tuple[str, ...]) -> None:
-        self.said.append(("compiling", what))
+pytestmark = pytest.mark.usefixtures("silent")
 
 
 class Answering:
@@ -112,25 +61,6 @@ class Answering:
     def wait(self, halt: Any) -> float:
         self.waited += 1
         return 0.25
-
-
-@pytest.fixture(autouse=True)
-def silent(capfd: pytest.CaptureFixture[str]) -> Iterator[None]:
-    """No job prints."""
-    yield
-    assert capfd.readouterr() == ("", "")
-
-
-def worked(job: Any, panel: Any = None) -> tuple[Any, Recording]:
-    """The result of a job that has been to another process and back, and what it told."""
-    sent = pickle.loads(pickle.dumps(job))
-    assert sent == job and hash(sent) == hash(job)
-    listener = Recording()
-    result = sent.run(listener, panel)
-    pickle.dumps(result)  # and the result comes back
-    shares = [share for done in listener.done.values() for share in done]
-    assert all(0 <= share < 1.01 for share in shares)  # the last block may have a sample more
-    return result, listener
 
 
 def test_trace(here: Path) -> None:
@@ -281,76 +211,6 @@ def test_the_panel_is_asked(here: Path) -> None:
     assert panel.waited == 2
 
 
-def test_the_zero_may_be_any_place(here: Path) -> None:
-    for zero, start_mm in (("sheet", (8.5, 23.0)), ((8.0, 20.0), (0.5, 3.0))):
-        settings = TraceSettings(program=ProgramSettings(zero=zero))  # type: ignore[arg-type]
-        TraceJob(PROGRAM, TraceOutputs(here / "a.csv"), settings).run()
-        assert read_path(here / "a.csv").xy_mm[0] == pytest.approx(start_mm, abs=0.05)
-
-
-BRACKET = DrawingFile(SAMPLES / "bracket.png")
-PART_MM = np.array([70.0, 50.0])  # its size
-
-
-@pytest.mark.parametrize(
-    ("zero", "turn_deg", "low_mm"),
-    [
-        ("lower-left", 0, (-2.0, -2.0)),
-        ("centre", 0, (-37.0, -27.0)),
-        ("lower-left", 90, (-2.0, -2.0)),
-    ],
-)
-def test_the_zero_may_be_of_the_part_that_is_cut(
-    zero: Any, turn_deg: int, low_mm: tuple[float, float], here: Path
-) -> None:
-    """The part is the lines: the path of a cutter of 4 mm begins 2 mm before it, a lead further still.
-
-    The place of the zero on the sheet, as it is told, puts the program back on the drawing.
-    """
-    settings = TraceSettings(
-        LineSettings(lines="all"),
-        tool=ToolSettings(cutter_mm=4.0),
-        program=ProgramSettings(zero=zero),
-    )
-    unit = RecordingUnit(turn_rad=np.radians(turn_deg))
-    told = TraceJob(BRACKET, TraceOutputs(here / "a.csv"), settings, unit).run().figures
-    cut = np.vstack(read_path(here / "a.csv").runs())
-    size_mm = PART_MM[::-1] if turn_deg else PART_MM
-    # the head follows the lines within some um, the offset's corners are smoothed by 5
-    assert cut.min(axis=0) == pytest.approx(low_mm, abs=0.02)
-    assert np.ptp(cut, axis=0) == pytest.approx(size_mm + 4.0, abs=0.03)
-    if not turn_deg:
-        place = told["zero_place_mm"]
-        compared = CompareJob(BRACKET, here / "a.csv", cutter_mm=4.0, zero=place).run()
-        assert compared.figures["path_to_ink"]["rms_mm"] < 0.01
-
-
-@pytest.mark.parametrize(
-    "placed", [{"turn_rad": np.pi / 2}, {"mirror": "x", "scale": 0.5}, {"turn_rad": 0.3}]
-)
-def test_a_zero_on_the_sheet_goes_with_the_drawing(placed: dict[str, Any], here: Path) -> None:
-    """The middle of the bracket's hole is where the machine has its zero, however the program is placed.
-
-    (Fails where the place counts after mirror, scale and turn: then it is told and meant on the sheet, and
-    the program lies elsewhere.)
-    """
-    contours = LineSettings(lines="contours")
-    TraceJob(BRACKET, TraceOutputs(here / "a.csv"), TraceSettings(contours)).run()
-    hole = read_path(here / "a.csv").runs()[0]
-    middle_mm = 0.5 * (hole.min(axis=0) + hole.max(axis=0))
-    zero = (float(middle_mm[0]), float(middle_mm[1]))
-    settings = TraceSettings(contours, program=ProgramSettings(zero=zero))
-    unit = RecordingUnit(**placed)
-    told = TraceJob(BRACKET, TraceOutputs(here / "b.csv"), settings, unit).run().figures
-    RecordJob(here / "a.csv", here / "c.ngc", unit=unit, zero=zero).run()
-    PlayJob(here / "c.ngc", (here / "c.csv",)).run()
-    assert told["zero_place_mm"] == pytest.approx(zero)
-    for name in ("b.csv", "c.csv"):
-        placed_hole = read_path(here / name).runs()[0]
-        middle = 0.5 * (placed_hole.min(axis=0) + placed_hole.max(axis=0))
-        assert middle == pytest.approx((0, 0), abs=0.02)
-
-
 def test_a_machine_s_direction_counts_where_nobody_asks_for_another(here: Path) -> None:
     """qtplasmac turns the outline clockwise; `--direction` and `--conventional` come before it."""
     ways = {}
@@ -394,82 +254,3 @@ def test_an_interruption_passes_through_and_leaves_nothing(here: Path, path_file
     with pytest.raises(KeyboardInterrupt):
         RecordJob(path_file, here / "a.wav").run(Impatient())
     assert list(here.iterdir()) == []
-
-
-def test_jobs_know_no_terminal_and_load_no_machine() -> None:
-    """Imported, they wait for nothing heavy; running, they never need click or rich."""
-    absent = ["click", "rich", "numba", "scipy", "cv2", "soundfile", "matplotlib"]
-    code = (
-        "import importlib, sys\n"
-        f"for name in {MODULES}: importlib.import_module('morfax.jobs.' + name)\n"
-        f"print([name for name in {absent} if name in sys.modules])\n"
-        "from pathlib import Path\n"
-        "from morfax.jobs import TraceJob\n"
-        "from morfax.jobs.settings.settings import DrawingFile\n"
-        "from morfax.jobs.trace import TraceOutputs\n"
-        "import tempfile\n"
-        "with tempfile.TemporaryDirectory() as folder:\n"
-        f"    job = TraceJob(DrawingFile(Path({str(CURVE.file)!r})), TraceOutputs(Path(folder, 'a.csv')))\n"
-        "    job.run()\n"
-        "print([name for name in ('click', 'rich', 'matplotlib') if name in sys.modules])\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.splitlines() == ["[]", "[]"]
-
-
-def test_a_plain_trace_loads_neither_masked_arrays_nor_what_other_drawings_need(
-    tmp_path: Path,
-) -> None:
-    """numpy.ma alone (np.percentile and np.unique ask for it) takes a twentieth of a short trace."""
-    absent = [
-        "numpy.ma",
-        "morfax.tracer.corrections.corrections",
-        "morfax.tracer.following.edge_follower",
-        "morfax.tracer.tangles.sketch",
-        "morfax.motion.offset",
-        "morfax.jobs.trace_each",
-    ]
-    words = ["trace", str(SAMPLES / "cam.png"), "-o", str(tmp_path / "a.wav")]
-    code = (
-        "import sys; from morfax.console.cli import main;"
-        f" code = main({words}); print(code, [name for name in {absent} if name in sys.modules])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.splitlines()[-1] == "0 []"
-
-
-def test_all_the_ink_of_a_plate_is_followed_without_scipy(tmp_path: Path) -> None:
-    """scipy.spatial takes as long to import as numpy, numba and OpenCV together."""
-    grey = np.full((500, 500), 240, np.uint8)
-    for k in range(9):
-        cv2.circle(grey, (100 + 150 * (k % 3), 100 + 150 * (k // 3)), 45, 40, 6, cv2.LINE_AA)
-    Image.fromarray(grey).save(tmp_path / "plate.png", dpi=(300, 300))
-    words = ["trace", str(tmp_path / "plate.png"), "--lines", "all", "-o"]
-    code = (
-        "import sys; from morfax.console.cli import main;"
-        f" code = main({[*words, str(tmp_path / 'plate.csv')]});"
-        " print(code, [name for name in sys.modules if name.startswith('scipy')])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.splitlines()[-1] == "0 []"
-
-
-@pytest.mark.parametrize(
-    "fault",
-    [
-        LineFault("lost", x_mm=1.0, y_mm=2.0, heading_rad=0.5, nearest_mm=(3.0, 4.0)),
-        LockFault("lock", axis="x", time_s=1.0, error_cycles=0.5, position_mm=2.0),
-        FollowingFault("lag", axis="y", time_s=1.0, demand_mm=2.0, actual_mm=1.0, limit_mm=0.5),
-        CardFault("card", line=3, field="depth", holds="deep"),
-        FileFault("cannot write a.wav"),
-    ],
-)
-def test_a_fault_comes_back_from_another_process_with_all_that_it_carries(fault: Fault) -> None:
-    back = pickle.loads(pickle.dumps(fault))
-    assert type(back) is type(fault) and str(back) == str(fault) and vars(back) == vars(fault)
