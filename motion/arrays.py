@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from morfax.motion.compiled import njit
 
 Array = NDArray[np.float64]
+NOT_ZERO = 1e-12  # what divides is this at least: a length, a share, a time
 
 
 def bounds(rows: NDArray[np.floating]) -> tuple[Array, Array]:

@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 
-NO_LENGTH = 1e-12  # so that nothing is divided by zero
-NOTHING_MM = 1e-9  # rounding leaves so much of a length that is none
+NOTHING_MM = 1e-9  # rounding leaves so much of a length that is none, ...
+NOTHING_MM2 = NOTHING_MM**2  # ... and this of its square
 SAME_MM = 1e-6  # places as near as a nanometre are one
 
 
@@ -40,7 +40,7 @@ def left_of_headings(headings_rad: Array) -> Array:
 
 def unit(ways: Array) -> Array:
     """Directions (2,) or (n, 2), of length 1; one of no length stays so."""
-    return np.asarray(ways / np.maximum(np.hypot(*ways.T), NO_LENGTH)[..., None])
+    return np.asarray(ways / np.maximum(np.hypot(*ways.T), NOT_ZERO)[..., None])
 
 
 def cross(a: Array, b: Array) -> float:

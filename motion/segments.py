@@ -31,7 +31,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Motion, Path, thin
 from morfax.motion.plane import SAME_MM
@@ -188,11 +188,11 @@ def _allowed_mm_s(places: Array, spacing_mm: float, limits: Limits) -> Array:
     before = around[: -2 * reach]
     after = around[2 * reach :]
     chord = np.abs(after - before).max(axis=1)
-    way = np.maximum(np.sqrt(((after - before) ** 2).sum(axis=1)), 1e-12)
+    way = np.maximum(np.sqrt(((after - before) ** 2).sum(axis=1)), NOT_ZERO)
     bend = np.abs(before - 2 * places + after).max(axis=1) / (reach * spacing_mm) ** 2
-    by_axis = limits.speed_mm_s * way / np.maximum(chord, 1e-12)
+    by_axis = limits.speed_mm_s * way / np.maximum(chord, NOT_ZERO)
     return np.minimum(
-        by_axis, np.sqrt(SHARE * limits.acceleration_mm_s2 / np.maximum(bend, 1e-9))
+        by_axis, np.sqrt(SHARE * limits.acceleration_mm_s2 / np.maximum(bend, NOT_ZERO))
     )
 
 

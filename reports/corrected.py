@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import left_of
 from morfax.reports.looks import BELOW_PT, LINE_PT, NAMES, NUMBERS_PT, SPOT_PT, SPOTS
 from morfax.reports.plate import Area, Line, Mark, Spot, Words
@@ -60,7 +60,7 @@ def _stroke(stroke: Stroke) -> list[Mark]:
         for place_mm in places_mm[:: max(1, len(places_mm) // 200)]
     ]
     for begin, end in pairwise(places_mm):
-        along = (end - begin) / max(float(np.hypot(*(end - begin))), 1e-9)
+        along = (end - begin) / max(float(np.hypot(*(end - begin))), NOT_ZERO)
         left = half_mm * left_of(along)
         drawn.append(_rubbed(np.array([begin + left, end + left, end - left, begin - left])))
     return drawn

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.units import drawn_length_mm
 from morfax.reports.canvas import SHEET_IN, WIDE_IN, new_figure, save, show_drawing
 from morfax.reports.looks import GRID, NAME_PT
@@ -81,7 +82,7 @@ def _draw_residual(axes: Axes, made: Flattening) -> str:
     at = projection.to_sheet(middles_px)
     off_px = (projection.to_photo(at + step * off_mm) - middles_px) / step
     diagonal = math.hypot(projection.photo.width, projection.photo.height)
-    longest = max(float(np.hypot(*off_px.T).max()), 1e-9)
+    longest = max(float(np.hypot(*off_px.T).max()), NOT_ZERO)
     enlarged = 10 ** math.floor(math.log10(max(1.0, LONGEST_SHARE * diagonal / longest)))
     x, y = middles_px.T
     axes.quiver(

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 
 DEMAND, ACTUAL, LIMIT = range(3)
 
@@ -49,7 +49,7 @@ class Chart:
         if not len(starts):
             return
         spent = np.full((len(starts) * step, len(self.axes)), -1.0)
-        spent[: len(demand_mm)] = np.abs(demand_mm - actual_mm) / np.maximum(limit_mm, 1e-12)
+        spent[: len(demand_mm)] = np.abs(demand_mm - actual_mm) / np.maximum(limit_mm, NOT_ZERO)
         worst = starts[:, None] + spent.reshape(len(starts), step, -1).argmax(axis=1)
         rows = np.stack([demand_mm, actual_mm, limit_mm], axis=-1)
         self._rows.append(np.take_along_axis(rows, worst[:, :, None], axis=0))

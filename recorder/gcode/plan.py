@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.segments import Source, as_path
 from morfax.recorder.gcode.arcs import fit
@@ -205,7 +205,7 @@ def _slope(points: Array) -> float:
     """The steepest of some lines through points (n, 3) mm: Z to the length of the line, at least 1e-9."""
     steps = np.diff(points, axis=0)
     lengths_mm = np.maximum(np.sqrt((steps**2).sum(axis=1)), SHORT_MM)
-    return max(float((np.abs(steps[:, 2]) / lengths_mm).max()), 1e-9)
+    return max(float((np.abs(steps[:, 2]) / lengths_mm).max()), NOT_ZERO)
 
 
 def _straightest(points: Array, tolerance_mm: float) -> tuple[list[int], float]:

@@ -28,7 +28,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.motion import IN_WORK_BELOW_MM, THINNING_TOLERANCE_MM, Path
 
 DWELL_S = 0.25  # half as long again as the longest swivel of the head
@@ -134,7 +134,7 @@ def _moves(steps: _Steps, first: int, last: int) -> list[tuple[int, int]]:
     turns = np.flatnonzero(np.diff(_senses(up_mm)) != 0) + 1
     found = []
     for a, b in pairwise([0, *turns.tolist(), len(up_mm)]):
-        speeds_mm_s = np.abs(up_mm[a:b]) / np.maximum(took_s[a:b], 1e-9)
+        speeds_mm_s = np.abs(up_mm[a:b]) / np.maximum(took_s[a:b], NOT_ZERO)
         stands = [a + k for k in _stands(speeds_mm_s)]
         found += [(first + c, first + d) for c, d in pairwise([a, *stands, b])]
     return found
@@ -181,7 +181,7 @@ def _stretch(path: Path, steps: _Steps, part: slice, tolerance_mm: float) -> Str
 
 def _speed_mm_s(lengths_mm: Array, seconds: Array, share_below: float) -> float:
     """The speed below which a share of the length is run."""
-    speeds = lengths_mm / np.maximum(seconds, 1e-9)
+    speeds = lengths_mm / np.maximum(seconds, NOT_ZERO)
     order = np.argsort(speeds)
     run_mm = np.cumsum(lengths_mm[order])
     feed_mm_s = speeds[order[np.searchsorted(run_mm, share_below * run_mm[-1])]]

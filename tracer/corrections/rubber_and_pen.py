@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion import curves
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.motion.polyline import evenly
 from morfax.tracer.corrections.on_sheet import Stroke
@@ -240,7 +240,7 @@ class Easel:
         way = piece[1] - piece[0]
         x = columns - begin[0]
         y = rows - begin[1]
-        square = max(float(way @ way), 1e-12)
+        square = max(float(way @ way), NOT_ZERO)
         along = np.clip((x * way[0] + y * way[1]) / square, 0.0, 1.0)
         return window, np.hypot(x - along * way[0], y - along * way[1])
 

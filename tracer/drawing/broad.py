@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import at_lengths
@@ -96,7 +96,7 @@ def pen_of(widths_mm: Array, lengths_mm: Array) -> float:
     widths, lengths = widths_mm[order], lengths_mm[order]
     sums = np.r_[0.0, np.cumsum(lengths)]
     last = np.searchsorted(widths, ALIKE * widths, "right")
-    shares = (sums[last] - sums[:-1]) / max(sums[-1], 1e-9)
+    shares = (sums[last] - sums[:-1]) / max(sums[-1], NOT_ZERO)
     enough = np.flatnonzero(shares >= LEAST_SHARE)
     if not len(enough):
         return math.nan

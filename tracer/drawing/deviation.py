@@ -23,7 +23,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.plane import left_of_headings
@@ -213,7 +213,7 @@ def _edges(
 
     def crossing(outside: NDArray[np.intp], inside: NDArray[np.intp]) -> Array:
         a, b = seen[rows, outside], seen[rows, inside]
-        share = (level[:, 0] - a) / np.where(np.abs(b - a) > 1e-9, b - a, 1.0)
+        share = (level[:, 0] - a) / np.where(np.abs(b - a) > NOT_ZERO, b - a, 1.0)
         found = across[outside] + share * (across[inside] - across[outside])
         return np.asarray(np.where(ok, found, np.nan), float)
 

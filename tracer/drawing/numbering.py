@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 
 # All limits below were chosen by trial on drawings scanned at 5 sizes, 7 angles and 3 resolutions.
 ALIKE = 0.015  # lengths within this share are equal
@@ -43,7 +43,7 @@ class Ink(NamedTuple):
     def of(cls, places_mm: Array, weights: Array) -> Ink:
         """The ink at places (n, 2) mm of which each counts by its weight."""
         z = places_mm[:, 0] + 1j * places_mm[:, 1]
-        share = weights / max(float(weights.sum()), 1e-12)
+        share = weights / max(float(weights.sum()), NOT_ZERO)
         middle = complex(np.sum(share * z))
         z = z - middle
         square = np.abs(z) ** 2

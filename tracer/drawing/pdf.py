@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import DrawingFault
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import exif
@@ -176,7 +177,10 @@ def _pictures(page: PdfPage) -> list[PdfImage]:
 
 def _grid_of_lines(dpi: float | None) -> _Grid:
     """The pixels of a page of drawn lines; a resolution that no scan has is left for the scale to refuse."""
-    if dpi is None or not LEAST_PITCH_MM <= MM_PER_INCH / max(dpi, 1e-9) <= LARGEST_PITCH_MM:
+    if (
+        dpi is None
+        or not LEAST_PITCH_MM <= MM_PER_INCH / max(dpi, NOT_ZERO) <= LARGEST_PITCH_MM
+    ):
         dpi = LINES_DPI
     return _Grid(*(_Axis(dpi / POINTS_PER_INCH),) * 2)
 
@@ -199,7 +203,7 @@ def _grid_of(page: PdfPage, picture: PdfImage) -> _Grid:
     across, along = right - corner, up - corner
     if abs(across.real) < abs(across.imag):  # it lies on its side
         across, along, columns, rows = along, across, rows, columns
-    wide_pt, high_pt = max(abs(across), 1e-9), max(abs(along), 1e-9)
+    wide_pt, high_pt = max(abs(across), NOT_ZERO), max(abs(along), NOT_ZERO)
     if abs(across.imag) > ASKEW * wide_pt or abs(along.real) > ASKEW * high_pt:
         return _Grid(*(_Axis(max(columns / wide_pt, rows / high_pt)),) * 2)
     left_pt = min(corner.real, (corner + across).real)

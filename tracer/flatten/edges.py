@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 
 Picture = NDArray[np.uint8]  # rows from the top, columns, red green blue
 
@@ -78,9 +78,9 @@ def crossings(
     good &= away[rows, k] * (across[1] - across[0]) <= NEAR_PX
     before = profiles[rows, k]
     after = profiles[rows, k + 1]
-    share = (before - half) / np.maximum(before - after, 1e-9)
+    share = (before - half) / np.maximum(before - after, NOT_ZERO)
     found = across[k] + share * (across[k + 1] - across[k])
-    softness = contrast / (math.sqrt(2 * math.pi) * np.maximum(fall[rows, steepest], 1e-9))
+    softness = contrast / (math.sqrt(2 * math.pi) * np.maximum(fall[rows, steepest], NOT_ZERO))
     places = places_px + found[:, None] * outward
     return Crossings(places[good], np.flatnonzero(good), softness[good])
 

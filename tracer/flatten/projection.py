@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 
 # of the film that focal lengths are compared with, mm
 HALF_DIAGONAL_35MM = math.hypot(36.0, 24.0) / 2
@@ -162,7 +162,7 @@ def undistorted(places: Array, k1: float, k2: float) -> Array:
         r -= (r * (1 + k1 * r2 + k2 * r2**2) - drawn) / np.where(
             np.abs(slope) > 0.1, slope, 0.1
         )
-    return places * (r / np.maximum(drawn, 1e-12))[:, None]
+    return places * (r / np.maximum(drawn, NOT_ZERO))[:, None]
 
 
 def _rules(homography: Array, focal: float) -> tuple[float, float, float]:

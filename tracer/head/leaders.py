@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import blocks, one_in
 
@@ -74,7 +74,7 @@ class Led:
 
 def share_of_cell(lengths_mm: Array) -> float:
     """The share that the swinging cell led, of how far each of the `LEADERS` did."""
-    return float(lengths_mm[CELL] / max(lengths_mm.sum(), 1e-9))
+    return float(lengths_mm[CELL] / max(lengths_mm.sum(), NOT_ZERO))
 
 
 @njit(cache=True, _nrt=False)

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import left_of_headings
@@ -142,7 +142,7 @@ def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[
     seen = np.minimum(view.darkness_along(places) / (2 * view.level), DARKEST)
     softness_mm = softness_of(view, leg)
     away_mm, nearest = Neighbours(middles_mm).nearest(places)
-    off = (places - middles_mm[nearest]) / np.maximum(away_mm, 1e-9)[:, None]
+    off = (places - middles_mm[nearest]) / np.maximum(away_mm, NOT_ZERO)[:, None]
     off_s = off[:, 0] * np.cos(heading) + off[:, 1] * np.sin(heading)
     off_u = off[:, 1] * np.cos(heading) - off[:, 0] * np.sin(heading)
     misfits = np.full(len(ends_mm), math.inf)
@@ -192,7 +192,7 @@ def _misfit(place, pen, end_mm):  # type: ignore[no-untyped-def]
     away = math.hypot(beyond, aside)
     paper = 1.0 - ink_at(away, half_mm, softness_mm)
     other = 1.0 - ink_at(place[2], half_mm, softness_mm)
-    alike = (beyond * place[3] + aside * place[4]) / max(away, 1e-9)
+    alike = (beyond * place[3] + aside * place[4]) / max(away, NOT_ZERO)
     return (1.0 - _bare(paper, other, alike) - place[5]) ** 2
 
 

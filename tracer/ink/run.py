@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.sensing.leg import Leg, leg_of
@@ -130,7 +130,7 @@ def parabolas(places, half_mm, step_mm):  # type: ignore[no-untyped-def]
     for n in range(count):
         first, last = max(0, n - reach), min(count - 1, n + reach)
         dx, dy = places[last, 0] - places[first, 0], places[last, 1] - places[first, 1]
-        long = max(math.hypot(dx, dy), 1e-9)
+        long = max(math.hypot(dx, dy), NOT_ZERO)
         c, s = dx / long, dy / long
         # the window is as long at the ends of the line, but to one side
         half = max(half_mm, max(last - n, n - first) * step_mm * 1.01)

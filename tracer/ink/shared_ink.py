@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import SAME_MM, left_of_headings, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
@@ -174,7 +174,7 @@ def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array])
 def _goes_along(way: Array, at: NDArray[np.int64], normals: Array) -> NDArray[np.bool_]:
     """Whether a way goes along the ink at some of its places, whose normals are given."""
     ways = np.gradient(way, axis=0)[at]
-    across = np.abs(np.sum(ways * normals, axis=1)) / np.maximum(np.hypot(*ways.T), 1e-9)
+    across = np.abs(np.sum(ways * normals, axis=1)) / np.maximum(np.hypot(*ways.T), NOT_ZERO)
     return np.asarray(across < math.sqrt(1 - ALONG_COS**2))
 
 

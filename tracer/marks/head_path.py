@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import LongArray, blocks
 from morfax.motion.plane import unit
@@ -54,7 +54,7 @@ class HeadPath:
             return False
         chord = near[-1] - near[0]
         d = near - near[0]
-        chord_mm = max(np.hypot(*chord), 1e-9)
+        chord_mm = max(np.hypot(*chord), NOT_ZERO)
         aside = (d[:, 1] * chord[0] - d[:, 0] * chord[1]) / chord_mm
         return bool(np.abs(aside).max() < within_mm)
 

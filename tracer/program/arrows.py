@@ -17,6 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import area_mm2
 from morfax.tracer.following.direction import Arrow
@@ -106,7 +107,7 @@ def _nearest(arrow: Arrow, lines: list[Line]) -> int:
 
 def _are_alike(one: Line, other: Line) -> bool:
     """Whether two lines are as long as each other."""
-    return abs(one.length_mm / max(other.length_mm, 1e-9) - 1) < ALIKE
+    return abs(one.length_mm / max(other.length_mm, NOT_ZERO) - 1) < ALIKE
 
 
 def _refused(arrow: Arrow, why: str) -> LineFault:

@@ -17,6 +17,7 @@ import math
 
 import numpy as np
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.compiled import njit
 from morfax.tracer.tangles import pen
 
@@ -64,8 +65,8 @@ def _arc(places, own, radius_mm, out):  # type: ignore[no-untyped-def]
     x, y = corner[0] - before[0], corner[1] - before[1]
     u, v = after[0] - corner[0], after[1] - corner[1]
     before_mm, after_mm = math.hypot(x, y), math.hypot(u, v)
-    x, y = x / max(before_mm, 1e-12), y / max(before_mm, 1e-12)
-    u, v = u / max(after_mm, 1e-12), v / max(after_mm, 1e-12)
+    x, y = x / max(before_mm, NOT_ZERO), y / max(before_mm, NOT_ZERO)
+    u, v = u / max(after_mm, NOT_ZERO), v / max(after_mm, NOT_ZERO)
     turned = math.atan2(x * v - y * u, x * u + y * v)
     slope = math.tan(min(0.5 * abs(turned), 1.5))
     # 1. how far from the corner it begins

@@ -26,7 +26,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.plane import unit
+from morfax.motion.plane import NOTHING_MM2, unit
 from morfax.motion.polyline import area_mm2
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.tangles import pen
@@ -235,7 +235,7 @@ def _from_core(x, y, points):  # type: ignore[no-untyped-def]
         j = (i + 1) % count
         vx, vy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
         wx, wy = x - points[i, 0], y - points[i, 1]
-        t = min(max((wx * vx + wy * vy) / (vx * vx + vy * vy + 1e-18), 0.0), 1.0)
+        t = min(max((wx * vx + wy * vy) / (vx * vx + vy * vy + NOTHING_MM2), 0.0), 1.0)
         best = min(best, math.hypot(wx - t * vx, wy - t * vy))
         if (points[i, 1] > y) != (points[j, 1] > y) and x < points[i, 0] + wy * vx / vy:
             inside = not inside

@@ -21,8 +21,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
+from morfax.motion.plane import NOTHING_MM2
 from morfax.tracer.sensing.photocell import darkness_at
 
 # Chosen by trial on the test drawings.
@@ -62,7 +63,7 @@ def bend(pose, x, y, t):  # type: ignore[no-untyped-def]
     dx, dy = x - x0, y - y0
     chord = math.hypot(dx, dy)
     c, s = math.cos(heading), math.sin(heading)
-    cosine = (dx * c + dy * s) / max(chord, 1e-9)
+    cosine = (dx * c + dy * s) / max(chord, NOT_ZERO)
     reach = 0.5 * chord / max(cosine, STEEPEST)
     a, b, d = (1 - t) ** 2, 2 * t * (1 - t), t * t
     return a * x0 + b * (x0 + reach * c) + d * x, a * y0 + b * (y0 + reach * s) + d * y
@@ -143,7 +144,7 @@ def away(places, lines, count, out):  # type: ignore[no-untyped-def]
     """Lower distances (n,) of places to those from the first pieces of some lines (4, k), mm."""
     x0, y0 = lines[0, :count].copy(), lines[1, :count].copy()
     vx, vy = lines[2, :count] - x0, lines[3, :count] - y0
-    per = 1.0 / (vx * vx + vy * vy + 1e-18)
+    per = 1.0 / (vx * vx + vy * vy + NOTHING_MM2)
     for k in range(len(places)):
         best = out[k] * out[k]
         x, y = places[k, 0], places[k, 1]
@@ -171,7 +172,7 @@ def on_paper_mm(cells, lines, count):  # type: ignore[no-untyped-def]
         vx, vy = lines[2, i] - lines[0, i], lines[3, i] - lines[1, i]
         length = math.hypot(vx, vy)
         steps = max(1, math.ceil(length / cells.pitch_mm))
-        aside = SPECK_PX * cells.pitch_mm / max(length, 1e-9)
+        aside = SPECK_PX * cells.pitch_mm / max(length, NOT_ZERO)
         for k in range(steps):
             t = (k + 0.5) / steps
             x, y = lines[0, i] + t * vx, lines[1, i] + t * vy

@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.drawing.components import INK
@@ -156,7 +156,7 @@ class SeenInk(NamedTuple):
         """How much is left by what is drawn (n,) in shares of what another leaves, where these differ."""
         differ = np.abs(drawn - other) > DIFFER
         left = np.sum((drawn - self.darkness)[differ] ** 2)
-        return float(left / max(np.sum((other - self.darkness)[differ] ** 2), 1e-12))
+        return float(left / max(np.sum((other - self.darkness)[differ] ** 2), NOT_ZERO))
 
 
 @njit(cache=True, _nrt=False)

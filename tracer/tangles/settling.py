@@ -18,6 +18,7 @@ import math
 import numpy as np
 
 from morfax.motion.compiled import njit
+from morfax.motion.plane import NOTHING_MM2
 from morfax.tracer.tangles.pen import (
     PIECES,
     ink_at,
@@ -46,7 +47,7 @@ def _near(places, lines, first, last, squares):  # type: ignore[no-untyped-def]
     for i in range(first, last):
         x0, y0 = lines[0, i], lines[1, i]
         vx, vy = lines[2, i] - x0, lines[3, i] - y0
-        per = 1.0 / (vx * vx + vy * vy + 1e-18)
+        per = 1.0 / (vx * vx + vy * vy + NOTHING_MM2)
         for k in range(len(squares)):
             wx, wy = x[k] - x0, y[k] - y0
             t = min(max((wx * vx + wy * vy) * per, 0.0), 1.0)

@@ -24,7 +24,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median, medians
-from morfax.motion.plane import unit
+from morfax.motion.plane import NOTHING_MM2, unit
 from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.photocell import darkness_along
 from morfax.tracer.sensing.probe import end_of
@@ -172,7 +172,7 @@ class Sketch:
         place = self.tangle.places_mm[int(np.argmax(np.where(left, distance, 0)))]
         along = lines[:, 2:] - lines[:, :2]
         come = np.sum((place - lines[:, :2]) * along, axis=1)
-        t = come / (np.sum(along**2, axis=1) + 1e-18)
+        t = come / (np.sum(along**2, axis=1) + NOTHING_MM2)
         feet = lines[:, :2] + np.clip(t, 0, 1)[:, None] * along
         piece = int(np.argmin(np.hypot(*(feet - place).T)))
         foot = feet[piece]

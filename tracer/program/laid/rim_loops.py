@@ -17,9 +17,8 @@ from itertools import islice
 import cv2
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.median import median
-from morfax.motion.plane import NO_LENGTH
 from morfax.motion.polyline import area_mm2, length_mm
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
@@ -60,7 +59,7 @@ def narrow_outline(sheet: Sheet, patch: int, pen_mm: float) -> Array | None:
 
 def broad_mm(way: Array) -> float:
     """How broad a long area within a closed way (n, 2) mm is, in the mean."""
-    return 2 * abs(area_mm2(way)) / max(length_mm(way), NO_LENGTH)
+    return 2 * abs(area_mm2(way)) / max(length_mm(way), NOT_ZERO)
 
 
 def core_within(view: View, outline: Array, width_mm: float) -> Core | None:

@@ -25,14 +25,13 @@ from itertools import pairwise
 import numpy as np
 
 from morfax.motion import curves, long_array
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import LongArray, blocks, released
 from morfax.motion.plane import NOTHING_MM
 from morfax.motion.polyline import at_lengths, at_places, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
-_NOTHING_S = 1e-12  # so that no time is divided by zero
 ROUNDED = 1e-6  # of a period: what rounding adds
 # a sharper turn is a corner, at which the head stops to swivel; by trial
 CORNER = np.radians(20)
@@ -117,13 +116,13 @@ def _placed(uniform, clock, places, speeds, out):  # type: ignore[no-untyped-def
         # 1. the step, and the share of its time that has passed
         while i < len(took_s) - 1 and times[i + 1] <= uniform[k]:
             i += 1
-        share = (uniform[k] - times[i]) / max(took_s[i], _NOTHING_S)
+        share = (uniform[k] - times[i]) / max(took_s[i], NOT_ZERO)
         # 2. the share of its way: at even acceleration, or from rest to rest
         mean = 0.5 * (speeds[i] + speeds[i + 1])
         dx, dy = places[i + 1, 0] - places[i, 0], places[i + 1, 1] - places[i, 1]
         if mean * took_s[i] > 0.5 * math.hypot(dx, dy):
             gain = speeds[i + 1] - speeds[i]
-            way = (speeds[i] * share + 0.5 * gain * share**2) / max(mean, _NOTHING_S)
+            way = (speeds[i] * share + 0.5 * gain * share**2) / max(mean, NOT_ZERO)
         else:
             way = 2 * share**2 if share < 0.5 else 1 - 2 * (1 - share) ** 2
         out[k, 0], out[k, 1] = places[i, 0] + way * dx, places[i, 1] + way * dy
@@ -178,7 +177,7 @@ def _step(numbers, places, k, rate_hz):  # type: ignore[no-untyped-def]
     """The former speed on the step from a node to the next, mm/s, and its length, mm."""
     dx, dy = places[k + 1, 0] - places[k, 0], places[k + 1, 1] - places[k, 1]
     way_mm = math.hypot(dx, dy)
-    return way_mm / max((numbers[k + 1] - numbers[k]) / rate_hz, _NOTHING_S), way_mm
+    return way_mm / max((numbers[k + 1] - numbers[k]) / rate_hz, NOT_ZERO), way_mm
 
 
 @dataclass(frozen=True, slots=True)
