@@ -243,7 +243,7 @@ class _Bays:
         for line in self.lines:
             if line is not self.line and _reaches(line.places_mm, low, high):
                 known_mm = np.minimum(known_mm, nearest_mm(places, line.places_mm))
-        return SeenInk.of(drawing, i, j, known_mm, width_mm, every)
+        return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
 
 
 def _reaches(places: Array, low: Array, high: Array) -> bool:
