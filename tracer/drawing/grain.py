@@ -30,6 +30,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.tracer.drawing.coarse import finer_dpi
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
 
 Darkness = NDArray[np.float32]
@@ -40,6 +41,7 @@ LEAST_GRAIN = 0.15  # standard deviation of the ink's darkness; a clean scan has
 # no more than this share of its pieces
 LEAST_OF_SOME, JOINED = 0.08, 0.5
 LEAST_WIDTH_PX = 3.0  # of a thinner line the pixels themselves look like grain
+ENOUGH_TIMES = 2.0  # finer pixels, of lines that look 1.5 pixels wide or more
 ALONG_MM, ALONG_WIDTHS = 0.4, 0.8  # of the slit, standard deviation
 ACROSS_WIDTHS = 0.12
 FLANK_WIDTHS = 1.0  # from the slit to each of its flanks
@@ -98,6 +100,20 @@ def note(slit: Slit, pitch_mm: float) -> str:
     )
 
 
+def is_too_thin(grain: float, width_px: float) -> bool:
+    """Whether lines have grain, and are so thin that no slit sees it apart from their pixels."""
+    return grain > LEAST_GRAIN and not width_px > LEAST_WIDTH_PX
+
+
+def thin_note(pitch_mm: float) -> str:
+    """What the operator should know of lines with grain that are too thin for the slit."""
+    return (
+        "the lines have grain, as of a pencil, and are fewer than 3 pixels wide, so that it is not averaged: "
+        "the path strays by up to a line's width; scan at "
+        f"{finer_dpi(pitch_mm, ENOUGH_TIMES)} dpi, or ink the lines over"
+    )
+
+
 def behind(slit: Slit, darkness: Darkness) -> Darkness:
     """The darkness of a sheet as the slit sees it, tile by tile; paper without ink stays as it is."""
     seen, by = darkness.copy(), slit.by
@@ -112,6 +128,12 @@ def behind(slit: Slit, darkness: Darkness) -> Darkness:
                 part = seen[top : top + TILE_PX, left : left + TILE_PX]
                 part[:] = _reduced_tile(slit, around, by)[own][: part.shape[0], : part.shape[1]]
     return seen
+
+
+def mended(slit: Slit, darkness: Darkness, drawn_grain: float) -> Darkness | None:
+    """The darkness behind a slit, if the slit mends the grain of the lines."""
+    seen = behind(slit, darkness)
+    return seen if mends(darkness, seen, drawn_grain) else None
 
 
 def mends(before: Darkness, after: Darkness, grain: float) -> bool:
