@@ -24,9 +24,8 @@ if TYPE_CHECKING:
     from morfax.tracer.operator.operator import Panel
 
 
-FASTEST_MM_S = (
-    20.0  # of a program that is compared: the control's servos then stay within 10 um of it
-)
+# of a program that is compared: the control's servos then stay within 10 um of it
+FASTEST_MM_S = 20.0
 
 
 @dataclass(frozen=True, slots=True)

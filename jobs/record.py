@@ -51,9 +51,8 @@ class RecordJob:
     unit: RecordingUnit = field(default_factory=RecordingUnit)
     drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
     zero: Zero = "sheet"  # of the program; sheet: the source's own zero
-    orders: Literal["differences", "counts"] | None = (
-        None  # of a step program; None: differences
-    )
+    # of a step program; None: differences
+    orders: Literal["differences", "counts"] | None = None
     outlet: Outlet = field(default_factory=Outlet)  # where a tape goes, if it is not one file
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RecordResult:

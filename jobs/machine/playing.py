@@ -49,13 +49,11 @@ class ByHand:
     still: tuple[str, ...] | None = None
     alike: tuple[str, ...] | None = None
     closed: bool | None = None
-    machine: str | None = (
-        None  # that a G-code program is for: a built-in one's name, or a .toml file
-    )
+    # that a G-code program is for: a built-in one's name, or a .toml file
+    machine: str | None = None
     second: FilePath | None = None  # the other file of a tape in two stereo files
-    label: FilePath | None = (
-        None  # a file that says what a text chunk would, or a tape that has one
-    )
+    # a file that says what a text chunk would, or a tape that has one
+    label: FilePath | None = None
 
     def given(self) -> dict[str, Any]:
         """What was set of the tape itself."""

@@ -32,9 +32,8 @@ from morfax.tracer.sensing.view import View
 # In widths of the pen, by trial on slots of all shapes:
 SMOOTH = 0.3  # to either side of a place the steps of pixels are smoothed by
 REACH = 0.6  # to either side the edge is looked for
-PARABOLA = (
-    0.4  # to either side of a place: no longer, or it cuts the round corner of a square end
-)
+# to either side of a place: no longer, or it cuts the round corner of a square end
+PARABOLA = 0.4
 TIGHT = 1.0  # radius: where the rim turns so towards the ink, the line has a corner
 BEYOND = 0.25  # before and after such a corner the parabolas are bent by it
 LONGEST_MITRE = 3.0

@@ -154,7 +154,8 @@ def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     drawing, reach_mm = sheet.drawing, REACH * width_mm
     window = Window.about(sheet.drawing, places, reach_mm)
     near = np.zeros(window.shape, np.uint8)
-    column, row = window.pixels(places).T
+    last = np.array(window.shape) - 1  # a place on the sheet's very edge is in its last pixel
+    row, column = np.clip(window.pixels(places)[:, ::-1], 0, last).T
     near[row, column] = 1
     across_px = 2 * round(reach_mm / drawing.pitch_mm) + 1
     reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across_px,) * 2)

@@ -114,9 +114,8 @@ class _Search:
     best: StanceRun | None = None
     leads: list[StanceRun] = field(default_factory=list)
     smooth: list[StanceRun] = field(default_factory=list)
-    settled: bool = (
-        False  # the best is the lead line from the reference point: nothing else is tried
-    )
+    # the best is the lead line from the reference point: nothing else is tried
+    settled: bool = False
 
     def is_over(self, stance: Stance) -> bool:
         """Whether no more stances are tried from this one on."""

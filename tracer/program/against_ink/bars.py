@@ -30,9 +30,8 @@ ABOUT_WIDTHS = 3.0  # ... so much more, its bar is looked for about its furthest
 # widths: the ink of a bay is two lines thick at the least; it may come to a point, and a part of it at the
 # mouth counts as the line's own
 THICK = 1.2, 4.0
-THICK_BESIDE = (
-    1.5  # the same with half a width on either side; a line that a tick stands on counts there
-)
+# the same with half a width on either side; a line that a tick stands on counts there
+THICK_BESIDE = 1.5
 NOTHING = np.empty((0, 2))
 
 
@@ -42,31 +41,29 @@ def bar_at(
     """The places of the bar of ink at a place beside the lines; none of a single line's, or of one that
     goes on further away.
     """
-    pitch_mm, rows = drawing.pitch_mm, len(drawing.darkness)
     # 1. the ink about the place
-    about = int((ABOUT * place.length_mm + ABOUT_WIDTHS * width_mm) / pitch_mm)
-    column, row = int(place.place_mm[0] / pitch_mm), int(rows - place.place_mm[1] / pitch_mm)
-    left, top = max(column - about, 0), max(row - about, 0)
-    part = drawing.darkness[top : row + about + 1, left : column + about + 1]
-    bare = (np.asarray(part, float) > INK).astype(np.uint8)
+    place_mm = np.array([place.place_mm])
+    about_mm = ABOUT * place.length_mm + ABOUT_WIDTHS * width_mm
+    window = Window.about(drawing, place_mm, about_mm)
+    bare = (np.asarray(window.of(drawing.darkness), float) > INK).astype(np.uint8)
     # 2. without that of the lines
-    wide_px = max(1, round(OF_WIDTH * width_mm / pitch_mm))
+    wide_px = max(1, round(OF_WIDTH * width_mm / drawing.pitch_mm))
     for line in lines:
-        way = np.column_stack([line.places_mm[:, 0], rows * pitch_mm - line.places_mm[:, 1]])
-        way_px = np.round(way / pitch_mm - 0.5 - (left, top)).astype(np.int32)
-        cv2.polylines(bare, [way_px.reshape(-1, 1, 2)], line.comes_round, 0, wide_px)
+        way_px = window.pixels(line.places_mm).reshape(-1, 1, 2)
+        cv2.polylines(bare, [way_px], line.comes_round, 0, wide_px)
     # 3. what is joined to the place
     _, label = cv2.connectedComponents(bare, connectivity=4)
     i, j = np.nonzero(label)
     if not len(i):
         return NOTHING
-    nearest = int(np.argmin(np.hypot(i - (row - top), j - (column - left))))
+    ((column, row),) = window.pixels(place_mm)
+    nearest = int(np.argmin(np.hypot(i - row, j - column)))
     i, j = np.nonzero(label == label[i[nearest], j[nearest]])
     goes_on = min(i.min(), j.min()) == 0 or i.max() == len(bare) - 1
     if goes_on or j.max() == bare.shape[1] - 1:
         return NOTHING
-    bar = middles_mm(drawing, i + top, j + left)
-    return bar if _is_thick(bar, pitch_mm, width_mm) else NOTHING
+    bar = middles_mm(drawing, i + window.top, j + window.left)
+    return bar if _is_thick(bar, drawing.pitch_mm, width_mm) else NOTHING
 
 
 def _is_thick(bar: Array, pitch_mm: float, width_mm: float) -> bool:
@@ -95,8 +92,7 @@ def bars_along(sheet: Sheet, ways: Sequence[Array], width_mm: float) -> Iterator
         window = Window.about(drawing, np.vstack(together), 2 * width_mm)
         drawn = np.zeros(window.shape, np.uint8)
         for way in together:
-            px = window.pixels(way).reshape(-1, 1, 2).astype(np.int32)
-            cv2.polylines(drawn, [px], False, 1, pen_px)
+            cv2.polylines(drawn, [window.pixels(way).reshape(-1, 1, 2)], False, 1, pen_px)
         ink = np.asarray(window.of(drawing.darkness), float) > INK
         count, bars = cv2.connectedComponents(drawn)
         for number in range(1, count):

@@ -45,9 +45,8 @@ MOST = 60.0  # percent of the line
 REACH_WIDTHS = 1.25  # from a way: ink further away is another line's
 OF_WIDTH = (0.8, 0.9, 1.0, 1.1, 1.25)  # of the line's: pens that are tried
 STATION_WIDTHS = 0.25  # between the places at which a way is judged
-PLACES_PX = (
-    1.0  # between the places that stand for a way: near its edge they are 0.04 px off it
-)
+# between the places that stand for a way: near its edge they are 0.04 px off it
+PLACES_PX = 1.0
 TILE_PX = 128  # of what is judged in one
 QUICK_PX = 256  # of what is looked through first
 

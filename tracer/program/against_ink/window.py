@@ -50,12 +50,11 @@ class Window(NamedTuple):
         """The part of all pixels of the sheet."""
         return pixels[self.top : self.bottom, self.left : self.right]
 
-    def pixels(self, places: Array) -> NDArray[np.int64]:
-        """Column and row (n, 2) within it of places (n, 2) mm on the sheet."""
-        column = (places[:, 0] / self.pitch_mm).astype(int) - self.left
-        row = (self.rows - places[:, 1] / self.pitch_mm).astype(int) - self.top
-        rows, columns = self.shape
-        return np.column_stack([np.clip(column, 0, columns - 1), np.clip(row, 0, rows - 1)])
+    def pixels(self, places: Array) -> NDArray[np.int32]:
+        """Column and row (n, 2) of places (n, 2) mm on the sheet, from its own left top corner."""
+        column = (places[:, 0] / self.pitch_mm).astype(np.int32) - self.left
+        row = (self.rows - places[:, 1] / self.pitch_mm).astype(np.int32) - self.top
+        return np.column_stack([column, row])
 
     def place_mm(self, column: float, row: float) -> tuple[float, float]:
         """The place on the sheet of the middle of a pixel within it."""
