@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
@@ -51,7 +51,11 @@ def bar_at(
     bare = (np.asarray(part, float) > INK).astype(np.uint8)
     # 2. without that of the lines
     wide_px = max(1, round(OF_WIDTH * width_mm / pitch_mm))
+    reach_mm = (about + wide_px + 2) * pitch_mm
+    low_mm, high_mm = np.array(place.place_mm) - reach_mm, np.array(place.place_mm) + reach_mm
     for line in lines:
+        if not reaches(line.places_mm, low_mm, high_mm):
+            continue
         way = np.column_stack([line.places_mm[:, 0], rows * pitch_mm - line.places_mm[:, 1]])
         way_px = np.round(way / pitch_mm - 0.5 - (left, top)).astype(np.int32)
         cv2.polylines(bare, [way_px.reshape(-1, 1, 2)], line.comes_round, 0, wide_px)
@@ -67,6 +71,12 @@ def bar_at(
         return NOTHING
     bar = middles_mm(drawing, i + top, j + left)
     return bar if _is_thick(bar, pitch_mm, width_mm) else NOTHING
+
+
+def reaches(places_mm: Array, low_mm: Array, high_mm: Array) -> bool:
+    """Whether the box about some places (n, 2) mm reaches into another."""
+    first_mm, last_mm = bounds(places_mm)
+    return bool(np.all(first_mm < high_mm) and np.all(last_mm > low_mm))
 
 
 def _is_thick(bar: Array, pitch_mm: float, width_mm: float) -> bool:
