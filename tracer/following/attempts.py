@@ -20,6 +20,7 @@ from itertools import combinations
 import numpy as np
 
 from morfax.motion.faults import LineFault
+from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
@@ -37,15 +38,14 @@ from morfax.tracer.sensing.side import SIDES, Side
 from morfax.tracer.sensing.view import STEP_WIDTHS
 
 # All limits below were chosen by trial on the test drawings.
-# the other way round is the line itself if it is shorter than this: straight on has led elsewhere
-SHORTER = 0.95
+SHORTER = 0.95  # the other way round is the line if as short: straight on has led elsewhere
 DOUBTS = 8  # doubts of a run that are looked into
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
+FINE_PX = 4.0  # of the scan: a finer line is run by stations, too
 TWICE = 0.1  # of a run: crossing lines and legs that end in one tip run together for less
 AGAIN = 4  # widths on from a place, the run may come by that place again
-# a stub as short, straight on from a closed line, is where the pen set out, and not another line
-OVERRUN_MM = 3.0
+OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out
 LONGEST = 4.0  # times all the ink, and ...
 LONGEST_MM = 20.0  # ... this: a run that goes further is going round in circles
 
@@ -151,8 +151,9 @@ class Attempts:
         come back with other turns. By stations, if only that closes: on a line of two or three pixels, a few
         um decide what is a leg of a junction.
         """
-        run = self._all_ways(stance)
-        if run.ending == "closed" or not run.went_slowly:
+        run, view = self._all_ways(stance), stance.view
+        is_fine = view.width_mm < FINE_PX * view.parted * view.pitch_mm
+        if run.ending == "closed" or not (run.went_slowly and is_fine):
             return run
         other = replace(self, by_stations=True)._all_ways(stance)
         return other if other.ending == "closed" else run
@@ -166,7 +167,11 @@ class Attempts:
         there_and_back = self._through_tips(stance, run)
         if there_and_back is not None:
             return there_and_back
-        # 2. the other way round
+        # 2. open: back from its end the head has run all of it, and the other way round as well
+        back = self._back_from(run) if run.ending == "ended" else None
+        if back is not None and _ran_all(back, run, stance):
+            return back
+        # 3. the other way round
         about = turned_about(stance)
         other = self.run(about)
         if run.ending == "closed":
@@ -175,24 +180,19 @@ class Attempts:
         there_and_back = self._through_tips(about, other)
         if there_and_back is not None:
             return there_and_back
-        # 3. back from an end, or on with other turns
-        return self._back_or_on(stance, run, other)
-
-    def _back_or_on(self, stance: Stance, run: Followed, other: Followed) -> Followed:
-        """What follows a run that did not close, nor end in a tip, when the other way round is known."""
-        if run.ending == "ended":
-            return self._from_end(run, other)
+        # 4. from end to end, or on with other turns
+        if back is not None:
+            return self._from_end(run, back, other)
         if other.ending == "closed":
             return other
         tries = run.ending == "joined" and self.other_turns
         return self._with_other_turns(stance, run) if tries else run
 
-    def _from_end(self, run: Followed, other: Followed) -> Followed:
+    def _from_end(self, run: Followed, back: Followed, other: Followed) -> Followed:
         """An open line from end to end; or the other way round, if that closes and the end is an overrun.
 
         Where the head cannot set out from the one end, as on a few pixels that bend, it does from the other.
         """
-        back = self._back_from(run)
         beyond_mm = back.travel_mm - other.travel_mm
         if other.ending == "closed" and not 0 < beyond_mm < OVERRUN_MM:
             return other
@@ -269,6 +269,15 @@ class Attempts:
         raise LineFault(
             f"direction {direction}: {what}; leave --direction out, or look at the drawing"
         )
+
+
+def _ran_all(back: Followed, run: Followed, stance: Stance) -> bool:
+    """Whether the run back from the end of another came by where that began, and went on to another end."""
+    beyond_mm = back.travel_mm - run.travel_mm
+    if back.ending != "ended" or back.at_tip or beyond_mm < stance.view.leg_mm:
+        return False
+    away_mm = np.hypot(*(one_in(back.positions_mm, THINNED) - stance.place_mm).T)
+    return bool(away_mm.min() < stance.view.width_mm)
 
 
 def _goes_twice(run: Followed) -> bool:

@@ -21,6 +21,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from morfax.motion.arrays import Array, bounds
+from morfax.motion.long_array import one_in
+from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.knots import copied
 
 if TYPE_CHECKING:
@@ -71,6 +76,7 @@ class Branches:
     def __init__(self) -> None:
         self._runs: list[_Run] = []
         self._kept = 0
+        self._low_mm, self._high_mm = np.full(2, np.inf), np.full(2, -np.inf)
 
     def make_room(self) -> None:
         """Forget the heads of the runs so far, or the runs as well, if they take much memory."""
@@ -124,6 +130,13 @@ class Branches:
         self._runs[-1].at_tip = head if head.is_at_tip else None
         self._runs[-1].came_to = came_to
         self._runs[-1].asked_at |= head.asked_at
+        low_mm, high_mm = bounds(one_in(came_to.positions_mm, THINNED))
+        self._low_mm = np.minimum(self._low_mm, low_mm / came_to.view.enlarged)
+        self._high_mm = np.maximum(self._high_mm, high_mm / came_to.view.enlarged)
+
+    def kept_to(self, low_mm: Array, high_mm: Array) -> bool:
+        """Whether no run ever left a box, sheet mm."""
+        return bool(((self._low_mm > low_mm) & (self._high_mm < high_mm)).all())
 
     def _from_tip(self, run: _Run) -> Follower | None:
         """The head that goes back from the tip at which the same run ended."""

@@ -163,4 +163,4 @@ def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     every = 1 + len(i) // MOST_PLACES
     i, j = i[::every] + window.top, j[::every] + window.left
     nothing_mm = np.full(len(i), NOWHERE_MM)
-    return SeenInk.of(drawing, i, j, nothing_mm, width_mm, every)
+    return SeenInk.of(drawing, (i, j), nothing_mm, width_mm, every)

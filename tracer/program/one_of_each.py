@@ -176,33 +176,37 @@ def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -
 
 
 def _follow_in_window(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
-    """Follow a patch with cells that see no more of a large sheet than what is about it; with all of it
-    if the line leaves its own patch.
+    """Follow a patch with cells that see no more of a large sheet than what is about it; with all of it if
+    the head came so far off the patch that it may have looked beyond that.
     """
     sheet, settings = setup.sheet, setup.settings
     patch, width_mm = contour.stroke.patch, contour.stroke.width_mm
-    around_mm = ABOUT_MM if len(contour.stroke.ends_mm()) else ENDLESS_ABOUT_MM
-    around_mm += settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * width_mm
-    near = sheet.about(patch, around_mm)
+    off_mm = ABOUT_MM if len(contour.stroke.ends_mm()) else ENDLESS_ABOUT_MM
+    looks_mm = settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * width_mm
+    near = sheet.about(patch, off_mm + looks_mm)
     if near is sheet:
         return _follow(setup, contour, is_letter)
-    found = _follow(replace(setup, sheet=near), contour, is_letter)
-    line = found.line
-    is_found = line is not None and line.ending != "lost" and line.reference_mm is None
-    return (
-        found if is_found and _keeps_to(contour, line) else _follow(setup, contour, is_letter)
-    )
+    about = replace(setup, sheet=near)
+    line, _ = found = _follow(about, contour, is_letter)
+    is_found = line is not None and line.ending != "lost" and _keeps_to(contour, line)
+    is_seen = is_found or about.runs.kept_to(*_box_mm(contour, off_mm))
+    is_lead = line is not None and line.reference_mm is not None
+    return found if is_seen and not is_lead else _follow(setup, contour, is_letter)
 
 
 def _keeps_to(contour: Contour, line: Line | None) -> bool:
     """Whether a line runs nowhere beyond its own patch."""
     if line is None:
         return False
-    low_mm, high_mm = bounds(contour.stroke.middles_mm)
+    low_mm, high_mm = _box_mm(contour, contour.stroke.width_mm)
     line_low_mm, line_high_mm = bounds(line.places_mm)
-    width_mm = contour.stroke.width_mm
-    is_within = (line_low_mm > low_mm - width_mm) & (line_high_mm < high_mm + width_mm)
-    return bool(is_within.all())
+    return bool(((line_low_mm > low_mm) & (line_high_mm < high_mm)).all())
+
+
+def _box_mm(contour: Contour, around_mm: float) -> tuple[Array, Array]:
+    """The lowest and the highest place about a patch, mm."""
+    low_mm, high_mm = bounds(contour.stroke.middles_mm)
+    return low_mm - around_mm, high_mm + around_mm
 
 
 def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:

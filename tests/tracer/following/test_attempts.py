@@ -97,11 +97,12 @@ def test_a_line_that_closes_only_without_the_slow_cell_is_run_so(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A line of two pixels' width ended at a junction after 110 of 129 mm. Without a slow stretch, no run
-    would be another.
+    would be another; a broad line closes with the slow cell, if at all.
     """
     tried: list[bool] = []
+    fine = replace(VIEW, width_mm=2 * VIEW.pitch_mm)
 
-    def run_of(went_slowly: bool, by_stations: str) -> Followed:
+    def run_of(went_slowly: bool, by_stations: str, view: View = fine) -> Followed:
         def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
             tried.append(self.by_stations)
             if self.by_stations:
@@ -109,12 +110,14 @@ def test_a_line_that_closes_only_without_the_slow_cell_is_run_so(
             return replace(run("ended", 110), went_slowly=went_slowly)
 
         monkeypatch.setattr(Attempts, "run", known)
-        return Attempts(DRAWING, Settings(), 100.0).all_of_it(replace(STANCE, at_end=True))
+        stance = replace(STANCE, at_end=True, view=view)
+        return Attempts(DRAWING, Settings(), 100.0).all_of_it(stance)
 
     assert run_of(went_slowly=True, by_stations="closed").ending == "closed"
     assert run_of(went_slowly=True, by_stations="joined").ending == "ended"
     tried.clear()
     assert run_of(went_slowly=False, by_stations="closed").ending == "ended"
+    assert run_of(went_slowly=True, by_stations="closed", view=VIEW).ending == "ended"
     assert not any(tried)
 
 
@@ -145,6 +148,34 @@ def test_a_head_that_cannot_set_out_from_one_end_of_a_line_does_from_the_other(
 
     monkeypatch.setattr(Attempts, "run", known)
     assert Attempts(DRAWING, Settings(), 100.0).all_of_it(STANCE) is from_other
+
+
+@pytest.mark.parametrize(
+    ("ending", "back_mm", "aside_mm", "count"),
+    [
+        ("ended", 60, 0.0, 2),
+        ("ended", 40.5, 0.0, 3),  # it ends about where the head was put down
+        ("ended", 60, 1.0, 3),  # it goes another way
+        ("joined", 60, 0.0, 3),
+    ],
+)
+def test_an_open_line_run_back_from_its_end_is_not_run_the_other_way_round_as_well(
+    monkeypatch: pytest.MonkeyPatch, ending: str, back_mm: float, aside_mm: float, count: int
+) -> None:
+    there, tried = run("ended", 40), list[float]()
+    x_mm = 49 - np.linspace(0, back_mm, 6000)
+    places = np.column_stack([x_mm, np.full(6000, 4 + aside_mm)])
+    back = replace(run(ending, back_mm), positions_mm=places)
+
+    def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
+        tried.append(stance.heading_rad)
+        if stance.at_end:
+            return back
+        return there if math.cos(stance.heading_rad) > 0 else run("ended", 20)
+
+    monkeypatch.setattr(Attempts, "run", known)
+    assert Attempts(DRAWING, Settings(), 100.0).all_of_it(STANCE) is back
+    assert len(tried) == count
 
 
 def test_doubts_are_settled_one_after_the_other_each_from_the_longest_run(

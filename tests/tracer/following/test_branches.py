@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from morfax.motion.arrays import bounds
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import branches, clean_line
@@ -172,3 +173,14 @@ def test_a_turn_in_vain_comes_to_what_the_run_without_it_came_to(
     assert 0 < again_mm < 0.7 * whole_mm
     assert_same(again, straight)
     assert_same(again, attempts_at(LADDER).run(stance, (0,)))
+
+
+def test_a_box_about_all_runs_tells_whether_the_head_ever_left_it() -> None:
+    attempts, step_mm = attempts_at(OPEN), np.array([0.1, 0.0])  # a place in 50 um is looked at
+    low_mm, high_mm = bounds(attempts.run(stance_on(OPEN)).positions_mm)
+    kept_to = attempts.branches.kept_to
+    assert kept_to(low_mm - 0.1, high_mm + 0.1)
+    assert not kept_to(low_mm + step_mm, high_mm + 0.1)
+    # a run counts that was forgotten for want of room
+    attempts.branches._runs.clear()
+    assert not kept_to(low_mm - 0.1, high_mm - step_mm)

@@ -14,7 +14,7 @@ from morfax.tracer.program import one_of_each
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_from_an_end
-from tests.tracer.inked import arc, inked
+from tests.tracer.inked import arc, inked, polyline
 
 SHEET = Sheet.of(inked(arc((16, 16), 10)))
 
@@ -65,3 +65,32 @@ def test_a_hole_s_neighbours_are_felt_as_reference_points_only_within_reach_of_a
 def test_reference_points_of_lines_are_those_that_they_or_their_leads_begin_at() -> None:
     plain, led = line("closed", 40), replace(line("closed", 40), reference_mm=(1.0, 2.0))
     assert one_of_each.references_of([plain, led]) == [led.begin_mm]
+
+
+@pytest.mark.parametrize(
+    ("came_mm", "ending", "times"),
+    [
+        (24.0, "ended", 1),  # across a gap, into what the cells of the window see
+        (24.0, "lost", 1),
+        (65.0, "ended", 2),
+    ],
+)
+def test_a_patch_is_followed_on_all_of_a_sheet_only_if_the_head_came_far_off_it(
+    monkeypatch: pytest.MonkeyPatch, came_mm: float, ending: str, times: int
+) -> None:
+    sheet = Sheet.of(
+        inked(polyline((4, 4), (16, 4)), polyline((150, 200), (200, 200)), dpi=100)
+    )
+    (_, contour), _ = selection.plan(sheet, "contours")
+    windows = list[object]()
+
+    def follow(setup: Setup, contour: selection.Contour, is_letter: bool) -> object:
+        windows.append(setup.sheet.window)
+        places = np.column_stack([np.linspace(4, came_mm, 50), np.full(50, 4.0)])
+        setup.runs._low_mm, setup.runs._high_mm = places[0], places[-1]
+        return one_of_each._Found(Line(places, ending, 0.5, came_mm))
+
+    monkeypatch.setattr(one_of_each, "_follow", follow)
+    one_of_each._follow_in_window(Setup(sheet), contour, False)
+    assert len(windows) == times and windows[0] is not None
+    assert times == 1 or windows[-1] is None

@@ -149,8 +149,7 @@ def _judged(
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
     """The stations of some closed lines, tile by tile: line, number of the place, and what is over."""
     for part in _parts(drawing, ways, which, TILE_PX, of_limit):
-        over = np.empty(len(part.at))
-        over_at(part.seen, part.ways, part.at, part.pen, part.room, over)
+        over = over_at(part.seen, part.ways, part.at, part.pen, part.room)
         yield ways.line[part.stations], part.stations, over
 
 

@@ -85,8 +85,8 @@ class Band(NamedTuple):
 
 
 @njit(cache=True)
-def over_at(seen, ways, stations, pen, room, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (m,) with what is over in the worst box about each station, in widths of the pen squared."""
+def over_at(seen, ways, stations, pen, room):  # type: ignore[no-untyped-def]
+    """What is over in the worst box about each station (m,), in widths of the pen squared."""
     band = band_of(seen, ways, pen, room)
     clear(seen, band, room)
     shape, side = seen.shape, 2 * round(pen.half_px) + 1
@@ -94,7 +94,7 @@ def over_at(seen, ways, stations, pen, room, out):  # type: ignore[no-untyped-de
         room.spread[: seen.size].reshape(shape),
         room.boxes[: seen.size].reshape(shape),
     )
-    width2 = (2 * pen.half_px) ** 2
+    width2, over = (2 * pen.half_px) ** 2, np.empty(len(stations))
     # 1. the felt pen alone
     values = np.empty(len(band.dark))
     for k in range(len(values)):
@@ -103,8 +103,8 @@ def over_at(seen, ways, stations, pen, room, out):  # type: ignore[no-untyped-de
     most = in_boxes(band, values, side, spread, boxes)
     if most < pen.over * width2:
         for k in range(len(stations)):
-            out[k] = most_about(boxes, stations[k], side) / width2
-        return
+            over[k] = most_about(boxes, stations[k], side) / width2
+        return over
     # 2. the best of some pens
     on_paper, on_ink = np.zeros(shape), np.zeros(shape)
     _best(band, pen, spread, on_paper, on_ink)
@@ -113,7 +113,8 @@ def over_at(seen, ways, stations, pen, room, out):  # type: ignore[no-untyped-de
             most_about(on_paper, stations[k], side),
             most_about(on_ink, stations[k], side),
         )
-        out[k] = min(paper, left) / width2
+        over[k] = min(paper, left) / width2
+    return over
 
 
 @njit(cache=True)
@@ -145,7 +146,7 @@ def band_of(seen, ways, pen, room):  # type: ignore[no-untyped-def]
     """
     away2 = room.away2[: seen.size].reshape(seen.shape)
     number = room.number[: seen.size].reshape(seen.shape)
-    count = _nearest(ways.places_px, ways.line, pen.reach_px, away2, number, room.numbered)
+    count = _nearest(ways, pen.reach_px, away2, number, room.numbered)
     row, column = np.empty(count, np.int32), np.empty(count, np.int32)
     away, half, dark = np.empty(count), np.empty(count), np.empty(count)
     n = 0
@@ -172,11 +173,12 @@ def clear(seen, band, room):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _nearest(places, lines, reach_px, away2, number, numbered):  # type: ignore[no-untyped-def]
-    """For each pixel the square of how far the nearest of some places (n, 2) is, if less than what is there,
+def _nearest(ways, reach_px, away2, number, numbered):  # type: ignore[no-untyped-def]
+    """For each pixel the square of how far the nearest place of some ways is, if less than what is there,
     and the number, from 1, of which line it is; no place changes a pixel out of reach. Fill in which pixels
     have got a number, and give how many.
     """
+    places, lines = ways.places_px, ways.line
     rows, columns = away2.shape
     across2, count = np.empty(2 * math.ceil(reach_px) + 2, np.float32), 0
     for k in range(len(places)):

@@ -57,7 +57,7 @@ def ink_of(
     every = 1 + len(i) // most_places
     i, j = i[::every] + top, j[::every] + left
     known_mm = np.full(len(i), math.inf)  # nothing else is drawn there
-    return SeenInk.of(drawing, i, j, known_mm, width_mm, every)
+    return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
 
 
 def is_drawn(ink: SeenInk, core: Core) -> bool:

@@ -21,11 +21,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array, bounds
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.against_ink.bars import bar_at
+from morfax.tracer.program.against_ink.bars import bar_at, reaches
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
     beside_ink,
@@ -156,7 +156,7 @@ class _Bays:
             yield Suspect(first, last, nothing, True)
         for place in self.left:
             reach_mm, middle = place.length_mm + width_mm, np.array(place.place_mm)
-            if not _reaches(way, middle - reach_mm, middle + reach_mm):
+            if not reaches(way, middle - reach_mm, middle + reach_mm):
                 continue
             away_mm = np.hypot(*(way - place.place_mm).T)
             at = int(np.argmin(away_mm))
@@ -241,15 +241,9 @@ class _Bays:
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = pen.away_from(places, rest)
         for line in self.lines:
-            if line is not self.line and _reaches(line.places_mm, low, high):
+            if line is not self.line and reaches(line.places_mm, low, high):
                 known_mm = np.minimum(known_mm, nearest_mm(places, line.places_mm))
-        return SeenInk.of(drawing, i, j, known_mm, width_mm, every)
-
-
-def _reaches(places: Array, low: Array, high: Array) -> bool:
-    """Whether the box about some places (n, 2) mm reaches into another."""
-    first, last = bounds(places)
-    return bool(np.all(first < high) and np.all(last > low))
+        return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
 
 
 def _apart(bays: list[Bay], length_mm: float) -> list[Bay]:

@@ -108,7 +108,8 @@ def test_what_is_found_is_told_once_with_its_place() -> None:
 def test_the_nearest_of_some_places_within_reach() -> None:
     away2, number = np.full((3, 5), 1.6**2, np.float32), np.zeros((3, 5), np.int32)
     places, numbered = np.array([(0.0, 1.0), (3.0, 1.5)], np.float32), np.empty((2, 15), int)
-    count = _nearest.py_func(places, np.array([7, 8]), 1.6, away2, number, numbered)
+    ways = Ways(places, np.array([7, 8], np.int32), np.empty(0), np.empty(0, bool))
+    count = _nearest.py_func(ways, 1.6, away2, number, numbered)
     assert number[1].tolist() == [8, 8, 9, 9, 9]
     assert away2[1].tolist() == [0, 1, 1.25, 0.25, 1.25]
     assert number[0, 4] == 0 and count == np.count_nonzero(number)
@@ -144,9 +145,8 @@ def test_a_pen_of_its_own_width_explains_its_line_and_a_bare_way_is_over() -> No
     places = np.column_stack([np.arange(40.0), np.full(40, 10.0)]).astype(np.float32)
     ways = Ways(places, np.zeros(40, np.int32), np.array([2.0]), np.array([True]))
     pen = Pen(2.0, 0.3, 5.0, 0.0, (0.8, 1.0), 0.05)
-    over = np.empty(2)
     stations, room = np.array([(8, 10), (33, 10)]), Room.of(seen.size, 5.0)
-    over_at.py_func(seen.astype(np.float32), ways, stations, pen, room, over)
+    over = over_at.py_func(seen.astype(np.float32), ways, stations, pen, room)
     assert over[0] < 0.05
     # beyond its end the pen draws all of the box, but leaves no ink: a gap
     assert over[1] <= 0.0

@@ -39,8 +39,8 @@ def test_what_is_not_over_by_the_proof_is_not_over_by_all_pens(
     for seed in range(3):
         seen, ways, pen, stations = part(aside_px, seed)
         room = Room.of(seen.size, pen.reach_px)
-        over, may = np.empty(len(stations)), np.empty(len(stations), bool)
-        over_at(seen, ways, stations, pen, room, over)
+        may = np.empty(len(stations), bool)
+        over = over_at(seen, ways, stations, pen, room)
         may_be_over(seen, ways, stations, np.full(len(over), limit), pen, room, may)
         # boxes whose middle is beyond the picture are looked at as well: no station is near its rim in rows
         inner = (stations[:, 0] >= SIDE) & (stations[:, 0] < SHAPE[1] - SIDE)

@@ -112,3 +112,33 @@ def test_numbers_are_those_of_the_lines_that_are_listed() -> None:
         (alone,) = found_lines(Setup(drawing.sheet), (number,)).lines
         assert alone.length_mm == line.length_mm
     assert every[1].length_mm > every[2].length_mm > every[3].length_mm
+
+
+def arrow(tip: tuple[float, float], way: tuple[float, float]) -> list[Points]:
+    """An arrowhead 3.5 mm long, filled with lines."""
+    ends, (u, v) = np.linspace(-0.45, 0.45, 7), way
+    return [polyline(tip, (tip[0] + 3.5 * u - k * v, tip[1] + 3.5 * v + k * u)) for k in ends]
+
+
+def test_a_dimension_is_no_side_of_a_contour() -> None:
+    """Its extension lines go straight on from the sides of the frame."""
+    below = polyline((8, 8), (8, 0)), polyline((58, 8), (58, 0)), polyline((8, 2), (58, 2))
+    lines = cut(FRAME, *below, *arrow((8, 2), (1, 0)), *arrow((58, 2), (-1, 0)))
+    assert are(lines, FRAME)
+
+
+def test_a_centre_line_makes_no_halves() -> None:
+    """Nor does the open arc of a thread round the hole."""
+    thread = arc((24, 26), 7.5)[: int(0.74 * len(HOLE))]
+    lines = cut(FRAME, HOLE, thread, polyline((14, 26), (34, 26)), polyline((24, 16), (24, 36)))
+    assert are([line for line in lines if line.ending == "closed"], FRAME, HOLE)
+
+
+def test_hatching_that_ends_at_corners_cuts_none_off() -> None:
+    """One stroke goes from a corner of the bore to a corner of the outline."""
+    bore = polyline((30, 20), (58, 20), (58, 32), (30, 32), (30, 20))
+    area = shapely.Polygon(FRAME).difference(shapely.Polygon(bore))
+    strokes = [shapely.LineString([(x, 0), (x + 60, 60)]) for x in np.arange(-50, 60, 4.0)]
+    pieces = shapely.get_parts(shapely.intersection(shapely.MultiLineString(strokes), area))
+    lines = cut(FRAME, bore[1:], *(shapely.get_coordinates(p) for p in pieces if p.length > 1))
+    assert are(lines[-1:], FRAME)
