@@ -8,6 +8,7 @@ import pytest
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink import areas
 from morfax.tracer.ink.chains import Junctions, solved
+from morfax.tracer.ink.outlines import _area_mm2
 from morfax.tracer.ink.stretches import FeltSheet
 from tests.tracer.inked import inked, polyline
 
@@ -38,6 +39,15 @@ def test_a_window_of_three_by_three_panes_has_ten_areas_with_the_paper_all_round
     window: Junctions,
 ) -> None:
     assert len(ways(window)) == 10
+
+
+def test_each_pane_is_as_large_as_drawn_and_the_paper_all_round_is_gone_about_the_other_way(
+    window: Junctions,
+) -> None:
+    every = set(range(len(window.net.lines)))
+    sizes = sorted(_area_mm2(way, window) for way in areas.ways_round(every, window))
+    corners_mm2 = 0.025 * 32  # a line is felt within 25 um near corners, round 32 mm of a pane
+    assert sizes == pytest.approx([-(24.0**2), *[8.0**2] * 9], abs=3 * corners_mm2)
 
 
 @pytest.mark.parametrize("junction", range(CROSSINGS))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.ink import pale
 from morfax.tracer.ink.pale import pale_lines
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import arc, inked, polyline
@@ -21,9 +22,9 @@ RIM_MM = 2.0  # of the bar lies within the rims of the square's ink
 def with_pale_bar(darkness: float, noise: float = 0.04) -> Drawing:
     """A square with a bar that is paler; noise is a standard deviation."""
     square, bar = inked(SQUARE, arc((20, 10), 3)), inked(BAR, SQUARE)
-    pale = np.maximum(square.darkness, darkness * bar.darkness)
-    rough = np.random.default_rng(1).normal(0, noise, pale.shape)
-    return replace(square, darkness=np.asarray(pale + rough, np.float32))
+    both = np.maximum(square.darkness, darkness * bar.darkness)
+    rough = np.random.default_rng(1).normal(0, noise, both.shape)
+    return replace(square, darkness=np.asarray(both + rough, np.float32))
 
 
 @pytest.mark.parametrize("darkness", [0.25, 0.4])
@@ -32,6 +33,16 @@ def test_a_pale_line_is_found_with_its_place_and_length(darkness: float) -> None
     assert line.length_mm == pytest.approx(30 - 2 * 0.25, abs=RIM_MM)
     # the place is on the bar, within its width
     assert abs(line.y_mm - 20) < 0.5 and 6 < line.x_mm < 36
+
+
+def test_strips_of_a_sheet_show_the_same_pale_lines_as_all_of_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Rows that stand at a strip's edge are looked at with those of the next."""
+    drawing = with_pale_bar(0.3)
+    whole = pale_lines(drawing)
+    monkeypatch.setattr(pale, "FEW_PX", 40 * drawing.darkness.shape[1])
+    assert pale_lines(drawing) == whole and len(whole) == 1
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.04, 0.1])
