@@ -12,7 +12,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.ink import pale
 from morfax.tracer.ink.pale import pale_lines
 from morfax.tracer.program.trace_ink import trace_ink
-from tests.tracer.inked import arc, inked, polyline
+from tests.tracer.inked import WIDTH_MM, arc, inked, polyline
 
 SQUARE = polyline((6, 6), (36, 6), (36, 36), (6, 36), (6, 6))
 BAR = polyline((6, 20), (36, 20))
@@ -33,6 +33,14 @@ def test_a_pale_line_is_found_with_its_place_and_length(darkness: float) -> None
     assert line.length_mm == pytest.approx(30 - 2 * 0.25, abs=RIM_MM)
     # the place is on the bar, within its width
     assert abs(line.y_mm - 20) < 0.5 and 6 < line.x_mm < 36
+
+
+def test_a_pale_line_is_the_same_on_a_sheet_that_lay_across() -> None:
+    drawing = with_pale_bar(0.25, 0.1)
+    across = replace(drawing, darkness=np.ascontiguousarray(drawing.darkness.T[::-1, ::-1]))
+    (line,), (other,) = pale_lines(drawing), pale_lines(across)
+    # noise moves each end by up to a width of the line
+    assert other.length_mm == pytest.approx(line.length_mm, abs=2 * WIDTH_MM)
 
 
 def test_strips_of_a_sheet_show_the_same_pale_lines_as_all_of_it(
