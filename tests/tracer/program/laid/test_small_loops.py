@@ -16,7 +16,7 @@ from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
-from tests.tracer.inked import Points, arc, inked, polyline
+from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline
 
 UM = 1e-3
 PLATE = polyline((4, 4), (44, 4), (44, 30), (4, 30), (4, 4))
@@ -189,3 +189,14 @@ def test_a_narrow_loop_that_a_line_joins_or_crosses_is_none_alone(other: Points)
     sheet = inked(PLATE, loop, other, seed=1).sheet
     patch = sheet.patch_at(np.array([22.0, 20.6]))
     assert SmallLoops(sheet, Settings()).of_patch(patch, 0.5) is None
+
+
+@pytest.mark.parametrize(("lines_wide", "may_be"), [(2.6, True), (3.4, False)])
+def test_a_slot_of_over_16_widths_may_be_laid_if_it_is_up_to_three_lines_wide(
+    lines_wide: float, may_be: bool
+) -> None:
+    """From middle to middle of its sides; between them there is the paper and half of the ink."""
+    drawing = inked(PLATE, slot(12.0, lines_wide * WIDTH_MM), seed=3)
+    loops = SmallLoops(drawing.sheet, Settings())
+    shorter = int(np.argmin(drawing.sheet.lengths_mm))
+    assert loops._may_be(shorter, float(drawing.sheet.widths_mm[shorter])) == may_be
