@@ -37,12 +37,7 @@ from morfax.jobs.settings.settings import (
 )
 
 # the head's and the tool's own, stated here for --help, which does not wait for the tracer
-DEFAULTS = {
-    "speed_mm_s": "10mm/s",
-    "gap_mm": "0.5mm",
-    "depth_mm": "5mm",
-    "clearance_mm": "2mm",
-}
+DEFAULTS = {"speed_mm_s": "10mm/s", "gap_mm": "0.5mm", "depth_mm": "5mm", "clearance_mm": "2mm"}
 
 START = option(
     "Line",

@@ -34,8 +34,7 @@ from morfax.tracer.drawing.weighing import Weight, weighed_mm
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
 
-LEAST_LENGTH_MM = 2.0
-LEAST_LENGTH_PX = 12
+LEAST_LENGTH_MM, LEAST_LENGTH_PX = 2.0, 12
 TILE_PX = 2048
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial

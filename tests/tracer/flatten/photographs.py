@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from benchmarks.phone import Phone
 from morfax.reports.marked_sheet import picture
 from morfax.tracer.flatten.flat import Flattening
+from morfax.tracer.flatten.flat import found as found_in
 from morfax.tracer.flatten.layout import Layout
+from morfax.tracer.flatten.projection import Focal
+from morfax.tracer.flatten.wanted import Wanted
 
 Picture = NDArray[np.uint8]
 Array = NDArray[np.float64]
@@ -23,6 +26,7 @@ LETTER: Size = (215.9, 279.4)
 PX_PER_MM = 10.0  # of the sheet before it is photographed
 DPI = PX_PER_MM * 25.4
 PAPER = 245
+FOCAL = Focal.stated(26.0)
 
 
 def phone(tilt_deg: float = 0.0, k1: float = 0.0, **how: float) -> Phone:
@@ -87,3 +91,8 @@ def off_mm(made: Flattening, camera: Phone, size_mm: Size, inset_mm: float = 20.
 def rms(off: Array) -> float:
     """Root mean square of distances (n, 2)."""
     return float(np.sqrt((off**2).sum(axis=1).mean()))
+
+
+def made(picture: Picture, wanted: Wanted, bar_mm: float = 100.0) -> Flattening:
+    """How a photograph was made flat."""
+    return found_in(picture, wanted, bar_mm, FOCAL)
