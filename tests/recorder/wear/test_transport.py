@@ -145,6 +145,9 @@ def test_a_worn_tape_keeps_its_text(tmp_path: Path, name: str) -> None:
         assert sound.frames == aged.frames == pytest.approx(2 * RATE_HZ, abs=2)
         text = sound.comment or (tmp_path / "w.w64.json").read_text()
     assert text.startswith('{"version": 1}')
+    # beside a file that has room for a text lies no other
+    beside = ["w.w64.json"] if name == "w.w64" else []
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted(["a.wav", name, *beside])
 
 
 def test_what_cannot_be_worn(tmp_path: Path) -> None:
