@@ -89,9 +89,8 @@ class FeltSheet:
     settings: Settings
     ends: list[Ends]  # of each stretch, whether the ink ends there
     doubled: Doubled = field(default_factory=Doubled)
-    together: set[int] = field(
-        default_factory=set
-    )  # stretches that have turned out to be two lines
+    # stretches that have turned out to be two lines
+    together: set[int] = field(default_factory=set)
     _taken: dict[tuple[int, float], Taken] = field(default_factory=dict)
 
     def taken(self, number: int) -> Taken:
@@ -107,7 +106,7 @@ class FeltSheet:
         return self._taken[key]
 
     def _of_one_line(self, number: int, clean: list[Run], parted: list[Array]) -> Parted:
-        """Clean runs without those that two lines share of which one ends on the way."""
+        """Clean runs, without those of two lines of which one ends on the way but up to an end of the ink."""
         doubled = self.doubled
         is_whole = number in doubled.throughout(self.felt)
         if not doubled.is_sure or number not in doubled.stations or is_whole:
@@ -116,7 +115,9 @@ class FeltSheet:
         own = [n for n, run in enumerate(clean) if median(run.widths_mm) < shared_mm]
         if not own:
             return clean, parted
-        return clean[own[0] : own[-1] + 1], parted[own[0] : own[-1]]
+        begins, ends = self.ends[number]
+        first, last = 0 if begins else own[0], len(clean) - 1 if ends else own[-1]
+        return clean[first : last + 1], parted[first:last]
 
     def is_shared(self, number: int) -> bool:
         """Whether the ink along a stretch is that of two lines, each as wide as its line is taken to be."""
