@@ -31,10 +31,11 @@ from morfax.tracer.ink.partners import meeting_place
 LEAST_WIDTHS, MOST_WIDTHS = 2.5, 45.0  # of its line: how long it is
 BASE = 1.6  # widths: as broad it is at the least where it is broadest
 OFF_WIDTHS = 1.5  # from the end of its line: the ink of what it points to
+TIP_WIDTHS = 3.0  # from the end of its line, at the most, it begins to grow
 LINE = 1.25  # times as wide as its line, and as far as that: line
 DROP_WIDTHS = 1.5  # within which it is as narrow as its line again
 GROWN = 1.3  # times as broad as its tip is its foot, where it is broadest, ...
-AT_FOOT = 0.85  # of its greatest breadth
+FOOT, AT_FOOT = 2.1, 0.85  # widths: two lines are less broad; and of its greatest breadth
 BROADEST = 3.0  # ... and so many widths broad at the most, as far as cells feel
 PIECES = 3  # of a stroke: a centre line and a leader may cross it
 FEWEST = 4  # strokes of hatching that end on lines
@@ -65,25 +66,31 @@ def has_arrowhead(widths_mm: Array, step_mm: float, width_mm: float) -> bool:
     if len(behind) < 2 * drop or not (behind < LINE).all():
         return False
     narrow = np.flatnonzero(widths[: max(base - drop // 2, 0)] < LINE)
-    head = np.minimum(widths[int(narrow[-1]) + 1 if len(narrow) else 0 : base + 1], BROADEST)
-    if len(head) < LEAST_WIDTHS * one:
+    tip = int(narrow[-1]) + 1 if len(narrow) else 0
+    head = np.minimum(widths[tip : base + 1], BROADEST)
+    if tip > TIP_WIDTHS * one or len(head) < LEAST_WIDTHS * one:
         return False
     quarter = len(head) // 4
     foot = float(np.median(head[-quarter:]))
-    return bool(foot > AT_FOOT * head.max() and foot > GROWN * head[:quarter].min())
+    is_broadest = foot > max(AT_FOOT * float(head.max()), FOOT)
+    return bool(is_broadest and foot > GROWN * head[:quarter].min())
 
 
 def _dimension_lines(onward: Onward) -> set[int]:
     """The lines with an arrowhead, and those into which they go straight on by the same pen."""
-    lines = onward.junctions.net.lines
     found = set[int]()
-    for n, line in enumerate(lines):
-        step_mm = line.runs[0].view.step_mm
-        if any(has_arrowhead(line.felt_mm[::way], step_mm, line.width_mm) for way in (1, -1)):
-            found.add(n)
-            for last in (False, True):
-                found |= {link.line for link in _straight_on(Side(n, last), onward)}
+    for n in range(len(onward.junctions.net.lines)):
+        sides = Side(n, False), Side(n, True)
+        if any(_ends_in_arrowhead(side, onward.junctions) for side in sides):
+            found |= {n, *(link.line for side in sides for link in _straight_on(side, onward))}
     return found
+
+
+def _ends_in_arrowhead(side: Side, junctions: Junctions) -> bool:
+    """Whether a line has an arrowhead at a side."""
+    line = junctions.net.lines[side.line]
+    felt_mm = line.felt_mm[::-1] if side.last else line.felt_mm
+    return has_arrowhead(felt_mm, line.runs[0].view.step_mm, line.width_mm)
 
 
 def _straight_on(side: Side, onward: Onward) -> list[Link]:

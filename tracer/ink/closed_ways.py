@@ -29,14 +29,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Set
 from dataclasses import dataclass, field
+from functools import cached_property
 from heapq import heappop, heappush
 from typing import NamedTuple
 
 import cv2
 import numpy as np
 
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import length_mm
 from morfax.tracer.ink.aside import lines_aside
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
+from morfax.tracer.ink.hatching import STRAIGHT
 from morfax.tracer.ink.onward import Onward
 from morfax.tracer.ink.outlines import (
     Outline,
@@ -72,6 +76,7 @@ class _Onward(NamedTuple):
     side: Side
     beyond: int = NOT
     behind: int = NOT
+    bends: bool = False  # at a corner of one line
 
 
 class _Found(NamedTuple):
@@ -165,8 +170,8 @@ class _Search:
                 if is_back or _is_chord(behind, on):
                     continue
                 if cost + on.cost <= MOST and ends + on.is_end <= ENDS:
-                    before_it = behind if on.cost == 0.0 else on.behind
-                    heappush(heap, (cost + on.cost, (ends + on.is_end, before_it, onto), state))
+                    then = ends + on.is_end, self._behind(behind, on), onto
+                    heappush(heap, (cost + on.cost, then, state))
         return None
 
     def _found(
@@ -188,13 +193,27 @@ class _Search:
         that goes straight on beyond both ends of that.
         """
         onward = [*chain.links[1:], chain.links[0]]
-        found = [self._turn(link, onto) for link, onto in zip(chain.links, onward, strict=True)]
-        turns = [on for on in found if on is not None and on.cost > 0.0]
-        if None in found or any(
-            _is_chord(turns[k - 1].behind, on) for k, on in enumerate(turns)
-        ):
-            return math.inf
-        return sum(on.cost for on in turns)
+        cost, behind = 0.0, NOT
+        for again in (False, True):  # once more round, for the line with which it begins
+            for link, onto in zip(chain.links, onward, strict=True):
+                on = self._turn(link, onto)
+                if on is None or _is_chord(behind, on):
+                    return math.inf
+                cost += 0.0 if again else on.cost
+                behind = self._behind(behind, on)
+        return cost
+
+    def _behind(self, behind: int, on: _Onward) -> int:
+        """How a way's line goes straight on behind where the way came onto it; not, if it has bent since."""
+        if on.bends or on.side.line not in self._straight_lines:
+            return NOT
+        return behind if on.cost == 0.0 else on.behind
+
+    @cached_property
+    def _straight_lines(self) -> set[int]:
+        """The lines, by their numbers, that are straight."""
+        places = [line.places_mm for line in self.junctions.net.lines]
+        return {n for n, way in enumerate(places) if _is_straight(way)}
 
     def _turn(self, link: Link, onto: Link) -> _Onward | None:
         """How a way goes on from one line into another with the least cost; None if it may not."""
@@ -207,7 +226,10 @@ class _Search:
             there = self.junctions.at(far)
             if len(there.sides) == 2:
                 partner = there.partner(far)
-                found = [] if partner is None else [_Onward(0.0, False, partner)]
+                found = []
+                if partner is not None:
+                    turned = turned_by(there.leg(far), there.leg(partner).turned_round())
+                    found.append(_Onward(0.0, False, partner, bends=turned > FACING))
             else:
                 left = [
                     near
@@ -249,6 +271,11 @@ class _Search:
 def _is_chord(behind: int, on: _Onward) -> bool:
     """Whether a line goes straight on beyond both ends of where a way goes along it, and crosses it once."""
     return NOT not in (behind, on.beyond) and CROSSES in (behind, on.beyond)
+
+
+def _is_straight(way: Array) -> bool:
+    """Whether a way's ends are about as far apart as it is long."""
+    return math.dist(way[0], way[-1]) > STRAIGHT * length_mm(way)
 
 
 def _far(link: Link) -> Side:
