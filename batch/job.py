@@ -22,7 +22,7 @@ from morfax.batch.order import Order
 from morfax.batch.results import LocalResults, RemoteResults
 from morfax.batch.row import BatchRow
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.tracing import Tracing
+from morfax.jobs.tracing.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import FileFault
 

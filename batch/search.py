@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from morfax.batch.results import FIGURES, file_system
-from morfax.jobs.files import kind_by_name
+from morfax.jobs.media.files import kind_by_name
 from morfax.motion.faults import FileFault
 
 ANY = "**/*"

@@ -39,9 +39,8 @@ ON_IT_MM = 0.5 * PEN_MM  # a true place is followed if a stroke comes as near
 AT_JUNCTION_MM = 2.0  # places nearer to a junction are left out of the RMS
 STEP_MM = 0.05
 PASSED_MM = 2.0  # before and behind a junction, where the partners are looked up
-PASSED_ASIDE_MM = (
-    0.1  # a quarter of the pen's width: a line so near to the true one there is its stroke
-)
+# a quarter of the pen's width: a line so near to the true one there is its stroke
+PASSED_ASIDE_MM = 0.1
 UM = 1000.0
 LOW_SHARE = 0.995  # asked of a net
 

@@ -27,8 +27,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.jobs.settings import LineSettings
-from morfax.jobs.skips import gap_across_skips
+from morfax.jobs.settings.settings import LineSettings
+from morfax.jobs.tracing.skips import gap_across_skips
 from morfax.motion.contour import distance
 from morfax.motion.faults import Fault
 from morfax.motion.units import MM_PER_INCH

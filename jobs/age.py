@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.media import files as medium
 from morfax.jobs.wrong_use import settings_checked
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from itertools import groupby
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import files as medium
 from morfax.jobs.figures import Figures
 from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.media import files as medium
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def _told(finding: Finding) -> dict[str, Any]:
 
 
 def _figures(checked: Checked, machine: Machine, surface_mm: float) -> dict[str, Any]:
-    """Size, travel, depth, lengths, feeds and time of a program."""
+    """Size, travel, depth, lengths, feeds and time of a program; straight plunges are no cut length."""
     from morfax.player.gcode.check.steps import bounds_mm
 
     steps = checked.steps
@@ -127,7 +127,7 @@ def _figures(checked: Checked, machine: Machine, surface_mm: float) -> dict[str,
     feeds = [step.move.feed_mm_s for step in cuts if step.move.feed_mm_s]
     figures |= {
         "cuts": sum(1 for is_cut, _ in groupby(steps, lambda step: step.in_work) if is_cut),
-        "cut_length_mm": sum(step.length_mm for step in cuts),
+        "cut_length_mm": sum(step.length_mm for step in cuts if step.across),
         "rapid_length_mm": sum(step.length_mm for step in steps if step.is_rapid),
         "slowest_feed_mm_s": min(feeds, default=None),
         "fastest_feed_mm_s": max(feeds, default=None),

@@ -6,25 +6,26 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import comparison, correction_settings, flattening, outlines
-from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.playing import ByHand, Playing, read_or_play
-from morfax.jobs.settings import DrawingFile
+from morfax.jobs.machine.playing import ByHand, Playing, read_or_play
+from morfax.jobs.media import files as medium
+from morfax.jobs.media import outlines
+from morfax.jobs.readings import comparison
+from morfax.jobs.settings import correction_settings, flattening
+from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.zero import OF_PART, Zero, refuse_of_part, said_by
 from morfax.jobs.wrong_use import WrongUse
-from morfax.jobs.zero import OF_PART, Zero, refuse_of_part, said_by
 
 if TYPE_CHECKING:
-    from morfax.jobs.comparison import Comparison
     from morfax.jobs.figures import Figures
+    from morfax.jobs.readings.comparison import Comparison
     from morfax.motion.motion import Path
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.operator.operator import Panel
 
 
-FASTEST_MM_S = (
-    20.0  # of a program that is compared: the control's servos then stay within 10 um of it
-)
+# of a program that is compared: the control's servos then stay within 10 um of it
+FASTEST_MM_S = 20.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs.correction_settings import sha256_of
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.settings import DrawingFile
+from morfax.jobs.settings.correction_settings import sha256_of
+from morfax.jobs.settings.settings import DrawingFile
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 from morfax.motion.faults import CardFault, DrawingFault
 

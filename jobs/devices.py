@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.live import USUAL_RATE_HZ, USUAL_TRACKS, Outlet
+from morfax.jobs.media.live import USUAL_RATE_HZ, USUAL_TRACKS, Outlet
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -110,7 +110,7 @@ class DevicesJob:
 
     def _measured(self, listener: Listener) -> Figures:
         """Read the meters until the time is over; what they showed in the middle, track by track."""
-        from morfax.jobs.carriers import measured
+        from morfax.jobs.readings.carriers import measured
         from morfax.recorder.sound.device import found, rate_for
         from morfax.recorder.sound.device_source import DeviceSource
 

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.jobs import files as medium
-from morfax.jobs import program_figures
-from morfax.jobs.carriers import BLOCK_FRAMES, CarrierReading, listen
 from morfax.jobs.figures import Figures
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.playing import ByHand
+from morfax.jobs.machine.playing import ByHand
+from morfax.jobs.media import files as medium
+from morfax.jobs.readings import program_figures
+from morfax.jobs.readings.carriers import BLOCK_FRAMES, CarrierReading, listen
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import TapeFault
 

@@ -6,14 +6,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import correction_settings, trace_figures
-from morfax.jobs import files as medium
-from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.remarks_on_lines import remarks_on_lines
-from morfax.jobs.scale_doubts import scale_doubts
-from morfax.jobs.settings import DrawingFile, TraceSettings
-from morfax.jobs.skips import gap_across_skips
+from morfax.jobs.media import files as medium
+from morfax.jobs.remarks.on_survey import remarks_on_lines
+from morfax.jobs.remarks.scale_doubts import scale_doubts
+from morfax.jobs.settings import correction_settings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.tracing import trace_figures
+from morfax.jobs.tracing.skips import gap_across_skips
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures

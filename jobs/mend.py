@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
-from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.playing import ByHand
+from morfax.jobs.machine.playing import ByHand
+from morfax.jobs.media import files as medium
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures

@@ -5,18 +5,22 @@ A drawing from CAD has no control of its own: it is recorded on a tape first, an
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal
 
-from morfax.jobs import files as medium
-from morfax.jobs import following, outlines
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.live import PIPE, Intake
-from morfax.jobs.passage import Passage
-from morfax.jobs.playing import ByHand, Playing
-from morfax.jobs.recording import RecordingUnit
+from morfax.jobs.machine.playing import ByHand, Playing
+from morfax.jobs.machine.recording import RecordingUnit
+from morfax.jobs.media import files as medium
+from morfax.jobs.media import outlines
+from morfax.jobs.media.live import PIPE, Intake
+from morfax.jobs.readings import following
+from morfax.jobs.readings.passage import Passage
+from morfax.jobs.record import RecordJob
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 
 if TYPE_CHECKING:
@@ -152,7 +156,7 @@ class PlayJob:
         is_charted = bool(self.charts) or self.picture is not None
         chart = following.new_chart(self.raw) if is_charted else None
         # 2. the machine runs
-        with settings_checked(), outlines.as_tape(self.tape, self.drawn_unit, listener) as tape:
+        with settings_checked(), _as_tape(self.tape, self.drawn_unit, listener) as tape:
             playing = Playing(tape, self.by_hand, self.raw, chart, settings, self.intake)
             passage, playback, fault, path = self._played(playing, listener)
         # 3. what it ran
@@ -198,6 +202,18 @@ class PlayJob:
 
         unit = RecordingUnit(made=Made(f"{self.tape.name}, played"))
         unit.record(path.motion(), file, listener)
+
+
+@contextmanager
+def _as_tape(file: FilePath, unit: str | None, listener: Listener) -> Iterator[FilePath]:
+    """A tape of a drawing from CAD, for as long as it is played; any other file as it is."""
+    if not medium.is_outline(file):
+        yield file
+        return
+    with tempfile.TemporaryDirectory(prefix="morfax-") as folder:
+        tape = FilePath(folder) / f"{file.stem}.wav"
+        RecordJob(file, tape, drawn_unit=unit).run(listener)
+        yield tape
 
 
 def is_picture(file: FilePath) -> bool:

@@ -7,15 +7,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal
 
-from morfax.jobs import files as medium
-from morfax.jobs import outlines
 from morfax.jobs.listener import SILENT, Listener, watched
-from morfax.jobs.live import PIPE, Outlet
-from morfax.jobs.playing import ByHand, read_or_play
-from morfax.jobs.recording import RecordingUnit, rehearsed
+from morfax.jobs.machine.playing import ByHand, read_or_play
+from morfax.jobs.machine.recording import RecordingUnit, rehearsed
+from morfax.jobs.media import files as medium
+from morfax.jobs.media import outlines
+from morfax.jobs.media.live import PIPE, Outlet
+from morfax.jobs.settings.zero import Zero, of_path_mm
+from morfax.jobs.settings.zero import figures as zero_figures
 from morfax.jobs.wrong_use import WrongUse, settings_checked
-from morfax.jobs.zero import Zero, of_path_mm
-from morfax.jobs.zero import figures as zero_figures
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -51,9 +51,8 @@ class RecordJob:
     unit: RecordingUnit = field(default_factory=RecordingUnit)
     drawn_unit: str | None = None  # of a drawing from CAD; None: the file's own
     zero: Zero = "sheet"  # of the program; sheet: the source's own zero
-    orders: Literal["differences", "counts"] | None = (
-        None  # of a step program; None: differences
-    )
+    # of a step program; None: differences
+    orders: Literal["differences", "counts"] | None = None
     outlet: Outlet = field(default_factory=Outlet)  # where a tape goes, if it is not one file
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> RecordResult:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from morfax.jobs.comparison import Comparison
     from morfax.jobs.figures import Figures
-    from morfax.jobs.following import Speeds
+    from morfax.jobs.readings.comparison import Comparison
+    from morfax.jobs.readings.following import Speeds
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Path
     from morfax.player.monitor.chart import Chart

@@ -6,20 +6,21 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import comparison, correction_settings, flattening, following
-from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.machining import tell_what_is_lost
-from morfax.jobs.playing import ByHand, Played, Playing
-from morfax.jobs.recording import RecordingUnit
-from morfax.jobs.settings import DrawingFile, TraceSettings
-from morfax.jobs.tracing import Tracing
+from morfax.jobs.machine.machining import tell_what_is_lost
+from morfax.jobs.machine.playing import ByHand, Played, Playing
+from morfax.jobs.machine.recording import RecordingUnit
+from morfax.jobs.media import files as medium
+from morfax.jobs.readings import comparison, following
+from morfax.jobs.settings import correction_settings, flattening
+from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.tracing.tracing import Tracing
 from morfax.motion.faults import FileFault
 
 if TYPE_CHECKING:
-    from morfax.jobs.comparison import Comparison
     from morfax.jobs.figures import Figures
-    from morfax.jobs.traced import Traced
+    from morfax.jobs.readings.comparison import Comparison
+    from morfax.jobs.tracing.traced import Traced
     from morfax.motion.faults import Fault
     from morfax.motion.motion import Path
     from morfax.motion.placement import Placement

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
-from morfax.jobs import files as medium
+from morfax.jobs.media import files as medium
 from morfax.jobs.wrong_use import settings_checked
 
 if TYPE_CHECKING:

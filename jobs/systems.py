@@ -18,20 +18,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.jobs import comparison, correction_settings, flattening, following
-from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.playing import Playing
+from morfax.jobs.machine.playing import Playing
+from morfax.jobs.media import files as medium
+from morfax.jobs.readings import comparison, following
 from morfax.jobs.results import NAMES, SystemResult
-from morfax.jobs.settings import DrawingFile, TraceSettings
-from morfax.jobs.tracing import Tracing
+from morfax.jobs.settings import correction_settings, flattening
+from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.tracing.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
 from morfax.motion.plane import SAME_MM
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
-    from morfax.jobs.traced import Traced
+    from morfax.jobs.tracing.traced import Traced
     from morfax.motion.arrays import Array
     from morfax.motion.motion import Path
     from morfax.tracer.drawing.drawing import Drawing

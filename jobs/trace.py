@@ -6,20 +6,20 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import files as medium
-from morfax.jobs import flattening
-from morfax.jobs.correction_settings import figures as figures_of
-from morfax.jobs.correction_settings import named
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.machining import tell_what_is_lost
-from morfax.jobs.recording import RecordingUnit
-from morfax.jobs.settings import DrawingFile, TraceSettings
-from morfax.jobs.tracing import Tracing
+from morfax.jobs.machine.machining import tell_what_is_lost
+from morfax.jobs.machine.recording import RecordingUnit
+from morfax.jobs.media import files as medium
+from morfax.jobs.settings import flattening
+from morfax.jobs.settings.correction_settings import figures as figures_of
+from morfax.jobs.settings.correction_settings import named
+from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.tracing.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
-    from morfax.jobs.traced import Traced
+    from morfax.jobs.tracing.traced import Traced
     from morfax.motion.faults import Fault
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.operator.operator import Panel

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs import files as medium
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.recording import RecordingUnit
-from morfax.jobs.settings import DrawingFile, TraceSettings
+from morfax.jobs.machine.recording import RecordingUnit
+from morfax.jobs.media import files as medium
+from morfax.jobs.settings.settings import DrawingFile, TraceSettings
 from morfax.jobs.trace import NAME, TraceJob, TraceOutputs, TraceResult
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault

@@ -20,9 +20,8 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 
-LARGEST_UNITS = (
-    1e15  # of the last decimal: half a unit is still more than the number's own rounding
-)
+# of the last decimal: half a unit is still more than the number's own rounding
+LARGEST_UNITS = 1e15
 MOST_CHARACTERS = 19  # of a number: sign, 16 digits, point, and what comes after it
 COMMA, NEW_LINE, MINUS, POINT, ZERO = b",\n-.0"
 

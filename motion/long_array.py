@@ -28,9 +28,8 @@ import numpy as np
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import FileFault
 
-IN_MEMORY_BYTES = (
-    32_000_000  # of one array: 2 million positions, 3.5 m of line at 10 mm/s; chosen
-)
+# of one array: 2 million positions, 3.5 m of line at 10 mm/s; chosen
+IN_MEMORY_BYTES = 32_000_000
 BLOCK_ROWS = 240_000  # that are looked at together: 4 MB of positions, 40 s; chosen
 
 

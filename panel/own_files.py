@@ -94,7 +94,7 @@ def _check(option: str, file: FilePath, command_line: CommandLine) -> None:
 
 def _is_plotter(file: FilePath) -> bool:
     """Whether a machine's file is a plotter's; raises CardFault for a mistake in it."""
-    from morfax.jobs.machining import chosen
+    from morfax.jobs.machine.machining import chosen
 
     return chosen(str(file)).is_hpgl
 

@@ -31,10 +31,10 @@ from morfax.panel.lookout import Lookout
 if TYPE_CHECKING:
     from morfax.jobs.play import PlayJob
     from morfax.jobs.run import RunJob
-    from morfax.jobs.settings import DrawingFile
+    from morfax.jobs.settings.settings import DrawingFile
     from morfax.jobs.trace import TraceJob
-    from morfax.jobs.traced import Traced
-    from morfax.jobs.tracing import Tracing
+    from morfax.jobs.tracing.traced import Traced
+    from morfax.jobs.tracing.tracing import Tracing
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.following.knots import Memory
 
@@ -173,8 +173,8 @@ class Worker:
 
     def _play(self, job: tuple[PlayJob, list[list[float]], float]) -> dict[str, Any]:
         """Have the machine run a program again, at another feed override."""
-        from morfax.jobs.following import new_chart
-        from morfax.jobs.playing import Playing
+        from morfax.jobs.machine.playing import Playing
+        from morfax.jobs.readings.following import new_chart
         from morfax.jobs.wrong_use import settings_checked
         from morfax.panel.result_data import of_play
 
@@ -191,7 +191,7 @@ class Worker:
         """Write a program of what was traced, or trace it first where it was not."""
         outputs, tracing = job.prepared()
         if self._traced is not None and self._traced[:2] == (_stamp(job.drawing), tracing):
-            from morfax.jobs.machining import tell_what_is_lost
+            from morfax.jobs.machine.machining import tell_what_is_lost
 
             if outputs.program is not None:
                 tell_what_is_lost(job.settings, job.unit, outputs.program, self.teller)

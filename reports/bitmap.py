@@ -17,17 +17,17 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.reports import lettering
-from morfax.reports.canvas import DPI
+from morfax.reports.canvas import DPI, PT_PER_IN
+from morfax.reports.looks import SEE_THROUGH
 from morfax.reports.page import Box, Page
 from morfax.reports.pixels import Pixels, blend, dashes, polylines, seen, strokes_of
 from morfax.reports.plate import Area, Colours, Ground, Line, Plate, Spot, fitted, shades
 
 FINER = 2
-PX_PER_PT = FINER * DPI / 72
+PX_PER_PT = FINER * DPI / PT_PER_IN
 TICK_PT = 3.5  # length of a tick, matplotlib's
 SPOT_PX = 1.0 * PX_PER_PT  # edge of a spot, matplotlib's
 EDGE_GREY = "#cccccc"  # of a legend
-LEGEND_ALPHA, RING_ALPHA = 0.8, 0.85
 MANY = 2000  # places: fewer are drawn sooner than looked through
 THIRD, FIFTH = 1 / 3, 0.2 * np.pi
 OUTLINES: dict[str, list[tuple[float, float]]] = {  # of size 1 about 0, as matplotlib's markers
@@ -166,7 +166,7 @@ class _Field:
     def _ring(self, middle: Array, radius_px: float, colour: str) -> None:
         """A white disc with an edge."""
         edge = middle + 2 * radius_px * np.array(OUTLINES["o"])
-        blend(self.canvas, edge, "#ffffff", RING_ALPHA)
+        blend(self.canvas, edge, "#ffffff", SEE_THROUGH)
         polylines(self.canvas, [edge], colour, SPOT_PX, closed=True)
 
     def _legend(self) -> None:
@@ -177,7 +177,7 @@ class _Field:
             return
         left, top, right, bottom = (FINER * side for side in box.sides_px)
         corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
-        blend(self.canvas, corners, "#ffffff", LEGEND_ALPHA)
+        blend(self.canvas, corners, "#ffffff", SEE_THROUGH)
         polylines(self.canvas, [corners], EDGE_GREY, SPOT_PX, closed=True)
         for mark, (begin, end, row) in zip(self.plate.legend, box.samples_px, strict=True):
             sample = FINER * np.array([[begin, row], [end, row]])

@@ -14,8 +14,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.reports.canvas import new_figure, save
-from morfax.reports.looks import NUMBERS_PT, THIN_PT, WORDS_PT
+from morfax.reports.canvas import NUMBERS_IN, PANEL_IN, WIDTH_IN, new_figure, save
+from morfax.reports.looks import (
+    BESIDE_PT,
+    LINE_PT,
+    NAMES,
+    NUMBERS_PT,
+    ON_PATHS,
+    ON_SPOTS,
+    SPOT_PT,
+    SPOTS,
+    THIN_PT,
+    WORDS_PT,
+)
 from morfax.reports.overlay import MARGIN_SHARE
 from morfax.reports.plate import View
 
@@ -33,9 +44,8 @@ WOOD, TRAVEL = "#f3e3c3", "#8a8a8a"
 CHORD_RAD = math.radians(4)  # of an arc that is drawn
 ARROWS = 60  # along the whole cut
 ARROW_IN = 0.12  # its length
+DASHES = 0, (5, 3)
 MOST_MARKED = 30  # findings with their line; further ones would hide the drawing
-WIDTH_IN = 8.5
-SIDE_IN = 1.8  # height of the view along the way
 
 
 def draw_checked(result: CheckResult, name: str, file: FilePath) -> None:
@@ -46,11 +56,11 @@ def draw_checked(result: CheckResult, name: str, file: FilePath) -> None:
     shape = (view[3] - view[2]) / (view[1] - view[0])
     above_in = min(max(WIDTH_IN * shape, 3.0), 10.0)
     if result.machine.z and steps:
-        figure.set_size_inches(WIDTH_IN, above_in + 1.2 + SIDE_IN)
-        above, side = figure.subplots(2, 1, height_ratios=(above_in, SIDE_IN))
+        figure.set_size_inches(WIDTH_IN, above_in + NUMBERS_IN + PANEL_IN)
+        above, side = figure.subplots(2, 1, height_ratios=(above_in, PANEL_IN))
         _side_view(side, steps, result)
     else:
-        figure.set_size_inches(WIDTH_IN, above_in + 1.2)
+        figure.set_size_inches(WIDTH_IN, above_in + NUMBERS_IN)
         above = figure.add_subplot()
     _ground(above, steps, result)
     _ways(above, steps)
@@ -129,7 +139,9 @@ def _ground(axes: Axes, steps: Sequence[Step], result: CheckResult) -> None:
         size = result.machine.travel_mm[0], result.machine.travel_mm[1]
         style: dict[str, Any] = {"fill": False, "edgecolor": TRAVEL, "linestyle": ":"}
         axes.add_patch(Rectangle((low[0], low[1]), *size, label="travel", **style))
-    axes.plot(0, 0, marker="+", markersize=14, color=TRAVEL, linestyle="none", label="zero")
+    axes.plot(
+        0, 0, marker="+", markersize=2 * SPOT_PT, color=TRAVEL, linestyle="none", label="zero"
+    )
 
 
 def _ways(axes: Axes, steps: Sequence[Step]) -> None:
@@ -139,13 +151,13 @@ def _ways(axes: Axes, steps: Sequence[Step]) -> None:
     in_work = [step.in_work for step in steps if not step.is_rapid and step.across]
     cuts = [line for line, cut in zip(lines, in_work, strict=True) if cut]
     travels = [line for line, cut in zip(lines, in_work, strict=True) if not cut]
-    _collection(axes, rapids, "rapid", RAPID, 0.7, (0, (5, 3)))
-    _collection(axes, travels, "line above the work", RAPID, 0.7, "-")
-    _collection(axes, cuts, "cut", CUT, 1.4, "-")
+    _collection(axes, rapids, "rapid", RAPID, THIN_PT, DASHES)
+    _collection(axes, travels, "line above the work", RAPID, THIN_PT, "-")
+    _collection(axes, cuts, "cut", CUT, LINE_PT, "-")
     down = [step.move.end_mm[:2] for step in steps if _plunges(step)]
     if down:
-        style: dict[str, Any] = {"marker": "o", "markersize": 5, "linestyle": "none"}
-        axes.plot(*np.array(down).T, color=PLUNGE, label="plunge", zorder=4, **style)
+        style: dict[str, Any] = {"marker": "o", "markersize": SPOT_PT, "linestyle": "none"}
+        axes.plot(*np.array(down).T, color=PLUNGE, label="plunge", zorder=SPOTS, **style)
 
 
 def _plunges(step: Step) -> bool:
@@ -185,7 +197,12 @@ def _arrows(axes: Axes, steps: Sequence[Step]) -> None:
             waiting_mm = 0.0
         before = step
     if places:
-        look: dict[str, Any] = {"pivot": "mid", "color": CUT, "zorder": 3, "units": "inches"}
+        look: dict[str, Any] = {
+            "pivot": "mid",
+            "color": CUT,
+            "zorder": ON_PATHS,
+            "units": "inches",
+        }
         head: dict[str, Any] = {"headwidth": 9, "headlength": 9, "headaxislength": 8}
         arrows = *np.array(places).T, *(ARROW_IN * np.array(ways)).T
         axes.quiver(*arrows, scale_units="inches", scale=1, width=ARROW_IN / 11, **look, **head)
@@ -197,8 +214,8 @@ def _marked(axes: Axes, findings: Sequence[Finding]) -> None:
     for stops, colour, label in ((True, STOPS, "found"), (False, REMARK, "remark")):
         places = [each.place_mm[:2] for each in shown if each.stops == stops and each.place_mm]
         if places:
-            style: dict[str, Any] = {"marker": "x", "markersize": 9, "linestyle": "none"}
-            axes.plot(*np.array(places).T, color=colour, label=label, zorder=6, **style)
+            style: dict[str, Any] = {"marker": "x", "markersize": SPOT_PT, "linestyle": "none"}
+            axes.plot(*np.array(places).T, color=colour, label=label, zorder=ON_SPOTS, **style)
     texts: dict[tuple[float, ...], list[Finding]] = {}
     for finding in shown[:MOST_MARKED]:
         assert finding.place_mm is not None
@@ -207,11 +224,11 @@ def _marked(axes: Axes, findings: Sequence[Finding]) -> None:
         axes.annotate(
             "\n".join(f"line {each.line}: {each.rule}" for each in here),
             (place_mm[0], place_mm[1]),
-            (6, 6),
+            BESIDE_PT,
             textcoords="offset points",
             fontsize=NUMBERS_PT,
             color=STOPS if any(each.stops for each in here) else REMARK,
-            zorder=7,
+            zorder=NAMES,
         )
 
 
@@ -227,8 +244,8 @@ def _side_view(axes: Axes, steps: Sequence[Step], result: CheckResult) -> None:
         way = np.column_stack([ends, [step.begin_mm[2], step.move.end_mm[2]]])
         (rapids if step.is_rapid else lines).append(way)
         along_mm = ends[1]
-    _collection(axes, rapids, "rapid", RAPID, 0.7, "-")
-    _collection(axes, lines, "line", CUT, 1.0, "-")
+    _collection(axes, rapids, "rapid", RAPID, THIN_PT, "-")
+    _collection(axes, lines, "line", CUT, LINE_PT, "-")
     axes.axhline(surface_mm, color="#a07840", linewidth=THIN_PT)
     if stock is not None and stock.thickness_mm is not None:
         axes.axhspan(surface_mm - stock.thickness_mm, surface_mm, color=WOOD, zorder=0)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.reports.canvas import UM_PER_MM
+from morfax.reports.looks import ON_PATHS
 from morfax.reports.plate import Colours, Line, View, shades
 
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
@@ -46,7 +47,7 @@ def error_lines(
     there, lines = _lines(ends[shown], numbers, np.flatnonzero(shown))
     colours = [f"#{shade:06x}" for shade in shades(COLOURS, SHADES)]
     drawn = [
-        Line(places, colours[shade], line_pt, order=3)
+        Line(places, colours[shade], line_pt, order=ON_PATHS)
         for shade, places in zip(there, lines, strict=True)
     ]
     return drawn, Colours(COLOURS, most_um, "error, µm")

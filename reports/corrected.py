@@ -12,7 +12,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.plane import left_of
-from morfax.reports.looks import LINE_PT, NUMBERS_PT
+from morfax.reports.looks import BELOW_PT, LINE_PT, NAMES, NUMBERS_PT, SPOT_PT, SPOTS
 from morfax.reports.plate import Area, Line, Mark, Spot, Words
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ COLOUR = "#d100b8"
 TURNS = {"straight": "↑", "left": "↰", "right": "↱"}
 STOPS = {"stop": "D", "drill": "o", "not-stop": "X"}
 POINTS = {"start": "P", "reference": "*"}
-MARKER_PT, TURN_PT = 7, 12
 TURN_RAD = np.linspace(0, 2 * np.pi, 24)
 ROUND = np.column_stack([np.cos(TURN_RAD), np.sin(TURN_RAD)])  # the end of a rubber
 RUBBED_ALPHA = 0.18  # what was rubbed out lets the paper shine through
@@ -36,7 +35,7 @@ def marks(laid: OnSheet) -> list[Mark]:
         drawn += [*_stroke(stroke), _number(stroke.number, first)]
     for turn in laid.turns:
         drawn += [
-            Words(turn.place_mm, TURNS[turn.do], TURN_PT, COLOUR, centred=True),
+            Words(turn.place_mm, TURNS[turn.do], 2 * SPOT_PT, COLOUR, centred=True),
             _number(turn.number, turn.place_mm),
         ]
     for stop in laid.stops:
@@ -52,7 +51,7 @@ def _stroke(stroke: Stroke) -> list[Mark]:
     """A stroke of the rubber as areas, one of the pen as a line."""
     places_mm = stroke.places_mm
     if stroke.do == "bridge" and len(places_mm) > 1:
-        return [Line(places_mm, COLOUR, LINE_PT, dash=(2, 1), order=4)]
+        return [Line(places_mm, COLOUR, LINE_PT, dash=(2, 1), order=SPOTS)]
     if stroke.do == "rub-area":
         return [_rubbed(places_mm)]
     half_mm = 0.5 * (stroke.width_mm or 1.0)
@@ -74,9 +73,9 @@ def _rubbed(corners_mm: Array) -> Area:
 
 def _spot(shape: str, place_mm: PlaceMm) -> Spot:
     """A place."""
-    return Spot(place_mm, shape, MARKER_PT, COLOUR, order=6)
+    return Spot(place_mm, shape, SPOT_PT, COLOUR, order=NAMES)
 
 
 def _number(number: int, place_mm: PlaceMm) -> Words:
     """The number of a correction beside its place."""
-    return Words(place_mm, f"c{number}", NUMBERS_PT, COLOUR, (7, -11))
+    return Words(place_mm, f"c{number}", NUMBERS_PT, COLOUR, BELOW_PT)

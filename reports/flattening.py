@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from morfax.motion.units import drawn_length_mm
-from morfax.reports.canvas import new_figure, save, show_drawing
+from morfax.reports.canvas import SHEET_IN, WIDE_IN, new_figure, save, show_drawing
 from morfax.reports.looks import GRID, NAME_PT
 from morfax.reports.sheet import DARKEST
 
@@ -35,7 +35,7 @@ def draw_flattening(drawing: Drawing, file: FilePath) -> None:
     made = drawing.flattening
     if made is None:
         return
-    figure = new_figure(13.0, 8.0)
+    figure = new_figure(WIDE_IN, SHEET_IN)
     photo, flat = figure.subplots(1, 2)
     _draw_photograph(photo, made)
     extent = show_drawing(

@@ -14,20 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.files import written_beside
-from morfax.reports.canvas import UM_PER_MM, new_figure, save
-from morfax.reports.looks import GRID, THIN_PT, TITLE_PT, WORDS_PT
+from morfax.reports.canvas import NUMBERS_IN, PANEL_IN, UM_PER_MM, new_figure, save
+from morfax.reports.looks import GRID, SPOT_PT, THIN_PT, TITLE_PT, WORDS_PT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from morfax.jobs.following import Speeds
+    from morfax.jobs.readings.following import Speeds
     from morfax.player.monitor.chart import Chart
 
 SUFFIXES = (".png", ".svg", ".pdf", ".csv")
 ERROR, LIMIT, TRUE, PROGRAMMED = "#1f5fa8", "#c1121f", "#2a7f3f", "#555555"
 SMALLEST_UM = 0.01  # at the foot of the picture
-PANEL_IN = 1.9  # height
 _HEADINGS = ("demand", "actual", "error", "limit")
 
 
@@ -42,7 +41,7 @@ def write(chart: Chart, file: FilePath, title: str, speeds: Speeds | None = None
 def picture(chart: Chart, title: str, speeds: Speeds | None = None) -> Figure:
     """One panel for each axis, and one for the speed held if there is one."""
     panels = len(chart.axes) + (speeds is not None)
-    figure = new_figure(8.5, 0.8 + PANEL_IN * panels)
+    figure = new_figure(height_in=NUMBERS_IN + PANEL_IN * panels)
     axes = figure.subplots(panels, 1, squeeze=False)[:, 0]
     for number, name in enumerate(chart.axes):
         _panel(axes[number], chart, number, name)
@@ -68,7 +67,7 @@ def _panel(axes: Axes, chart: Chart, number: int, name: str) -> None:
     over = error_um > limit_um
     if over.any():
         axes.semilogy(
-            chart.t_s[over], error_um[over], "x", color=LIMIT, markersize=9, label="fault"
+            chart.t_s[over], error_um[over], "x", color=LIMIT, markersize=SPOT_PT, label="fault"
         )
     axes.set_ylabel(f"{name.upper()}, µm")
     axes.set_ylim(bottom=SMALLEST_UM)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.reports import lettering
 from morfax.reports.lettering import PX_PER_PT
+from morfax.reports.looks import ON_PATHS
 from morfax.reports.plate import Line, Mark, Place, Plate, Spot, Words, filled_in, fitted
 
 CELL_PT = 2.0
@@ -27,9 +28,8 @@ LETTER = 0.62  # width of a letter over its size; DejaVu's own is 0.6 on average
 AWAY_PT = (7.0, 14.0, 24.0, 36.0, 50.0)  # from a place to its name
 BESIDE_PT, LEADER_PT = 12.0, 0.4  # a name further off has a leader, so thick
 LINE_COST, SPOT_COST, NAME_COST = 1.0, 2.0, 100.0
-FEW_NAMES = (
-    12  # more are shortened to a letter and a number; the legend says what the letter means
-)
+# more are shortened to a letter and a number; the legend says what the letter means
+FEW_NAMES = 12
 SIDES = ((1, 1), (-1, 1), (1, -1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
 
 
@@ -112,7 +112,9 @@ class _Grid:
         if np.hypot(*nearest_pt) < BESIDE_PT:
             return []
         end_mm = words.place_mm + nearest_pt / self.pt_per_mm
-        return [Line(np.array([words.place_mm, end_mm]), words.colour, LEADER_PT, order=3)]
+        return [
+            Line(np.array([words.place_mm, end_mm]), words.colour, LEADER_PT, order=ON_PATHS)
+        ]
 
     def _pt(self, places_mm: Array) -> Array:
         """Places from the lower left corner of the axes, points."""

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from morfax.reports.looks import BOLD_PT, ON_PATHS
 from morfax.reports.plate import Line, with_gaps
 
 if TYPE_CHECKING:
-    from morfax.jobs.who_led import WhoLed
+    from morfax.jobs.remarks.who_led import WhoLed
 
 COLOURS = ("#c1121f", "#f2a000", "#1f5fa8", "#7a3fa0")  # in the order of `LEADERS`
-LINE_PT = 1.8
 
 
 def lines(led: WhoLed) -> list[Line]:
@@ -25,5 +25,7 @@ def lines(led: WhoLed) -> list[Line]:
         runs = [places for one, places in led.runs_mm if one == leader]
         if runs:
             label = f"{name} {100 * mm / all_mm:.1f} %"
-            drawn.append(Line(with_gaps(runs), COLOURS[leader], LINE_PT, label=label, order=3))
+            drawn.append(
+                Line(with_gaps(runs), COLOURS[leader], BOLD_PT, label=label, order=ON_PATHS)
+            )
     return drawn

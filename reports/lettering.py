@@ -23,8 +23,9 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from morfax.motion.files import printable
+from morfax.reports import looks
 from morfax.reports.axis_numbers import numbers, steps_in
-from morfax.reports.canvas import DPI
+from morfax.reports.canvas import DPI, PT_PER_IN
 from morfax.reports.page import Box, Page
 from morfax.reports.plate import (
     BLACK,
@@ -37,10 +38,8 @@ from morfax.reports.plate import (
     free_corner,
 )
 
-PX_PER_PT = DPI / 72
-PT_PER_IN = 72
+PX_PER_PT = DPI / PT_PER_IN
 NUMBER_PT, NAME_PT, TITLE_PT = 7.0, 4.0, 6.0  # from axes: to numbers; on to names; to a title
-SCALE_PT, LEGEND_PT = 10.0, 8.0  # size of letters
 RING_PAD = 0.2  # round words in a ring, in times of their size
 # of a legend, in times of its letters' size: to the axes, round all, between rows, a sample, on to its words
 OUTSIDE, PAD, BETWEEN, SAMPLE, GAP = 0.5, 0.4, 0.5, 2.0, 0.8
@@ -64,7 +63,7 @@ def ticks(plate: Plate, box: Box) -> list[tuple[float, bool]]:
 
 def scale_numbers(scale: Colours, box: Box) -> list[tuple[float, str]]:
     """Shares of a scale of colours at which numbers stand, and these."""
-    steps = steps_in(box.width_in * PT_PER_IN, SCALE_PT, upright=False)
+    steps = steps_in(box.width_in * PT_PER_IN, looks.TITLE_PT, upright=False)
     return [(value / scale.largest, text) for value, text in numbers(0.0, scale.largest, steps)]
 
 
@@ -82,7 +81,7 @@ def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
     """The legend of a plate, in the freest corner of axes of a size; None without any."""
     if not plate.legend:
         return None
-    em = LEGEND_PT * PX_PER_PT
+    em = looks.WORDS_PT * PX_PER_PT
     rows, (wide, high) = len(plate.legend), _legend_px(plate)
     shown = replace(plate, view=fitted(plate.view, high_px / wide_px))
     is_upper, is_right = free_corner(shown, legend_share(plate, wide_px, high_px))
@@ -98,14 +97,14 @@ def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
 def legend_share(plate: Plate, wide_px: float, high_px: float) -> tuple[float, float]:
     """How much of the width and height of axes of a size a plate's legend takes in its corner."""
     wide, high = _legend_px(plate)
-    outside = OUTSIDE * LEGEND_PT * PX_PER_PT
+    outside = OUTSIDE * looks.WORDS_PT * PX_PER_PT
     return (wide + outside) / wide_px, (high + outside) / high_px
 
 
 def _legend_px(plate: Plate) -> tuple[float, float]:
     """Width and height of a plate's legend."""
-    em, rows = LEGEND_PT * PX_PER_PT, len(plate.legend)
-    longest = max(_font(LEGEND_PT).getlength(_plain(mark.label)) for mark in plate.legend)
+    em, rows = looks.WORDS_PT * PX_PER_PT, len(plate.legend)
+    longest = max(_font(looks.WORDS_PT).getlength(_plain(mark.label)) for mark in plate.legend)
     return (2 * PAD + SAMPLE + GAP) * em + longest, (2 * PAD + rows + (rows - 1) * BETWEEN) * em
 
 
@@ -161,8 +160,8 @@ class _Pen:
         if found is None:
             return
         for mark, (_, end, row) in zip(plate.legend, found.samples_px, strict=True):
-            beside = left + end + GAP * LEGEND_PT * PX_PER_PT
-            self._write((beside, top + row), mark.label, LEGEND_PT, "lm")
+            beside = left + end + GAP * looks.WORDS_PT * PX_PER_PT
+            self._write((beside, top + row), mark.label, looks.WORDS_PT, "lm")
 
     def words(self, box: Box, plate: Plate) -> None:
         """The words beside places of a plate, as far as those places are on it."""
@@ -182,9 +181,11 @@ class _Pen:
         left, _, right, bottom = self._sides(box)
         away = NUMBER_PT * PX_PER_PT
         for share, text in scale_numbers(scale, box):
-            self._write((left + share * (right - left), bottom + away), text, SCALE_PT, "mt")
-        below = bottom + away + (SCALE_PT + NAME_PT) * PX_PER_PT
-        self._write(((left + right) / 2, below), scale.label, SCALE_PT, "mt")
+            self._write(
+                (left + share * (right - left), bottom + away), text, looks.TITLE_PT, "mt"
+            )
+        below = bottom + away + (looks.TITLE_PT + NAME_PT) * PX_PER_PT
+        self._write(((left + right) / 2, below), scale.label, looks.TITLE_PT, "mt")
 
     def _sides(self, box: Box) -> tuple[float, float, float, float]:
         """Left, top, right and bottom of a box."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from morfax.reports import corrected, vector
 from morfax.reports.canvas import LARGEST_IMAGE_PX, REFERENCE, save, sheet_figure
-from morfax.reports.looks import LINE_PT, SEE_THROUGH, TITLE_PT, WORDS_PT
+from morfax.reports.looks import BESIDE_PT, LINE_PT, SEE_THROUGH, SPOT_PT, TITLE_PT, WORDS_PT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,19 +96,23 @@ def _number(axes: Axes, entry: Entry) -> None:
     colour = _colour(entry.number) if entry.is_in_contours else REFERENCE
     if entry.kind == "dot":
         axes.plot(
-            *entry.place_mm, marker="o", markersize=9, markerfacecolor="none", color=colour
+            *entry.place_mm,
+            marker="o",
+            markersize=SPOT_PT,
+            markerfacecolor="none",
+            color=colour,
         )
     box = {
         "boxstyle": "round,pad=0.15",
         "facecolor": "white",
         "edgecolor": colour,
-        "alpha": 0.85,
+        "alpha": SEE_THROUGH,
     }
     text = str(entry.number) if entry.is_in_contours else f"({entry.number})"
     axes.annotate(
         text,
         entry.place_mm,
-        (5, 5),
+        BESIDE_PT,
         textcoords="offset points",
         fontsize=WORDS_PT,
         color=colour,

@@ -19,9 +19,29 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
 from morfax.reports import corrected, labels, leaders, left_out
-from morfax.reports.canvas import COMPRESSION, DPI, REFERENCE, UM_PER_MM, grey, save, write
+from morfax.reports.canvas import (
+    COMPRESSION,
+    DPI,
+    PT_PER_IN,
+    REFERENCE,
+    UM_PER_MM,
+    grey,
+    save,
+    write,
+)
 from morfax.reports.coloured import error_lines
-from morfax.reports.looks import LINE_PT, NAME_PT, NUMBERS_PT, THIN_PT, WORDS_PT
+from morfax.reports.looks import (
+    BELOW_PT,
+    BESIDE_PT,
+    BOLD_PT,
+    LINE_PT,
+    NAME_PT,
+    NUMBERS_PT,
+    ON_SPOTS,
+    SPOT_PT,
+    THIN_PT,
+    WORDS_PT,
+)
 from morfax.reports.page import INSETS, Page, lay_out
 from morfax.reports.plate import (
     BLACK,
@@ -36,7 +56,7 @@ from morfax.reports.plate import (
 )
 
 if TYPE_CHECKING:
-    from morfax.jobs.who_led import WhoLed
+    from morfax.jobs.remarks.who_led import WhoLed
     from morfax.tracer.drawing.drawing import Drawing
     from morfax.tracer.ink.left_out import Area
 
@@ -45,7 +65,6 @@ RAISED = "#1f5fbf"  # stops, and ways with the tool up
 UNMEASURED = "#8a8a8a"  # the path where its error cannot be measured
 MARGIN_SHARE = 0.06  # of the larger side, round the path
 MARGIN_RIGHT = 0.28  # of the width: room for a legend where no corner is free
-PT_PER_IN = 72
 NARROWEST = 0.35  # shorter to longer side of what is shown
 # along an enlargement: each number of all takes a hundredth of a picture's time
 FEW_NUMBERS = 4
@@ -83,7 +102,8 @@ def draw(picture: Picture, file: FilePath) -> None:
         plates.append((box, _enlarged(picture, place_mm, number)))
         at = (float(place_mm[0]), float(place_mm[1]))
         main.add(
-            Spot(at, "+", 9, BLACK, order=5), Words(at, str(number), NAME_PT, offset_pt=(9, 9))
+            Spot(at, "+", SPOT_PT, BLACK, order=ON_SPOTS),
+            Words(at, str(number), NAME_PT, offset_pt=BESIDE_PT),
         )
     labels.spread(main, page.main.width_in * PT_PER_IN, page.main.height_in * PT_PER_IN)
     if file.suffix.lower() == PIXELS:
@@ -126,7 +146,7 @@ def _whole(picture: Picture, view: View, page: Page) -> tuple[Plate, Colours | N
         )
     plate = Plate(view, title if len(title) <= letters else f"{title[: letters - 1]}…")
     _ground(plate, picture)
-    scale = _contour(plate, picture, line_pt=1.8)
+    scale = _contour(plate, picture)
     if picture.led is not None:
         plate.add(*leaders.lines(picture.led))
     _ends(plate, picture.path)
@@ -154,16 +174,16 @@ def _is_measured(picture: Picture) -> bool:
     return bool(np.isfinite(error_mm).any())
 
 
-def _contour(plate: Plate, picture: Picture, line_pt: float) -> Colours | None:
+def _contour(plate: Plate, picture: Picture) -> Colours | None:
     """Draw the path, its error in colour if that is known; gives what the colours mean."""
     measured = _is_measured(picture)
     if runs := picture.path.runs():
         colour = UNMEASURED if measured else PLAIN
-        plate.add(Line(with_gaps(runs), colour, line_pt * 0.6))
+        plate.add(Line(with_gaps(runs), colour, LINE_PT))
     if not measured:
         return None
     assert picture.points_mm is not None and picture.error_mm is not None
-    lines, scale = error_lines(picture.points_mm, picture.error_mm, plate.view, line_pt)
+    lines, scale = error_lines(picture.points_mm, picture.error_mm, plate.view, BOLD_PT)
     plate.add(*lines)
     return scale
 
@@ -176,8 +196,8 @@ def _ends(plate: Plate, path: Path) -> None:
     x, y = runs[0][0].tolist()
     end_x, end_y = runs[-1][-1].tolist()
     plate.add(
-        Spot((x, y), "o", 7, "#2a7f3f", "start"),
-        Spot((end_x, end_y), "s", 7, "#7a3fa0", "end"),
+        Spot((x, y), "o", SPOT_PT, "#2a7f3f", "start"),
+        Spot((end_x, end_y), "s", SPOT_PT, "#7a3fa0", "end"),
     )
 
 
@@ -190,7 +210,15 @@ def _numbers(plate: Plate, picture: Picture) -> None:
         :MOST_NUMBERED
     ]
     for number, place_mm in picture.numbers_mm if len(lowest) < MOST_NUMBERED else lowest:
-        plate.add(Words(place_mm, number, WORDS_PT, offset_pt=(-11, -11), ring=REFERENCE))
+        plate.add(
+            Words(
+                place_mm,
+                number,
+                WORDS_PT,
+                offset_pt=(-BELOW_PT[0], BELOW_PT[1]),
+                ring=REFERENCE,
+            )
+        )
 
 
 def _stops(plate: Plate, picture: Picture) -> None:
@@ -202,8 +230,12 @@ def _stops(plate: Plate, picture: Picture) -> None:
     written, named = labels.shortened(picture.stops_mm), set[str]()
     for name, place_mm in picture.stops_mm.items():
         words, label = written[name]
-        plate.add(Spot(place_mm, "D", 6, RAISED, "" if label in named else label, order=5))
-        plate.add(Words(place_mm, words, WORDS_PT, RAISED, (7, 7)))
+        plate.add(
+            Spot(
+                place_mm, "D", SPOT_PT, RAISED, "" if label in named else label, order=ON_SPOTS
+            )
+        )
+        plate.add(Words(place_mm, words, WORDS_PT, RAISED, BESIDE_PT))
         named.add(label)
 
 
@@ -221,7 +253,7 @@ def _enlarged(picture: Picture, place_mm: Array, number: int) -> Plate:
         view, title, WORDS_PT, numbers_pt=NUMBERS_PT, most_numbers=FEW_NUMBERS, names=None
     )
     _ground(plate, picture)
-    _contour(plate, picture, line_pt=2.2)
+    _contour(plate, picture)
     return plate
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from morfax.jobs.compare import CompareResult
     from morfax.jobs.play import PlayResult
     from morfax.jobs.run import RunResult
-    from morfax.jobs.settings import DrawingFile
+    from morfax.jobs.settings.settings import DrawingFile
     from morfax.jobs.systems import SystemsResult
     from morfax.jobs.trace import TraceResult
     from morfax.motion.faults import LineFault
@@ -173,7 +173,7 @@ def draw_punched(program: FilePath, file: FilePath) -> int:
 
 def _draw_flat(drawing: Drawing, beside: FilePath) -> None:
     """Draw how a photograph was made flat, if the drawing is one, beside another picture."""
-    from morfax.jobs.flattening import picture_beside
+    from morfax.jobs.settings.flattening import picture_beside
     from morfax.reports.flattening import draw_flattening
 
     file = picture_beside(beside, drawing)

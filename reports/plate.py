@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.reports.looks import SPOTS, TITLE_PT
 
 View = tuple[float, float, float, float]  # left, right, bottom, top, mm on the sheet
 Place = tuple[float, float]
@@ -51,7 +52,7 @@ class Spot:
     size_pt: float
     colour: str
     label: str = ""
-    order: int = 4
+    order: int = SPOTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +99,8 @@ class Plate:
 
     view: View
     title: str = ""
-    title_pt: float = 10.0
-    numbers_pt: float = 10.0  # along the axes
+    title_pt: float = TITLE_PT
+    numbers_pt: float = TITLE_PT  # along the axes
     most_numbers: int | None = None  # along an axis; None: as many as there is room for
     names: tuple[str, str] | None = ("X, mm", "Y, mm")  # of the axes
     ground: Ground | None = None

@@ -6,7 +6,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from morfax.reports.canvas import REFERENCE, save, sheet_figure, show_drawing
-from morfax.reports.looks import GRID, SEE_THROUGH, WORDS_PT
+from morfax.reports.looks import GRID, SEE_THROUGH, SPOT_PT, WORDS_PT
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
@@ -28,7 +28,7 @@ def draw_sheet(
     for (name, (x, y)), (marker, colour) in zip(places_mm.items(), MARKS, strict=False):
         if extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]:
             label = f"{name} {x:.1f},{y:.1f}"
-            style = {"markersize": 12, "linestyle": "none"}
+            style = {"markersize": 2 * SPOT_PT, "linestyle": "none"}
             axes.plot(x, y, marker, color=colour, label=label, **style)  # type: ignore[arg-type]
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper right", fontsize=WORDS_PT, framealpha=SEE_THROUGH)

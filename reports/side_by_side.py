@@ -14,8 +14,27 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
-from morfax.reports.canvas import REFERENCE, UM_PER_MM, new_figure, show_drawing
-from morfax.reports.looks import GRID, NAME_PT, NUMBERS_PT, THIN_PT, TITLE_PT, WORDS_PT
+from morfax.reports.canvas import (
+    NUMBERS_IN,
+    PANEL_IN,
+    REFERENCE,
+    UM_PER_MM,
+    WIDE_IN,
+    new_figure,
+    show_drawing,
+)
+from morfax.reports.looks import (
+    BESIDE_PT,
+    GRID,
+    NAME_PT,
+    NUMBERS_PT,
+    ON_PATHS,
+    ON_SPOTS,
+    SPOT_PT,
+    THIN_PT,
+    TITLE_PT,
+    WORDS_PT,
+)
 from morfax.reports.overlay import LIGHT, Picture, view_of
 
 if TYPE_CHECKING:
@@ -41,7 +60,7 @@ def contours(
 ) -> Figure:
     """All contours over the drawing; enlarged where each is furthest from the traced path, and at corners."""
     ran = [result for result in results if result.path is not None]
-    figure = new_figure(11, 11)
+    figure = new_figure(WIDE_IN, WIDE_IN)
     grid = figure.add_gridspec(3, 3, height_ratios=(2.1, 1, 1))
     main = figure.add_subplot(grid[0, :])
     view = view_of(Picture(title, traced, reference=traced))
@@ -60,23 +79,27 @@ def contours(
             f"{number}: {what} at {place_mm[0]:.1f}, {place_mm[1]:.1f}",
         )
         main.annotate(
-            str(number), tuple(place_mm), (7, 7), textcoords="offset points", fontsize=NAME_PT
+            str(number),
+            tuple(place_mm),
+            BESIDE_PT,
+            textcoords="offset points",
+            fontsize=NAME_PT,
         )
-        main.plot(*place_mm, "+", color="black", markersize=8)
+        main.plot(*place_mm, "+", color="black", markersize=SPOT_PT)
     return figure
 
 
 def errors(results: Sequence[SystemResult]) -> Figure:
     """The signed distance of each contour from the ink's centre along the way; all on one scale."""
     ran = [result for result in results if result.from_ink is not None]
-    figure = new_figure(11, 0.9 + 1.5 * max(1, len(ran)))
+    figure = new_figure(WIDE_IN, NUMBERS_IN + PANEL_IN * max(1, len(ran)))
     panels = figure.subplots(max(1, len(ran)), 1, squeeze=False, sharex=True, sharey=True)[:, 0]
     for axes, result in zip(panels, ran, strict=False):
         assert result.from_ink is not None
         points = result.from_ink.points_mm
         error_um = result.from_ink.error_mm * UM_PER_MM
         way_mm = lengths_mm(points)
-        axes.axhline(0, color=REFERENCE, linewidth=0.6)
+        axes.axhline(0, color=REFERENCE, linewidth=THIN_PT)
         axes.plot(way_mm, error_um, color=COLOURS[result.suffix], linewidth=THIN_PT)
         axes.set_ylabel("µm")
         axes.set_title(result.name, fontsize=NAME_PT, loc="left")
@@ -93,7 +116,7 @@ def _lines(
         "color": "black",
         "linewidth": 1.0,
         "linestyle": (0, (4, 3)),
-        "zorder": 5,
+        "zorder": ON_SPOTS,
     }
     for number, run in enumerate(traced.runs()):
         axes.plot(*((run - origin_mm) * scale).T, label=None if number else "traced", **style)
@@ -106,7 +129,7 @@ def _lines(
                 color=COLOURS[result.suffix],
                 linewidth=1.0,
                 label=label,
-                zorder=3,
+                zorder=ON_PATHS,
             )
 
 

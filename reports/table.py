@@ -32,6 +32,7 @@ _UNITS: dict[str, Callable[[Any], str]] = {
     "_per_mm": lambda value: f"{value:g} per mm",
     "_place_mm": lambda value: units.format_place_mm(*value[:2]),
     "_mm": lambda value: units.format_length_mm(round(value, _LENGTH_DECIMALS)),
+    "_mm2": lambda value: f"{value:.1f} mm2",
     "_deg": lambda value: f"{value:.1f} degrees",
     "_hz": units.format_frequency_hz,
     "_s": units.format_time_s,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from morfax.reports.axis_numbers import numbers
 from morfax.reports.canvas import DPI, new_figure
 from morfax.reports.lettering import legend_share
-from morfax.reports.looks import SEE_THROUGH, WORDS_PT
+from morfax.reports.looks import NAMES, SEE_THROUGH, WORDS_PT
 from morfax.reports.page import Box, Page
 from morfax.reports.plate import (
     Area,
@@ -121,13 +121,13 @@ def _line(axes: Axes, line: Line) -> None:
 
 def _words(axes: Axes, words: Words) -> None:
     """Write words beside a place, or with their middle on it."""
-    style: dict[str, Any] = {"fontsize": words.size_pt, "color": words.colour, "zorder": 6}
+    style: dict[str, Any] = {"fontsize": words.size_pt, "color": words.colour, "zorder": NAMES}
     if words.ring:
         style["bbox"] = {
             "boxstyle": "circle,pad=0.2",
             "facecolor": "white",
             "edgecolor": words.ring,
-            "alpha": 0.85,
+            "alpha": SEE_THROUGH,
         }
     if words.centred:
         style |= {"ha": "center", "va": "center"}

@@ -8,7 +8,7 @@ import click
 
 from morfax.console.options.groups import option
 from morfax.console.options.types import CUTTER, LEAD
-from morfax.jobs.contour_settings import ContourSettings
+from morfax.jobs.settings.contour_settings import ContourSettings
 
 GROUP = "Cutting"
 KERF = option(

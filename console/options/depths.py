@@ -9,7 +9,7 @@ import click
 
 from morfax.console.options.groups import option
 from morfax.console.options.types import COUNTED, LENGTH, RAMP
-from morfax.jobs.depths import DepthSettings
+from morfax.jobs.settings.depths import DepthSettings
 
 GROUP = "Cutting"
 DEPTHS = (

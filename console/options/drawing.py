@@ -11,9 +11,9 @@ import click
 from morfax.console.options.files import FILE
 from morfax.console.options.groups import Decorator, given_all, option
 from morfax.console.options.types import BAR, FLATTEN, LENGTH, PIXELS
-from morfax.jobs.correction_settings import CorrectionSettings
-from morfax.jobs.flattening import FlattenSettings
-from morfax.jobs.settings import DrawingFile
+from morfax.jobs.settings.correction_settings import CorrectionSettings
+from morfax.jobs.settings.flattening import FlattenSettings
+from morfax.jobs.settings.settings import DrawingFile
 from morfax.recorder.drawings.drawn_units import UNITS_MM
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import click
 from morfax.console.options.files import machine_names
 from morfax.console.options.groups import option, renamed
 from morfax.console.options.types import ANGLE, FEED, LENGTH, NUMBER, PLACE
-from morfax.jobs.recording import PICK_UPS, RecordingUnit
+from morfax.jobs.machine.recording import PICK_UPS, RecordingUnit
 
 GROUP = "Program"
 _OF_THE_JOB = ("origin_mm", "made")  # no options

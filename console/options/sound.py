@@ -11,7 +11,7 @@ import click
 
 from morfax.console.options.groups import option
 from morfax.console.options.types import TIME
-from morfax.jobs.live import STANDSTILL_S, WAIT_S, Intake, Outlet
+from morfax.jobs.media.live import STANDSTILL_S, WAIT_S, Intake, Outlet
 
 DEVICE = "a sound device: its number, its name or a part of it, as `morfax devices` lists them"
 

@@ -10,7 +10,7 @@ from typing import Any
 from morfax.console.options.files import FILE, machine_names
 from morfax.console.options.groups import option, renamed
 from morfax.console.options.types import AXES, FREQUENCY, NUMBER, PLACES, TRACKS
-from morfax.jobs.playing import ByHand
+from morfax.jobs.machine.playing import ByHand
 
 CYCLES_PER_MM = NUMBER
 

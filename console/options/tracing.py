@@ -28,8 +28,13 @@ from morfax.console.options.types import (
     ZERO,
 )
 from morfax.console.terminal import attended
-from morfax.jobs.line_settings import LineSettings
-from morfax.jobs.settings import HeadSettings, ProgramSettings, ToolSettings, TraceSettings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import (
+    HeadSettings,
+    ProgramSettings,
+    ToolSettings,
+    TraceSettings,
+)
 
 # the head's and the tool's own, stated here for --help, which does not wait for the tracer
 DEFAULTS = {

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
-from morfax.jobs.files import incomplete
+from morfax.jobs.media.files import incomplete
 from morfax.motion.faults import LineFault
 
 if TYPE_CHECKING:

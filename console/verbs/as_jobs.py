@@ -22,11 +22,11 @@ from morfax.console.options.tape import tape_options
 from morfax.console.options.tracing import trace_options
 from morfax.console.verbs.correct import asked_corrections
 from morfax.jobs.correct import CorrectJob
-from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.lines import LinesJob
+from morfax.jobs.machine.playing import ByHand
 from morfax.jobs.play import ControlSettings, PlayJob
-from morfax.jobs.playing import ByHand
 from morfax.jobs.run import RunJob
+from morfax.jobs.settings.line_settings import LineSettings
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
 

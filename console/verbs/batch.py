@@ -20,8 +20,8 @@ from morfax.console.terminal.counted import count_all
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.recording import RecordingUnit
-    from morfax.jobs.settings import DrawingFile, TraceSettings
+    from morfax.jobs.machine.recording import RecordingUnit
+    from morfax.jobs.settings.settings import DrawingFile, TraceSettings
     from morfax.tracer.operator.operator import Panel
 
 SOME_FAILED = 1

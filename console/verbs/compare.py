@@ -17,15 +17,15 @@ from morfax.console.options.systems import Systems
 from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.console.options.types import CUTTER, LENGTH, LINES, PLACE, SPEED, ZERO
 from morfax.jobs.compare import CompareJob
-from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.results import NAMES
-from morfax.jobs.settings import HeadSettings, TraceSettings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import HeadSettings, TraceSettings
 from morfax.jobs.systems import SystemsJob
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.playing import ByHand
-    from morfax.jobs.settings import DrawingFile
+    from morfax.jobs.machine.playing import ByHand
+    from morfax.jobs.settings.settings import DrawingFile
 
 BEYOND_TOLERANCE = 1
 OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")  # options that only --systems takes

@@ -15,7 +15,7 @@ from morfax.jobs.inspect import InspectJob
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.playing import ByHand
+    from morfax.jobs.machine.playing import ByHand
 
 EXAMPLES = """\b
 Examples:

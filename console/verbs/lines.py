@@ -12,12 +12,12 @@ from morfax.console.options.drawing import drawing_options
 from morfax.console.options.files import FILE, PICTURES, Result
 from morfax.console.options.groups import Verb, option
 from morfax.console.options.tracing import GAP, LINE_WIDTH
-from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.lines import LinesJob
+from morfax.jobs.settings.line_settings import LineSettings
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.settings import DrawingFile
+    from morfax.jobs.settings.settings import DrawingFile
 
 EXAMPLES = """\b
 Examples:

@@ -16,7 +16,7 @@ from morfax.jobs.mend import MendJob
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.playing import ByHand
+    from morfax.jobs.machine.playing import ByHand
 
 EXAMPLES = """\b
 Examples:

@@ -21,8 +21,8 @@ from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.live import Intake
-    from morfax.jobs.playing import ByHand
+    from morfax.jobs.machine.playing import ByHand
+    from morfax.jobs.media.live import Intake
 
 EXAMPLES = """\b
 Examples:

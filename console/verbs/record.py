@@ -19,9 +19,9 @@ from morfax.jobs.record import RecordJob
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.live import Outlet
-    from morfax.jobs.recording import RecordingUnit
-    from morfax.jobs.zero import Zero
+    from morfax.jobs.machine.recording import RecordingUnit
+    from morfax.jobs.media.live import Outlet
+    from morfax.jobs.settings.zero import Zero
 
 EXAMPLES = """\b
 Examples:

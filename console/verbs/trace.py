@@ -18,8 +18,8 @@ from morfax.jobs.trace import NAME, TraceJob, TraceOutputs
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.recording import RecordingUnit
-    from morfax.jobs.settings import DrawingFile, TraceSettings
+    from morfax.jobs.machine.recording import RecordingUnit
+    from morfax.jobs.settings.settings import DrawingFile, TraceSettings
     from morfax.tracer.operator.operator import Panel
 
 EXAMPLES = """\b

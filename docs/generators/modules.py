@@ -10,9 +10,11 @@ ROOT = Path(__file__).parents[2]
 PAGE = "reference/modules.md"
 # in the order in which they may ask each other, lowest first; a package that is not named comes last
 PACKAGES = ("motion", "tracer", "recorder", "player", "jobs", "reports", "console")
-TRACER = (
-    *("drawing", "sensing", "marks", "head", "junctions"),
-    *("tangles", "following", "operator", "program", "cutter"),
+ORDER = (
+    *("flatten", "corrections", "drawing", "sensing", "marks", "head", "junctions"),
+    *("tangles", "following", "ink", "operator", "program", "cutter"),
+    *("passes", "lines", "against_ink", "laid", "nets"),
+    *("media", "readings", "settings", "machine", "remarks", "tracing"),
 )
 
 
@@ -27,11 +29,11 @@ def all_modules() -> str:
 
 
 def rooms(package: Path) -> list[str]:
-    """The tables of a package and of its rooms."""
+    """The tables of a package and of its rooms, each followed by the rooms within it."""
+    order = {name: place for place, name in enumerate(ORDER)}
     below = [file.parent for file in package.glob("*/__init__.py")]
-    order = {name: place for place, name in enumerate(TRACER)}
     below.sort(key=lambda room: (order.get(room.name, 0), room.name))
-    return [table(room) for room in (package, *below)]
+    return [table(package), *(text for room in below for text in rooms(room))]
 
 
 def table(room: Path) -> str:

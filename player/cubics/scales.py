@@ -32,9 +32,8 @@ from morfax.motion.compiled import njit
 from morfax.player.cubics.time_base import TimeBase
 
 RIGHT_LAG = 0.5  # of a coarse digit
-EDGE_COUNTS = (
-    1e-6  # a phase that ends with a pulse lets it through; far above the rounding of a double
-)
+# a phase that ends with a pulse lets it through; far above the rounding of a double
+EDGE_COUNTS = 1e-6
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,9 +20,8 @@ from morfax.recorder.gcode.check_sum import demand_right
 BYTE_ORDER_MARK = "\ufeff"
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 WORD = re.compile(f"([A-Z])({_NUMBER})")
-PROGRAM_NUMBER = re.compile(
-    r"O\d+"
-)  # a line of its own before all words, as LinuxCNC and Fanuc have it
+# a line of its own before all words, as LinuxCNC and Fanuc have it
+PROGRAM_NUMBER = re.compile(r"O\d+")
 COMMENT = re.compile(r"\([^()]*\)|;.*")
 
 

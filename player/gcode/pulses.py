@@ -52,7 +52,6 @@ LARGEST_ARC = math.radians(170)  # below the half turn that the residue loops ta
 STANDSTILL_S = 0.25  # before the first move and behind the last: the lag runs off
 _DWELL_AT_ONCE = 65536  # recirculations
 
-
 Counts = NDArray[np.int64]
 Pulses = NDArray[np.int8]
 

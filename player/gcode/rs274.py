@@ -83,9 +83,8 @@ class GcodeReader:
     ending = (
         "M2, M30 or % (for Grbl and Marlin, with --machine grbl-router or marlin, anywhere)"
     )
-    takes_number = (
-        True  # whether a line such as O1000 may come first, the number of the program
-    )
+    # whether a line such as O1000 may come first, the number of the program
+    takes_number = True
     unended = ""  # the note on a program without an end, where its control takes that, and ends as a rule
 
     def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:

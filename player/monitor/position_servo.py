@@ -49,9 +49,8 @@ COUNTER, RISEN, MODE = range(3)  # of the counter's registers, shared by all axe
 UP, CONSTANT, DOWN, ARRIVED = 1, 0, -1, 2
 AT_ONCE = 6000  # rows of a move: a second
 CREEP_INCREMENTS = 0.25  # of which the least speed of a move is
-STRAIGHT_INCREMENTS = (
-    50  # before its end an arc is run straight: 0.05 mm, 0.06 um beside a radius of 5 mm
-)
+# before its end an arc is run straight: 0.05 mm, 0.06 um beside a radius of 5 mm
+STRAIGHT_INCREMENTS = 50
 
 Counts = NDArray[np.int64]
 

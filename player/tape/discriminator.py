@@ -36,9 +36,8 @@ from morfax.player.tape.predictor import count_turns, predictor_gains
 SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
 CHUNK_ROWS = 1024  # what the kernel has in the processor's cache at a time
 GROUP = 8  # taps that the kernel has in its registers at a time
-ROOM_ROWS = (
-    512  # before the first of a block: dropouts hold back 13 to 170 rows of the one before it
-)
+# before the first of a block: dropouts hold back 13 to 170 rows of the one before it
+ROOM_ROWS = 512
 
 Frames = NDArray[np.float32 | np.int16]
 Float32s = NDArray[np.float32]

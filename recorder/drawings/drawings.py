@@ -31,9 +31,8 @@ from morfax.recorder.report import Written
 
 MARGIN_MM = 1.0  # round an SVG, so that its lines are not cut off by half
 LINE_MM = 0.1  # width of an SVG's lines
-WIDEST_ARC_RAD = (
-    2.5  # of an SVG: at half a turn a digit of 0.1 um in its radius moves the centre by 1 um
-)
+# of an SVG: at half a turn a digit of 0.1 um in its radius moves the centre by 1 um
+WIDEST_ARC_RAD = 2.5
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,32 +17,15 @@ from morfax.recorder.gcode.takes import read_takes, read_tool
 
 SUFFIXES = (".ngc", ".nc", ".gcode", ".tap", ".cnc", ".plt", ".hpgl")
 CONTROL = re.compile(r"[^\x20-\x7e]")  # what is no printable character of ASCII
-# letters that do not come apart into one of ASCII and an accent, as people write them without
-WRITTEN = str.maketrans(
-    {
-        "ä": "ae",
-        "ö": "oe",
-        "ü": "ue",
-        "Ä": "Ae",
-        "Ö": "Oe",
-        "Ü": "Ue",
-        "ß": "ss",
-        "ø": "o",
-        "Ø": "O",
-    }
-    | {
-        "æ": "ae",
-        "Æ": "Ae",
-        "å": "aa",
-        "Å": "Aa",
-        "ł": "l",
-        "Ł": "L",
-        "đ": "d",
-        "Đ": "D",
-        "œ": "oe",
-    }
-    | {"µ": "u", "–": "-", "—": "-", "×": "x", "’": "'", "“": '"', "”": '"', "„": '"'}
+# as people write without them: umlauts; letters that do not come apart into one of ASCII and an accent; signs
+UMLAUTS = {"ä": "ae", "ö": "oe", "ü": "ue", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue", "ß": "ss"}
+LETTERS = dict(
+    zip(
+        "øØæÆåÅłŁđĐœ", ["o", "O", "ae", "Ae", "aa", "Aa", "l", "L", "d", "D", "oe"], strict=True
+    )
 )
+SIGNS = dict(zip("µ–—×’“”„", 'u--x\'"""', strict=True))
+WRITTEN = str.maketrans(UMLAUTS | LETTERS | SIGNS)
 PLACEHOLDER = re.compile(r"\{(\w+)\}")
 SHORTEST_LINE = 64  # characters; an arc with its feed has up to 60
 NUMBER_LONG = 7  # characters of a line number, such as "N99990 "

@@ -39,9 +39,8 @@ from morfax.recorder.tape.told_figures import Stated, frame_of
 CYCLES_PER_SUBCARRIER = 6.0  # of the reference
 CYCLES_PER_SYMBOL = 24.0
 CYCLES_PER_FRAME = SYMBOLS * CYCLES_PER_SYMBOL
-GAUGE_S = (
-    0.002  # a speed is told from change to change over this, as long as the player's filter
-)
+# a speed is told from change to change over this, as long as the player's filter
+GAUGE_S = 0.002
 
 
 class CheckWriter:

@@ -42,13 +42,14 @@ class TapeEntries(TypedDict, total=False):
     alike: Sequence[str] | None
 
 
-def format_of(source: Source, by_hand: dict[str, float | None]) -> TapeFormat:
+def format_of(source: Source, by_hand: TapeEntries) -> TapeFormat:
     """The tape's format, from its text or by hand; raises TapeFault."""
+    entries = {name: by_hand.get(name) for name in _EXAMPLES}
     given: dict[str, Any] = {
-        name: value for name, value in by_hand.items() if value is not None
+        name: value for name, value in entries.items() if value is not None
     }
     stated = _stated(source)
-    if stated is None and len(given) < len(by_hand):
+    if stated is None and len(given) < len(_EXAMPLES):
         lacks = " ".join(example for name, example in _EXAMPLES.items() if name not in given)
         raise TapeFault(
             f"{source.name} does not say its format (no text chunk); give {lacks}, or whatever the tape has"

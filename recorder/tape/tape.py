@@ -9,7 +9,7 @@ Source: patent ES 361967, figure 5 (the tracks that the machine is given).
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Unpack
 
 from morfax.motion.ending import Ending
@@ -48,27 +48,16 @@ class Tape(Ending):
         return cls.of(FileSource(file), **by_hand)
 
     @classmethod
-    def of(
-        cls,
-        source: Source,
-        *,
-        reference_hz: float | None = None,
-        cycles_per_mm: float | None = None,
-        start_mm: Sequence[float] | None = None,
-        order: Sequence[int] | None = None,
-        still: Sequence[str] | None = None,
-        alike: Sequence[str] | None = None,
-    ) -> Tape:
-        """The tape in a source, with what is given of it by hand (`TapeEntries`).
+    def of(cls, source: Source, **by_hand: Unpack[TapeEntries]) -> Tape:
+        """The tape in a source, with what is given of it by hand.
 
         Raises TapeFault if it has too few tracks, or is of unknown format; the source is closed then.
         """
         try:
             _check_tracks(source)
-            by_hand = {"reference_hz": reference_hz, "cycles_per_mm": cycles_per_mm}
-            fmt = format_of(source, by_hand)
-            fmt = allowed(started(fmt, start_mm), still, alike)
-            return cls(source, fmt, columns_of(order, fmt.tracks))
+            fmt = started(format_of(source, by_hand), by_hand.get("start_mm"))
+            fmt = allowed(fmt, by_hand.get("still"), by_hand.get("alike"))
+            return cls(source, fmt, columns_of(by_hand.get("order"), fmt.tracks))
         except BaseException:
             source.close()
             raise

@@ -32,9 +32,8 @@ from morfax.recorder.tape.check_frame import (
 
 STEPS_PER_OCTAVE = 1 << 20
 LEAST_OCTAVE, OCTAVES = -16, 32  # 1.5e-5 to 65 536 cycles per mm; beyond nothing is told
-CODES = (
-    126  # of a speed or an acceleration, without that of rest and that of more than can be told
-)
+# of a speed or an acceleration, without that of rest and that of more than can be told
+CODES = 126
 
 
 class Stated(NamedTuple):

@@ -29,7 +29,7 @@ from morfax.batch.row import BatchRow
 from morfax.batch.tally import Tally
 from morfax.console.terminal.counted import count_all
 from morfax.console.terminal.desk import Desk
-from morfax.jobs.settings import DrawingFile, HeadSettings, TraceSettings
+from morfax.jobs.settings.settings import DrawingFile, HeadSettings, TraceSettings
 from morfax.motion.faults import FileFault
 from tests.console.conftest import Morfax, here, morfax
 

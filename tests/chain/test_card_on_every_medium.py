@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from morfax.jobs.listener import SILENT
-from morfax.jobs.settings import DrawingFile, ProgramSettings, TraceSettings
-from morfax.jobs.tracing import Tracing
+from morfax.jobs.settings.settings import DrawingFile, ProgramSettings, TraceSettings
+from morfax.jobs.tracing.tracing import Tracing
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.motion import thin
 from morfax.motion.segments import Limits
@@ -41,9 +41,8 @@ SHORTEST_MM = 0.3  # of a move of Z: half of the shortest on a card, its clear o
 SHORTEST_S = 0.3  # of a dwell; the head's own stands at a swivel are shorter
 DEPTH_MM = 0.02  # two steps of the stepping motors
 PLACE_MM = 0.05  # of a stop: two steps, and what a head's own way about the stop is
-FEED_SHARE = (
-    0.05  # the pulse control's own feed is -10.6 ... +1.9 % on three axes, within 1 % on one
-)
+# the pulse control's own feed is -10.6 ... +1.9 % on three axes, within 1 % on one
+FEED_SHARE = 0.05
 DWELL_S = 0.1  # speeding up and braking beside it
 
 

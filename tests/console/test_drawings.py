@@ -15,7 +15,7 @@ from PIL import Image
 
 from morfax.console.options.tracing import DEFAULTS
 from morfax.console.verbs.trace import command
-from morfax.jobs.settings import TraceSettings
+from morfax.jobs.settings.settings import TraceSettings
 from morfax.motion.contour import distance
 from morfax.motion.pathfile import read_path
 from morfax.tracer.drawing import components as patches

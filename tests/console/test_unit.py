@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from morfax.jobs import recording as unit
+from morfax.jobs.machine import recording as unit
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.pathfile import read_path, write_path
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS

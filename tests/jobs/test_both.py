@@ -8,10 +8,10 @@ import pytest
 from PIL import Image
 
 from morfax.jobs.compare import CompareJob
-from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.lines import LinesJob
 from morfax.jobs.run import RunJob, RunResult
-from morfax.jobs.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import DrawingFile, TraceSettings
 from tests.tracer.inked import UM
 from tests.tracer.program.test_ink_and_edges import (
     DISC,

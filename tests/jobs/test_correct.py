@@ -11,10 +11,10 @@ import pytest
 from PIL import Image
 
 from morfax.jobs.correct import CorrectJob
-from morfax.jobs.correction_settings import CorrectionSettings
-from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.lines import LinesJob
-from morfax.jobs.settings import DrawingFile, ProgramSettings, TraceSettings
+from morfax.jobs.settings.correction_settings import CorrectionSettings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import DrawingFile, ProgramSettings, TraceSettings
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import CardFault, DrawingFault

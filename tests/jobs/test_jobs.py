@@ -21,16 +21,16 @@ from PIL import Image
 from morfax.jobs.age import AgeJob
 from morfax.jobs.check import CheckJob
 from morfax.jobs.compare import CompareJob
-from morfax.jobs.contour_settings import ContourSettings
 from morfax.jobs.inspect import InspectJob
-from morfax.jobs.line_settings import LineSettings
+from morfax.jobs.machine.playing import ByHand
+from morfax.jobs.machine.recording import RecordingUnit
 from morfax.jobs.mend import MendJob
 from morfax.jobs.play import ControlSettings, PlayJob
-from morfax.jobs.playing import ByHand
 from morfax.jobs.record import RecordJob
-from morfax.jobs.recording import RecordingUnit
 from morfax.jobs.run import RunJob
-from morfax.jobs.settings import (
+from morfax.jobs.settings.contour_settings import ContourSettings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import (
     MEASURED,
     READ,
     DrawingFile,
@@ -217,6 +217,16 @@ def test_check(here: Path, path_file: Path) -> None:
     assert not beside.may_start and beside.figures["findings"][0]["kind"] == "stock"
 
 
+def test_straight_plunges_are_no_cut_length(here: Path) -> None:
+    """A square of 10 mm in two passes, at depths of 1 and 2 mm: 80 mm, whatever Z goes."""
+    rounds = "".join(f"G1 Z-{z} F60\nG1 X10\nG1 Y10\nG1 X0\nG1 Y0\n" for z in (1, 2))
+    (here / "square.nc").write_text(
+        f"G21 G90 G17\nG0 X0 Y0 Z2\nM3 S1000\n{rounds}G0 Z2\nM5\nM2\n"
+    )
+    result, _ = worked(CheckJob(here / "square.nc", machine="grbl-router"))
+    assert result.figures["cut_length_mm"] == pytest.approx(80.0)
+
+
 def test_age_and_mend(here: Path, tape_file: Path) -> None:
     aged, listener = worked(AgeJob(tape_file, here / "worn.wav", parts=(("noise_db", 40.0),)))
     assert aged.tape.exists() and listener.done[f"wearing {tape_file.name}"][-1] == 1
@@ -395,7 +405,7 @@ def test_jobs_know_no_terminal_and_load_no_machine() -> None:
         f"print([name for name in {absent} if name in sys.modules])\n"
         "from pathlib import Path\n"
         "from morfax.jobs import TraceJob\n"
-        "from morfax.jobs.settings import DrawingFile\n"
+        "from morfax.jobs.settings.settings import DrawingFile\n"
         "from morfax.jobs.trace import TraceOutputs\n"
         "import tempfile\n"
         "with tempfile.TemporaryDirectory() as folder:\n"

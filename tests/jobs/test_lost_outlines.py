@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from morfax.jobs.line_settings import LineSettings
-from morfax.jobs.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import DrawingFile, TraceSettings
 from morfax.jobs.trace import TraceJob, TraceOutputs, TraceResult
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.lost_outlines import without_lost
+from morfax.tracer.program.lines.lost_outlines import without_lost
 from tests.jobs.test_told_ink import Heard
 from tests.tracer.inked import arc
 

@@ -9,13 +9,13 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from morfax.jobs.line_settings import LineSettings
 from morfax.jobs.listener import Silent
-from morfax.jobs.remarks_on_ink import of_ink
-from morfax.jobs.settings import TraceSettings
-from morfax.jobs.tracing import Tracing
+from morfax.jobs.remarks.on_ink import of_ink
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import TraceSettings
+from morfax.jobs.tracing.tracing import Tracing
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.program.selection import Others
+from morfax.tracer.program.lines.selection import Others
 from morfax.tracer.program.trace import trace
 from tests.tracer.drawing.test_skips import ring
 from tests.tracer.ink.test_pale import with_pale_bar

@@ -7,10 +7,15 @@ from typing import Any
 
 import pytest
 
-from morfax.jobs.line_settings import LineSettings
-from morfax.jobs.recording import RecordingUnit
+from morfax.jobs.machine.recording import RecordingUnit
 from morfax.jobs.run import RunJob
-from morfax.jobs.settings import DrawingFile, ProgramSettings, ToolSettings, TraceSettings
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.settings import (
+    DrawingFile,
+    ProgramSettings,
+    ToolSettings,
+    TraceSettings,
+)
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.recorder.gcode.machine import as_toml
 

@@ -69,7 +69,8 @@ class _Finder(ast.NodeVisitor):
     def visit(self, node: ast.AST) -> None:
         """Visit what may be changed; messages, types and imports are left alone."""
         left_alone = ast.Raise | ast.Assert | ast.JoinedStr | ast.Import | ast.ImportFrom
-        if not isinstance(node, left_alone):
+        for_types = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        if not isinstance(node, left_alone) and not for_types:
             super().visit(node)
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:

@@ -26,9 +26,8 @@ from tests.mutants.watch import ANYTHING
 ROOT = Path(__file__).parents[2]
 SLOWER = 3.0  # times the tests' own time, for a mutant
 SPARE_S = 30.0  # to compile the kernels of a mutant
-WAITS = (
-    10.0  # times that limit, by the clock: a mutant may also wait for ever, and take no time
-)
+# times that limit, by the clock: a mutant may also wait for ever, and take no time
+WAITS = 10.0
 
 
 @dataclass(frozen=True)

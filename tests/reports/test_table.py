@@ -18,6 +18,7 @@ FIGURES = {
     "reference_hz": 6000.0,
     "cycles_per_mm": 20.0,
     "missed_ink_share": 0.0123,
+    "solid_mm2": 12.3456,
     "played_to_traced": {"rms_mm": 0.00012, "max_mm": np.float64(0.5)},
     "played_to_ink": {"rms_mm": 3.0},
 }
@@ -39,6 +40,7 @@ def test_text_tells_each_figure_in_the_unit_that_reads_best() -> None:
     assert lines["reference"].endswith("6 kHz")
     assert lines["cycles"].endswith("20 per mm")
     assert lines["missed ink share"].endswith("1.23 %")
+    assert lines["solid"].endswith("12.3 mm2")
     assert lines["paths"].endswith("cam.csv, cam.svg")
     assert lines["within tolerance"].endswith("yes")
 

@@ -20,7 +20,7 @@ import pytest
 import soundfile
 from numpy.typing import NDArray
 
-from morfax.jobs.who_led import WhoLed
+from morfax.jobs.remarks.who_led import WhoLed
 from morfax.motion.arrays import Array
 from morfax.motion.axis import LeadScrew
 from morfax.motion.contour import distance

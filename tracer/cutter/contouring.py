@@ -47,9 +47,8 @@ class Contouring:
     lead_in: Lead | None = None
     lead_out: Lead | None = None
     start_at: StartAt | None = None  # None: with leads on the longest straight
-    by_machine: bool = (
-        False  # the direction is the machine's, and counts only where a line has one
-    )
+    # the direction is the machine's, and counts only where a line has one
+    by_machine: bool = False
     mirrored: bool = False  # the program is mirrored afterwards, which turns every line round
 
     @property

@@ -30,9 +30,8 @@ from morfax.tracer.cutter import sides
 from morfax.tracer.cutter.contouring import Lead
 
 # a lead without a cutter stays so far from other lines: our own choice, for thin cuts; a kerf can be given
-CLEAR_MM = (
-    0.001  # a place is clear if it is no nearer to a contour or line than the radius less this
-)
+# a place is clear if it is no nearer to a contour or line than the radius less this
+CLEAR_MM = 0.001
 KEPT_MM = 0.25
 EVERY_MM = 0.05  # between the places that stand for lines, where there is no cutter
 AWAY = 0.5  # of a lead's depth: the tool goes down so far from every cut; by trial

@@ -21,8 +21,8 @@ from morfax.tracer.cutter.contour import PathPlace
 from morfax.tracer.cutter.start_places import Begin
 from morfax.tracer.following.line import Leads
 from morfax.tracer.junctions.guides import GuideLine
-from morfax.tracer.program import braking
-from morfax.tracer.program.passes import BRAKE_MM_S2
+from morfax.tracer.program.passes import braking
+from morfax.tracer.program.passes.passes import BRAKE_MM_S2
 
 
 @dataclass(frozen=True, slots=True)

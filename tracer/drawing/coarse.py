@@ -12,8 +12,8 @@ and gaps of a pixel. A wider aperture makes up for that.
 
 Down to a width of 1.25 pixels outlines of 0.5 mm with slots, spikes and bays of 1.5 mm and more were right or
 told in 60 of 60, at 1 pixel in 240 of 240: there the ink of each way is held against the scan's (see
-`program.redrawn`). The operator is warned of lines that look as wide as 1.5 pixels or less: how wide they are
-cannot be told more closely, so nothing is refused: most paths on lines of 1 pixel are right.
+`program.against_ink.redrawn`). The operator is warned of lines that look as wide as 1.5 pixels or less: how
+wide they are cannot be told more closely, so nothing is refused: most paths on lines of 1 pixel are right.
 
 Source: Lanczos' window, eight pixels across, as OpenCV has it. Questions: noise is spread as well, and the
 head averages less of it: 1 um RMS on smooth lines.
@@ -33,7 +33,7 @@ from morfax.tracer.drawing.contrast import DARKER
 
 Darkness = NDArray[np.float32]
 
-FEWEST_PX = 3.0  # of the line's width: see `jobs.scale_doubts`
+FEWEST_PX = 3.0  # of the line's width: see `jobs.remarks.scale_doubts`
 TIMES = 2  # three times finer is no better: the same details, 1 um more RMS
 # of a pixel: standard deviation of the aperture; at 0.35 the gaps of small engravings stay open; by trial
 APERTURE_PX = 0.6
@@ -88,7 +88,7 @@ def note(seen_px: float, pitch_mm: float) -> str:
 def is_hard(darkness: Darkness) -> bool:
     """Whether pixels are paper or ink, and hardly any lies between: no lens has softened the lines."""
     not_paper = darkness[darkness > 1 - FULL]
-    return bool(np.mean(not_paper < FULL) < BETWEEN)
+    return bool(not_paper.size and np.mean(not_paper < FULL) < BETWEEN)
 
 
 def _left_of(darkness: Darkness, soft: Darkness) -> np.float32:

@@ -46,9 +46,8 @@ MIDDLE_AND_HIGH, APART = (50.0, 69.15), 0.5
 FAR_PX = 7  # from ink: its rims are no paper
 # pixels, and spots of the picture's softness: so near to ink is its own rim
 RIM_PX, SPOTS = 2, 2.0
-BEYOND_PX = (
-    2  # a line is made darker so much farther than that rim: up to ink, and into its edge
-)
+# a line is made darker so much farther than that rim: up to ink, and into its edge
+BEYOND_PX = 2
 TOUCHED = 0.7  # of a pale line's darkness: within the rim of ink it goes on where it is as dark
 LEAST_MM, LEAST_PX = 2.0, 8  # as for ink: what is shorter is a speck; by trial
 # letters are as low (see `lettering`): a shorter line than others counts if it stands out so much farther

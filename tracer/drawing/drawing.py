@@ -249,10 +249,12 @@ class Drawing:
             lines = within(darkness, paper_noise)
         if lines.seen_px < coarse.SEEN_PX:
             notes = (*notes, coarse.note(lines.seen_px, pitch_mm))
+        elif grain.is_too_thin(drawn_grain, lines.width_px):
+            notes = (*notes, grain.thin_note(pitch_mm))
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
         # 3. grain, of lines as they are drawn
         slit = grain.slit_for(drawn_grain, lines.width_px, pitch_mm)
-        behind = None if slit is None else _behind(slit, np.asarray(darkness), drawn_grain)
+        behind = None if slit is None else grain.mended(slit, np.asarray(darkness), drawn_grain)
         if slit is not None and behind is not None:
             darkness, notes = behind, (*notes, grain.note(slit, pitch_mm))
         # 4. too large pixels
@@ -292,9 +294,3 @@ def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Any:
     if grey.size >= large.LARGE_PX:
         return large.levelled(grey, pitch_mm)
     return levelled(grey, pitch_mm, reading.shapes_are_ink)
-
-
-def _behind(slit: grain.Slit, darkness: Darkness, drawn_grain: float) -> Darkness | None:
-    """The darkness behind a slit, if the slit mends the grain of the lines."""
-    behind = grain.behind(slit, darkness)
-    return behind if grain.mends(darkness, behind, drawn_grain) else None

@@ -13,7 +13,8 @@ enough to see them sees gaps. A slit as long as the line is straight averages th
     seen    = slit(k) of the direction k that fits best within 0.6 widths
 
 A slit across the line fits nowhere, as its flanks lie on the line too. Without them the line would get a halo
-as wide as the slit is long.
+as wide as the slit is long. What a slit some pixels wide sees is smooth: it looks at a picture reduced by as
+much, and what that and the way back soften is taken off its width.
 
 Source: our own; filters matched to a direction are the textbook's way (S. Chaudhuri and others, 1989, blood
 vessels in fundus images). Questions: ends of lines stay where they are (half of the slit is on paper there),
@@ -29,6 +30,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.tracer.drawing.coarse import finer_dpi
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
 
 Darkness = NDArray[np.float32]
@@ -39,6 +41,7 @@ LEAST_GRAIN = 0.15  # standard deviation of the ink's darkness; a clean scan has
 # no more than this share of its pieces
 LEAST_OF_SOME, JOINED = 0.08, 0.5
 LEAST_WIDTH_PX = 3.0  # of a thinner line the pixels themselves look like grain
+ENOUGH_TIMES = 2.0  # finer pixels, of lines that look 1.5 pixels wide or more
 ALONG_MM, ALONG_WIDTHS = 0.4, 0.8  # of the slit, standard deviation
 ACROSS_WIDTHS = 0.12
 FLANK_WIDTHS = 1.0  # from the slit to each of its flanks
@@ -48,6 +51,11 @@ DIRECTIONS = 16
 SPREADS = 2.5  # standard deviations of the slit: its weight beyond that is 1 %
 EMPTY = 0.3  # of the ink's darkness: where nothing is darker, behind a spot of one pixel, is no line
 TILE_PX = 512
+# a slit that is as wide on a picture reduced by one of these, standard deviation, looks at that
+REDUCED, NARROWEST_PX = (8, 4, 2), 1.0
+SOFTENED_BY = (
+    1 / 4
+)  # px²: variance of means of pixels, 1/12, and of interpolation between them, 1/6
 
 
 class Slit(NamedTuple):
@@ -62,6 +70,17 @@ class Slit(NamedTuple):
         """How far from a place the slit, its flanks and its neighbours see."""
         beside = (FLANK_WIDTHS + 3 * SMOOTH_WIDTHS + REACH_WIDTHS) * self.width_px
         return math.ceil(SPREADS * self.along_px + beside) + 2
+
+    @property
+    def by(self) -> int:
+        """By how much the picture is reduced at which it looks."""
+        return next((by for by in REDUCED if self.across_px > by * NARROWEST_PX), 1)
+
+    def reduced(self, by: int) -> Slit:
+        """The same on a picture reduced by as much, which softens it."""
+        softened_px2 = SOFTENED_BY * (by**2 - 1)
+        along, across = (math.sqrt(px**2 - softened_px2) / by for px in self[:2])
+        return Slit(along, across, self.width_px / by)
 
 
 def slit_for(grain: float, width_px: float, pitch_mm: float) -> Slit | None:
@@ -81,9 +100,24 @@ def note(slit: Slit, pitch_mm: float) -> str:
     )
 
 
+def is_too_thin(grain: float, width_px: float) -> bool:
+    """Whether lines have grain, and are so thin that no slit sees it apart from their pixels."""
+    return grain > LEAST_GRAIN and not width_px > LEAST_WIDTH_PX
+
+
+def thin_note(pitch_mm: float) -> str:
+    """What the operator should know of lines with grain that are too thin for the slit."""
+    return (
+        "the lines have grain, as of a pencil, and are fewer than 3 pixels wide, so that it is not averaged: "
+        "the path strays by up to a line's width; scan at "
+        f"{finer_dpi(pitch_mm, ENOUGH_TIMES)} dpi, or ink the lines over"
+    )
+
+
 def behind(slit: Slit, darkness: Darkness) -> Darkness:
     """The darkness of a sheet as the slit sees it, tile by tile; paper without ink stays as it is."""
-    seen, halo = darkness.copy(), slit.halo_px
+    seen, by = darkness.copy(), slit.by
+    halo = by * math.ceil(slit.halo_px / by)
     rows, columns = darkness.shape
     for top in range(0, rows, TILE_PX):
         for left in range(0, columns, TILE_PX):
@@ -92,8 +126,14 @@ def behind(slit: Slit, darkness: Darkness) -> Darkness:
             if cv2.GaussianBlur(around, (0, 0), 1.0).max() > EMPTY:
                 own = np.s_[top - first[0] :, left - first[1] :]
                 part = seen[top : top + TILE_PX, left : left + TILE_PX]
-                part[:] = _tile(slit, around)[own][: part.shape[0], : part.shape[1]]
+                part[:] = _reduced_tile(slit, around, by)[own][: part.shape[0], : part.shape[1]]
     return seen
+
+
+def mended(slit: Slit, darkness: Darkness, drawn_grain: float) -> Darkness | None:
+    """The darkness behind a slit, if the slit mends the grain of the lines."""
+    seen = behind(slit, darkness)
+    return seen if mends(darkness, seen, drawn_grain) else None
 
 
 def mends(before: Darkness, after: Darkness, grain: float) -> bool:
@@ -111,6 +151,18 @@ def _pieces(darkness: Darkness) -> int:
     """How many pieces the ink is in."""
     soft = cv2.GaussianBlur(darkness, (0, 0), SOFTENED_PX)
     return int(cv2.connectedComponents((soft > INK).view(np.uint8), connectivity=8)[0])
+
+
+def _reduced_tile(slit: Slit, darkness: Darkness, by: int) -> Darkness:
+    """The darkness of a tile as the slit sees it at the picture reduced by as much."""
+    if by == 1:
+        return _tile(slit, darkness)
+    down, right = (-size % by for size in darkness.shape)
+    whole = cv2.copyMakeBorder(darkness, 0, down, 0, right, cv2.BORDER_REPLICATE)
+    size = whole.shape[1] // by, whole.shape[0] // by
+    small = cv2.resize(whole, size, interpolation=cv2.INTER_AREA)
+    seen = _tile(slit.reduced(by), np.asarray(small, np.float32))
+    return np.asarray(cv2.resize(seen, whole.shape[::-1], interpolation=cv2.INTER_LINEAR))
 
 
 def _tile(slit: Slit, darkness: Darkness) -> Darkness:

@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
@@ -127,7 +127,7 @@ def _sample(look: _Look, paper: Paper) -> NDArray[np.float32]:
 def _inked(grey: Any, look: _Look, paper: Paper, least: float) -> NDArray[np.int32]:
     """Of each tile 0 where something is darker than the paper by this much, or near it; -1 elsewhere."""
     # 1. tiles in which that may be
-    sign = 1.0 if paper.is_light else -1.0
+    ground = _Ground.of(paper)
     levels = look.least if paper.is_light else look.largest
     span = 2 * (TILE_PX // paper.by_px // 2 + 1) + 1
     spread = (cv2.dilate if paper.is_light else cv2.erode)(
@@ -137,12 +137,12 @@ def _inked(grey: Any, look: _Look, paper: Paper, least: float) -> NDArray[np.int
         np.minimum((np.arange(n) * TILE_PX + TILE_PX // 2) // paper.by_px, size - 1)
         for n, size in zip(levels.shape, paper.reduced.shape, strict=True)
     ]
-    may_be = sign * (spread[np.ix_(*middle)] - levels) > least
+    may_be = ground.sign * (spread[np.ix_(*middle)] - levels) > least
     # 2. where it is
     marked = np.full(levels.shape, PAPER, np.int32)
     for up in np.flatnonzero(may_be.any(axis=1)).tolist():
         part = _rows(grey, up * TILE_PX, min(len(grey), (up + 1) * TILE_PX))
-        _mark(part, (up, paper.by_px), paper.reduced, (sign, least), may_be[up], marked)
+        _mark(part, up, ground, least, may_be[up], marked)
     return marked
 
 
@@ -153,10 +153,10 @@ def _kept(grey: Any, paper: Paper, marked: NDArray[np.int32]) -> Tiles:
     )
     number = number.astype(np.int32)
     kept = np.zeros((int(number.max()) + 1, TILE_PX, TILE_PX), np.uint8)
-    sign = 1.0 if paper.is_light else -1.0
+    ground = _Ground.of(paper)
     for up in np.flatnonzero((number != PAPER).any(axis=1)).tolist():
         part = _rows(grey, up * TILE_PX, min(len(grey), (up + 1) * TILE_PX))
-        _fill(part, (up, paper.by_px), paper.reduced, sign, number[up], kept)
+        _fill(part, up, ground, number[up], kept)
     rows, columns = grey.shape
     return Tiles((rows, columns), number, kept, 1.0)
 
@@ -214,30 +214,42 @@ def _means(part, by, out):  # type: ignore[no-untyped-def]
             out[i, k] = total / (high * wide)
 
 
+class _Ground(NamedTuple):
+    """The paper's levels in squares of so many pixels, and the sign of what is darker than it."""
+
+    reduced: NDArray[np.float32]
+    by_px: int
+    sign: float
+
+    @classmethod
+    def of(cls, paper: Paper) -> _Ground:
+        """That of a paper, dark on light or light on dark."""
+        return cls(paper.reduced, paper.by_px, 1.0 if paper.is_light else -1.0)
+
+
 @njit(cache=True)
-def _paper_at(reduced, by, row, column):  # type: ignore[no-untyped-def]
-    """The paper's level at a pixel, linear between the middles of the squares."""
+def _contrast(ground, row, column, level):  # type: ignore[no-untyped-def]
+    """By how much a level is darker than the paper at a pixel, linear between the middles of the squares."""
+    reduced, by = ground.reduced, ground.by_px
     y = min(max((row + 0.5) / by - 0.5, 0.0), reduced.shape[0] - 1.0)
     x = min(max((column + 0.5) / by - 0.5, 0.0), reduced.shape[1] - 1.0)
     i, j = min(int(y), reduced.shape[0] - 2), min(int(x), reduced.shape[1] - 2)
     down, along = y - i, x - j
     above = reduced[i, j] * (1 - along) + reduced[i, j + 1] * along
     below = reduced[i + 1, j] * (1 - along) + reduced[i + 1, j + 1] * along
-    return above * (1 - down) + below * down
+    return ground.sign * (above * (1 - down) + below * down - level)
 
 
 @njit(cache=True)
-def _mark(part, place, reduced, limit, may_be, marked):  # type: ignore[no-untyped-def]
+def _mark(part, up, ground, least, may_be, marked):  # type: ignore[no-untyped-def]
     """Mark those tiles of a row of tiles that have ink, and their neighbours where it comes near."""
-    (up, by), (sign, least) = place, limit
     rows, columns = part.shape
     for along in range(len(may_be)):
         if not may_be[along]:
             continue
         for a in range(rows):
             for column in range(along * TILE_PX, min(columns, (along + 1) * TILE_PX)):
-                away = _paper_at(reduced, by, up * TILE_PX + a, column) - part[a, column]
-                if sign * away <= least:
+                if _contrast(ground, up * TILE_PX + a, column, part[a, column]) <= least:
                     continue
                 b = column - along * TILE_PX
                 above = -1 if a < FRINGE_PX else 0
@@ -250,9 +262,8 @@ def _mark(part, place, reduced, limit, may_be, marked):  # type: ignore[no-untyp
 
 
 @njit(cache=True)
-def _fill(part, place, reduced, sign, number, kept):  # type: ignore[no-untyped-def]
+def _fill(part, up, ground, number, kept):  # type: ignore[no-untyped-def]
     """Fill the tiles of a row of tiles with their contrast against the paper."""
-    up, by = place
     rows, columns = part.shape
     for along in range(len(number)):
         tile = number[along]
@@ -260,6 +271,6 @@ def _fill(part, place, reduced, sign, number, kept):  # type: ignore[no-untyped-
             continue
         for a in range(rows):
             for column in range(along * TILE_PX, min(columns, (along + 1) * TILE_PX)):
-                away = _paper_at(reduced, by, up * TILE_PX + a, column) - part[a, column]
-                level = min(max(sign * away, 0.0), 255.0)
+                away = _contrast(ground, up * TILE_PX + a, column, part[a, column])
+                level = min(max(away, 0.0), 255.0)
                 kept[tile, a, column - along * TILE_PX] = int(level + 0.5)

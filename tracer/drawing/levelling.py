@@ -9,6 +9,8 @@ Source: our own. Questions: none; the patent takes ink that is black for granted
 
 from __future__ import annotations
 
+import math
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +23,7 @@ from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
     DARKER,
     LEAST_CONTRAST,
+    MOST_ASKED,
     SOFT_PX,
     Contrast,
     strokes_of,
@@ -110,7 +113,10 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness 
     else:
         seen = contrast.everywhere()
         soft = np.asarray(cv2.GaussianBlur(seen, (0, 0), SOFT_PX), np.float32)
-        least = max(least, _above_noise(soft[::EVERY, ::EVERY].ravel()))
+        some = soft[::EVERY, ::EVERY]
+        least = max(least, _above_noise(some.ravel()))
+        if least > MOST_ASKED:  # where ink takes much of the picture its levels are no noise
+            least = max(LEAST_CONTRAST, _above_neighbours(some))
         runs = runs_in(soft, least)
     patches = Patches.of([runs])
     strokes = strokes_of(patches, least, pitch_mm)
@@ -123,3 +129,9 @@ def _above_noise(sample: Darkness) -> float:
     """What is above the noise of a sample."""
     centre = median(sample)
     return centre + ABOVE_NOISE * ROBUST * median(np.abs(sample - centre))
+
+
+def _above_neighbours(sample: Darkness) -> float:
+    """What is above the noise of a sample by how much neighbours along its rows differ."""
+    differ = np.abs(np.diff(sample, axis=1)).ravel()
+    return ABOVE_NOISE * ROBUST * median(differ) / math.sqrt(2)

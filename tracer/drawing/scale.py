@@ -28,9 +28,8 @@ from morfax.tracer.drawing.scan import Grey, Scan
 LEAST_PITCH_MM, LARGEST_PITCH_MM = 0.001, 10.0
 OBLONG = 1e-3  # sides of a pixel that differ by more than this share are made alike: a fax has such pixels
 MOST_OBLONG = 4.0  # sides of a pixel; a fax has 204 x 98 dpi, at its coarsest 204 x 51
-LEAST_APART_PX = (
-    100.0  # a pixel is then 1 % of the scale; a part is no use with a greater error
-)
+# a pixel is then 1 % of the scale; a part is no use with a greater error
+LEAST_APART_PX = 100.0
 OF_A_PHOTOGRAPH = "--flatten marks, or --flatten paper=a4"
 
 Place = tuple[float, float]

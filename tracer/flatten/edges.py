@@ -24,9 +24,8 @@ from morfax.motion.arrays import Array
 Picture = NDArray[np.uint8]  # rows from the top, columns, red green blue
 
 STEP_PX = 0.25  # between the samples across an edge
-LEAST_SHARE = (
-    0.3  # of the usual difference in light: where an edge has less, something lies on it
-)
+# of the usual difference in light: where an edge has less, something lies on it
+LEAST_SHARE = 0.3
 LEAST_LIGHT = 0.015  # of white: between both sides of an edge that can be placed
 NEAR_PX = 2.0  # from the steepest place to half the light; further is a second edge
 

@@ -20,14 +20,12 @@ from morfax.tracer.flatten.edges import Picture
 from morfax.tracer.flatten.layout import Box
 from morfax.tracer.flatten.projection import Projection
 
-RIM_MM = (
-    1.5  # of a sheet, made paper: the table shows there if the sheet was cut or printed aslant
-)
+# of a sheet, made paper: the table shows there if the sheet was cut or printed aslant
+RIM_MM = 1.5
 RING_MM = 1.0  # about a box: the paper with which it is filled
 LIGHTER = 30.0  # percentile of the ring's pixels: what is darker may be ink
-MOST_TIMES = (
-    4.0  # the photograph's pixels: only a sheet tilted beyond 45 degrees would have more
-)
+# the photograph's pixels: only a sheet tilted beyond 45 degrees would have more
+MOST_TIMES = 4.0
 STRIP_PX = 1 << 20  # that are worked on at a time
 
 

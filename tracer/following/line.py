@@ -81,9 +81,8 @@ class Line:
     leads: Leads | None = None  # that a cut was given; those drawn on paper are `loop_from`
     on_edge: bool = False  # round a solid area among lines; its width is no line's
     roughness_mm: float | None = None  # of the edge that it is (see `roughness`)
-    is_of_net: bool = (
-        False  # along lines that were felt before: it runs the other way round just so
-    )
+    # along lines that were felt before: it runs the other way round just so
+    is_of_net: bool = False
     as_told: bool = False  # the operator's arrow says where it begins, and which way it goes
 
     @classmethod

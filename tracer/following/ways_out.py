@@ -31,9 +31,8 @@ from morfax.tracer.sensing.view import View
 
 # a junction that the head comes back to is no further ahead: a speck may end the clean line before it
 BACK_MM = 4.0
-COMES_FROM = (
-    0.5  # cosine of 60 degrees: a head so far off the side that a correction names is another's
-)
+# cosine of 60 degrees: a head so far off the side that a correction names is another's
+COMES_FROM = 0.5
 
 
 class Turns(NamedTuple):

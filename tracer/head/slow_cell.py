@@ -44,9 +44,8 @@ from morfax.tracer.sensing.view import View
 # Chosen by trial on the test drawings.
 # so far beside what was felt the cell has kept to the way: the largest of these, ...
 KEEPS_WIDTHS, KEEPS_PX = 0.02, 0.2
-KEEPS_FINE_MM = (
-    0.017  # ... or this: so far off a line of few pixels may be seen, whose pixels were parted
-)
+# ... or this: so far off a line of few pixels may be seen, whose pixels were parted
+KEEPS_FINE_MM = 0.017
 # grain moves the middle of a pencil's or dry pen's ink by 3 to 5 % of its width (standard deviation), over
 # more of the line than its stations show: twice that
 KEEPS_GRAINY_WIDTHS = 0.08

@@ -18,9 +18,8 @@ class Stance:
     heading_rad: float
     view: View
     at_end: bool = False  # of a line
-    reference_mm: tuple[float, float] | None = (
-        None  # the reference point that the line starts from
-    )
+    # the reference point that the line starts from
+    reference_mm: tuple[float, float] | None = None
 
     def leg_ahead(self) -> Leg:
         """The line ahead, as felt."""

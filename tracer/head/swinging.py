@@ -31,9 +31,8 @@ from morfax.tracer.sensing.photocell import darkness_at
 INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
 PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this
 BALANCED = 0.5  # of the sweep is dark, when its middle is on the edge of a shape
-MOST_ASLANT = (
-    0.5  # of the lead aside: a line that turns more than 50 degrees is no arc up to there
-)
+# of the lead aside: a line that turns more than 50 degrees is no arc up to there
+MOST_ASLANT = 0.5
 FARTHEST_ASIDE = 0.5  # of the amplitude: a sweep that is further off is not on the line
 # of the random numbers: those of Numerical Recipes, "quick and dirty generators"
 NOISE_FACTOR, NOISE_STEP, NOISE_NUMBERS = 1664525, 1013904223, 2**32

@@ -21,11 +21,12 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.crossing import Crossing, are_side_by_side
-from morfax.tracer.ink.doubled import BROADER, TWO
+from morfax.tracer.ink.doubled import BROADER
 from morfax.tracer.ink.lifted import FARTHEST_WIDTHS
 from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed, without_waist
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
+from morfax.tracer.ink.swelling import TWO
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
 from morfax.tracer.sensing.view import View

@@ -6,15 +6,20 @@ Signals: the junctions of a net in; closed chains of its lines out, those that g
     │   │╱       partner breaks its chain: so along each line that is left the closed way is looked for that
     ╰───╯        leaves partners least. Last come the ways round what only bars join to the rest
 
-A way counts if most of it is along no other before it. It may leave partners, at a cost:
+A way counts if most of it is along no other before it, and it goes along no line that stands aside: dimension
+lines, hatching, and what leads nowhere (see `aside`). It may leave partners, at a cost:
 
     smoothly   onto another leg that is nearly in line
     corner     where two legs meet and neither goes on smoothly elsewhere
+    crossing   where both go on into lines that stand aside
     end        once, and only if hardly any of the way is along others: where one of two legs at a corner goes
                on elsewhere, as where hatching goes on from the side of a square
 
 It never leaves a line that goes on for another that goes on, and never goes onto the line of another pen. A
-bar that ends on a line at both its ends comes round by two ends, and so never.
+bar that ends on a line at both its ends comes round by two ends, and so never. Nor does it go along a line
+that goes straight on beyond both ends of that: a centre line makes no halves of a circle.
+
+A way round what bars join counts without all this if it goes round nearly all of a net: its silhouette.
 
 Source: our own.
 """
@@ -22,12 +27,17 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from typing import NamedTuple
 
-from morfax.tracer.ink.chains import Chain, Junction, Junctions, Link, Side
+import cv2
+import numpy as np
+
+from morfax.tracer.ink.aside import lines_aside
+from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
+from morfax.tracer.ink.onward import Onward
 from morfax.tracer.ink.outlines import (
     Outline,
     as_outline,
@@ -39,23 +49,29 @@ from morfax.tracer.sensing.leg import FACING
 
 # Chosen by trial on synthetic nets: what leaving a partner costs, and what a way may cost in all
 # (smoothly also between two legs of which neither goes on elsewhere)
-ALONE, CORNER, SMOOTHLY, END, MOST = 0.2, 0.5, 1.0, 1.5, 4.0
+ALONE, CORNER, SMOOTHLY, CROSSING, END, MOST = 0.1, 0.5, 1.0, 1.0, 1.5, 4.0
 ENDS = 1  # in a way
+NEARLY_ALL = 0.9  # of a net: a way round so much is its silhouette
 NEW_BY_END = 0.9  # of a way with an end is along no other
 SHARP = math.radians(150)  # a way that turns by more goes back
-OTHER_PEN = 1.35  # times as wide: the two pens of a drawing differ by 1.4 or more (ISO 128)
 
-State = tuple[
-    int, Side
-]  # the ends of a way so far, and the side of a line to which it has come
+NOT, PAST, CROSSES = 0, 1, 2  # how a line goes straight on where a way leaves it
+
+# the ends of a way so far, how its line goes on straight behind where the way came onto it, and the side of a
+# line to which it has come
+State = tuple[int, int, Side]
 
 
 class _Onward(NamedTuple):
-    """A side onto which a line may go on, what it costs, and whether it is an end."""
+    """A side onto which a line may go on, what it costs, and whether it is an end; and how the line that is
+    left goes straight on there, into whatever, and the other one behind it: not, past an end, or crossing.
+    """
 
     cost: float
     is_end: bool
     side: Side
+    beyond: int = NOT
+    behind: int = NOT
 
 
 class _Found(NamedTuple):
@@ -70,7 +86,8 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     """The closed ways of a net of which more than a share is beside all others, and beside lines of the net
     that are taken.
     """
-    taken, search = set(taken), _Search(junctions)
+    taken, aside = set(taken), lines_aside(junctions)
+    search = _Search(junctions, Onward(junctions, aside), Onward(junctions))
 
     def is_new(way: Outline, least: float = share) -> bool:
         if share_beside(way.chain, taken, junctions) <= least:
@@ -79,15 +96,21 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
         return True
 
     # 1. straight on
-    yield from filter(is_new, straight_chains(junctions))
+    straight = (way for way in straight_chains(junctions) if search.cost(way.chain) == 0.0)
+    yield from filter(is_new, straight)
     # 2. leaving partners, the least first
-    found = [search.way(n) for n in range(len(junctions.net.lines)) if n not in taken]
+    some = set(range(len(junctions.net.lines))) - taken - aside
+    found = [search.way(n) for n in sorted(some)]
     by_cost = sorted(filter(None, found), key=lambda it: (it.cost, -it.way.length_mm))
     yield from (it.way for it in by_cost if is_new(it.way, NEW_BY_END if it.ends else share))
     # 3. round what hangs together, and round what does without all these
-    yield from filter(is_new, parts(junctions))
-    rest = [way for way in parts(junctions, taken) if search.allows(way.chain)]
-    yield from filter(is_new, rest)
+    for without in (aside, taken | aside):
+        rest = [
+            way
+            for way in parts(junctions, without)
+            if search.cost(way.chain) < math.inf or _goes_round(way.chain, junctions, aside)
+        ]
+        yield from filter(is_new, rest)
 
 
 def share_beside(chain: Chain, taken: set[int], junctions: Junctions) -> float:
@@ -97,16 +120,34 @@ def share_beside(chain: Chain, taken: set[int], junctions: Junctions) -> float:
     return beside_mm / max(sum(lengths.values()), 1e-9)
 
 
+def _goes_round(chain: Chain, junctions: Junctions, aside: Set[int]) -> bool:
+    """Whether nearly all lines of a net, but those aside, lie on or inside a closed chain: its silhouette."""
+    lines, on_it = junctions.net.lines, {link.line for link in chain.links}
+    way = np.vstack([lines[n].places_mm[:: -1 if back else 1] for n, back in chain.links])
+    outline = way.astype(np.float32).reshape(-1, 1, 2)
+    all_mm = inside_mm = 0.0
+    for n, line in enumerate(lines):
+        if n in aside:
+            continue
+        x, y = line.places_mm[len(line.places_mm) // 2].tolist()
+        all_mm += line.length_mm
+        if n in on_it or cv2.pointPolygonTest(outline, (x, y), False) > 0:
+            inside_mm += line.length_mm
+    return inside_mm > NEARLY_ALL * all_mm
+
+
 @dataclass
 class _Search:
     """The search for closed ways along lines of a net."""
 
     junctions: Junctions
+    onward: Onward  # without lines aside
+    straight: Onward  # into whatever
     _known: dict[Side, list[_Onward]] = field(default_factory=dict)
 
     def way(self, number: int) -> _Found | None:
         """The closed way along a line that costs least; None if there is none."""
-        goal, begin = Side(number, False), (0, Side(number, True))
+        goal, begin = Side(number, False), (0, NOT, Side(number, True))
         heap: list[tuple[float, State, State | None]] = [(0.0, begin, None)]
         before = dict[State, State | None]()
         while heap:
@@ -114,14 +155,18 @@ class _Search:
             if state in before:
                 continue
             before[state] = came_by
-            ends, far = state
+            ends, behind, far = state
             if far == goal:
                 return self._found(cost, state, before)
-            for more, is_end, near in self._onward(far):
+            for on in self._onward(far):
+                near = on.side
                 onto = near if near == goal else Side(near.line, not near.last)
                 is_back = near.line == number and near != goal
-                if not is_back and cost + more <= MOST and ends + is_end <= ENDS:
-                    heappush(heap, (cost + more, (ends + is_end, onto), state))
+                if is_back or _is_chord(behind, on):
+                    continue
+                if cost + on.cost <= MOST and ends + on.is_end <= ENDS:
+                    before_it = behind if on.cost == 0.0 else on.behind
+                    heappush(heap, (cost + on.cost, (ends + on.is_end, before_it, onto), state))
         return None
 
     def _found(
@@ -130,20 +175,31 @@ class _Search:
         """The way that came to a state; None if it goes along a line twice."""
         links, at = list[Link](), before[state]
         while at is not None:
-            _, far = at
+            _, _, far = at
             links.append(Link(far.line, not far.last))
             at = before[at]
-        if len({link.line for link in links}) < len(links):
+        chain = Chain(links[::-1], True)
+        if len({link.line for link in links}) < len(links) or self.cost(chain) == math.inf:
             return None
-        return _Found(cost, state[0], as_outline(Chain(links[::-1], True), self.junctions))
+        return _Found(cost, state[0], as_outline(chain, self.junctions))
 
-    def allows(self, chain: Chain) -> bool:
-        """Whether a closed chain goes on at each junction as ways may."""
+    def cost(self, chain: Chain) -> float:
+        """What a closed chain costs; infinite if it goes on at a junction as no way may, or goes along a line
+        that goes straight on beyond both ends of that.
+        """
         onward = [*chain.links[1:], chain.links[0]]
-        return all(
-            any(on.side == (onto.line, onto.back) for on in self._onward(_far(link)))
-            for link, onto in zip(chain.links, onward, strict=True)
-        )
+        found = [self._turn(link, onto) for link, onto in zip(chain.links, onward, strict=True)]
+        turns = [on for on in found if on is not None and on.cost > 0.0]
+        if None in found or any(
+            _is_chord(turns[k - 1].behind, on) for k, on in enumerate(turns)
+        ):
+            return math.inf
+        return sum(on.cost for on in turns)
+
+    def _turn(self, link: Link, onto: Link) -> _Onward | None:
+        """How a way goes on from one line into another with the least cost; None if it may not."""
+        found = [on for on in self._onward(_far(link)) if on.side == (onto.line, onto.back)]
+        return min(found, key=lambda on: on.cost, default=None)
 
     def _onward(self, far: Side) -> list[_Onward]:
         """The sides onto which a line may go on from one of its sides."""
@@ -153,7 +209,12 @@ class _Search:
                 partner = there.partner(far)
                 found = [] if partner is None else [_Onward(0.0, False, partner)]
             else:
-                others = (self._onto(far, near) for near in there.sides if near != far)
+                left = [
+                    near
+                    for near in there.sides
+                    if near != far and near.line not in self.onward.aside
+                ]
+                others = (self._onto(far, near) for near in left)
                 found = [onto for onto in others if onto is not None]
             self._known[far] = found
         return self._known[far]
@@ -163,41 +224,33 @@ class _Search:
         there = self.junctions.at(far)
         one, other = there.leg(far), there.leg(near).turned_round()
         turned = turned_by(one, other)
-        if turned > SHARP or _are_of_two_pens(there, far, near):
+        if turned > SHARP or self.onward.are_of_two_pens(far, near):
             return None
-        go_on = self._goes_on(far) + self._goes_on(near)
-        if near == there.partner(far):
-            return _Onward(0.0 if go_on else CORNER, False, near)
+        are_alone = sum(side.line not in self.onward.aside for side in there.sides) == 2
+        go_on = self.onward.goes_on(far) + self.onward.goes_on(near)
         if turned < FACING:
-            return _Onward(SMOOTHLY if go_on else ALONE, False, near)
-        return (_Onward(CORNER, False, near), _Onward(END, True, near), None)[go_on]
+            is_straight = are_alone or near == there.partner(far)
+            return _Onward(0.0 if is_straight else SMOOTHLY if go_on else ALONE, False, near)
+        if near == there.partner(far):
+            return _Onward(CORNER, False, near)
+        return self._turned(far, near, go_on, are_alone)
 
-    def _goes_on(self, side: Side) -> bool:
-        """Whether a line goes on smoothly at one of its sides."""
-        there = self.junctions.at(side)
-        partner = there.partner(side)
-        if partner is None:
-            return False
-        return turned_by(there.leg(side), there.leg(partner).turned_round()) < FACING
+    def _turned(self, far: Side, near: Side, go_on: int, are_alone: bool) -> _Onward | None:
+        """How a way turns at a corner, at which some of its two lines go on elsewhere."""
+        beyond, behind = (self.straight.goes_on(side) for side in (far, near))
+        crosses = beyond and behind
+        if go_on == 2:
+            return None
+        cost = END if go_on else ALONE if are_alone else CORNER
+        how = (CROSSES, CROSSES) if crosses else (PAST * beyond, PAST * behind)
+        return _Onward(cost + crosses * CROSSING, go_on > 0, near, *how)
+
+
+def _is_chord(behind: int, on: _Onward) -> bool:
+    """Whether a line goes straight on beyond both ends of where a way goes along it, and crosses it once."""
+    return NOT not in (behind, on.beyond) and CROSSES in (behind, on.beyond)
 
 
 def _far(link: Link) -> Side:
     """The side of a line to which a chain comes along it."""
     return Side(link.line, not link.back)
-
-
-def _are_of_two_pens(there: Junction, one: Side, other: Side) -> bool:
-    """Whether the lines of two sides have other widths, and each is as wide as another line there: ink that
-    two lines share is wider, too.
-    """
-    widths_mm = [there.leg(side).width_mm for side in (one, other)]
-    if max(widths_mm) < OTHER_PEN * min(widths_mm):
-        return False
-    others = [
-        leg.width_mm
-        for side, leg in zip(there.sides, there.legs, strict=True)
-        if side not in (one, other)
-    ]
-    return all(
-        any(max(mm, own) < OTHER_PEN * min(mm, own) for own in others) for mm in widths_mm
-    )

@@ -34,9 +34,8 @@ from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
 
-COVERED_SHARE = (
-    0.7  # of a stretch within a crossing, along which ways go; by trial on drawings of nets
-)
+# of a stretch within a crossing, along which ways go; by trial on drawings of nets
+COVERED_SHARE = 0.7
 # two lines that come to a tip side by side are one, or two whose ends are so many widths apart: within one
 # width their pens' rounds overlap, and legs that have felt each other tell ends 1.0 apart
 TIP, APART = math.radians(60), 1.2

@@ -1,8 +1,7 @@
 """Doubled ink: stretches that two lines share, nearer to each other than a pen's width all along.
 
 Signals: the stations along each stretch (places mm, widths mm) in; out the pen's width and, of each stretch,
-which stations lie in ink that two lines share; and the stations of both lines, half a pen's width within the
-rims of their ink.
+which stations lie in ink that two lines share (for the two lines see `both_lines`).
 
     ════════════════      a pen's lines are as wide everywhere; two of them that run together show ink
     ══════──────────      between one and about two widths wide, which swells and shrinks slowly
@@ -10,7 +9,8 @@ rims of their ink.
 Only a clean sheet tells that: one whose lines have smooth edges and on which much of the ink is as narrow as
 the narrowest. Lettering has pens of its own, and the strokes of a printed letter swell. A nib or a brush
 swells and shrinks, too (see `nib`). Ink of one even width is a line of a broader pen; so is a patch of ink
-that is nowhere as narrow as a line of the pen, for two lines cross, part, or end one after the other.
+that is nowhere as narrow as a line of the pen, for two lines cross, part, or end one after the other. Where
+most broad ink is even, pens of several widths have drawn the sheet, and two lines are told by more swelling.
 
 Source: our own.
 """
@@ -19,34 +19,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.plane import left_of_headings
-from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends
+from morfax.tracer.ink.felt import Ends
 from morfax.tracer.ink.nib import Ink, is_by_heading, seems_two_lines, what_swells
-from morfax.tracer.ink.run import Run, smooth
-from morfax.tracer.ink.swelling import Swelling, pen_of, pen_of_hollow, stands_out
+from morfax.tracer.ink.run import Run
+from morfax.tracer.ink.swelling import TWO, Swelling, pen_of, pen_of_hollow, stands_out
 
 Flags = NDArray[np.bool_]
 
 # All limits below were chosen by trial on drawings of nets and on line art.
 SHARED = 1.15  # times the line's width: ink that two lines share is wider
 BROADER = 1.05  # times the pen's width: of ink into which two lines run at both its ends
-TWO = 2.5  # times the pen's width: ink that is wider is no two lines of it
 EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is one line
-# of its way: ink of two lines that becomes wider by more has come to others that cross it
-FLARE = 0.15
-TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
-# widths from there: the slope of the ink's width up to the nearer place ...
-CROSSED = 3.0, 6.0
-# ... is so much of that between the two, or more: of lines that only touch, as a parabola does, a third
-LEVEL_OFF = 0.45
+# of it, where pens are of several widths: of their lines 0.12 at most, of two lines in one ink 0.14 or more
+SWELLS = 0.13
 FROM_ENDS = 10.0  # widths: within them two lines that share a stretch have begun to
 HALF = 0.5  # of a short piece's stations tell its width
 CUT_WIDTHS = 1.8  # of its own: a shorter piece is where others cross
@@ -56,10 +47,6 @@ PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the 
 # the width of a line as the head wants it: of a narrower one pixels make the width swell; and where they are
 # ink or paper alone, and tell a width to one of them: `SHARED` is more then
 LEAST_PX = 3.0, 7.0
-# of the stations where ink lies still: of two lines more lie together, between flares. Ink that swells and
-# shrinks on the way is a line that is broader at its bends, as a printed letter's (0.2 to 0.7; a pen's loop
-# 0.83); by trial
-STILL = 0.75
 LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 
 
@@ -106,8 +93,12 @@ class Doubled(NamedTuple):
             for n, some in found.items()
             if (flags := _broad(felt[n], some.averaged, pen_mm)) is not None
         }
-        doubled = {n for n in broad if not _is_even(found[n].averaged)}
-        while more := {n for n in broad.keys() - doubled if _goes_on(felt, n, doubled, pen_mm)}:
+        spreads = {n: _spread(found[n].averaged) for n in broad}
+        are_several = _are_several_pens(felt, spreads)
+        doubled = {n for n in broad if spreads[n] > (SWELLS if are_several else EVEN)}
+        while not are_several and (
+            more := {n for n in broad.keys() - doubled if _goes_on(felt, n, doubled, pen_mm)}
+        ):
             doubled |= more
         stations = {n: broad[n] for n in sorted(doubled)}
         if ink == Ink.EITHER:
@@ -159,10 +150,16 @@ def _broad(run: Run, averaged: Array, pen_mm: float) -> Flags | None:
     return flags if stations * run.view.step_mm > LEAST_WIDTHS * pen_mm else None
 
 
-def _is_even(averaged: Array) -> bool:
-    """Whether a stretch is as wide all along."""
+def _spread(averaged: Array) -> float:
+    """How much the width of a stretch differs along it, of its width."""
     low_mm, high_mm = np.nanpercentile(averaged, (10, 90))
-    return bool(high_mm - low_mm < EVEN * high_mm)
+    return float(1 - low_mm / high_mm)
+
+
+def _are_several_pens(felt: Sequence[Run], spreads: Mapping[int, float]) -> bool:
+    """Whether most ink broader than the pen's is even: pens of several widths have drawn the sheet."""
+    even_mm = sum(felt[n].length_mm for n, spread in spreads.items() if spread <= EVEN)
+    return even_mm > HALF * sum(felt[n].length_mm for n in spreads)
 
 
 def _goes_on(felt: Sequence[Run], number: int, doubled: set[int], pen_mm: float) -> bool:
@@ -228,74 +225,3 @@ def _cos(one: Array, other: Array) -> float:
     """The cosine of the angle between two directions; 0 where one is none."""
     sizes = math.hypot(*one) * math.hypot(*other)
     return float(one @ other) / sizes if sizes > 0 else 0.0
-
-
-def strands(stations: Run, width_mm: float) -> list[Run]:
-    """The two lines of a width whose ink runs together along some stations: half a width within its rims.
-
-    None where the ink swells on the way. Where the ink is as narrow as one line they touch, or change sides:
-
-        width │ ╲  ╱  crosses: it comes and goes at a slope     ╲_  _╱  touches: the slope fades
-              │  ╲╱                                               ╲╱
-    """
-    known = np.flatnonzero(np.isfinite(stations.widths_mm))
-    if len(known) < FEWEST_STATIONS:
-        return []
-    at = np.arange(len(stations))
-    widths = np.interp(at, known, stations.widths_mm[known])
-    reach = max(1, round(0.5 * width_mm / stations.view.step_mm))
-    part_of = _without_flares(widths, known, reach, FLARE * reach * stations.view.step_mm)
-    if part_of is None:
-        return []
-    first, last = part_of
-    part, widths = stations.part(first, last), widths[first:last]
-    aside = 0.5 * np.maximum(widths - width_mm, 0.0)
-    aside *= _sides(aside, width_mm, stations.view.step_mm)
-    normals = left_of_headings(part.headings_rad)
-    own = replace(part, widths_mm=np.full(len(part), width_mm), is_strand=True)
-    return [
-        smooth(replace(own, places_mm=part.places_mm + side * aside[:, None] * normals))
-        for side in (1, -1)
-    ]
-
-
-def _sides(aside: Array, width_mm: float, step_mm: float) -> Array:
-    """On which side one of two lines is at each station, 1 or -1: it changes where they cross."""
-    near, far = (round(share * width_mm / step_mm) for share in CROSSED)
-    sides = np.ones(len(aside))
-    narrow = np.flatnonzero(aside < TOUCHING * width_mm)
-    for some in np.split(narrow, np.flatnonzero(np.diff(narrow) > near) + 1):
-        if not len(some) or some[0] < far or some[-1] + far >= len(aside):
-            continue
-        at = round(float(some.mean()))
-        slopes = [
-            (aside[at + side * far] - aside[at + side * near]) / (far - near)
-            for side in (-1, 1)
-        ]
-        chords = [aside[at + side * near] / near for side in (-1, 1)]
-        if min(chords) > LEVEL_OFF * max(slopes) and min(slopes) > 0:
-            sides[at:] *= -1
-    return sides
-
-
-def _without_flares(
-    widths: Array, known: Indices, reach: int, most_mm: float
-) -> tuple[int, int] | None:
-    """The first station and the one after the last between which ink of two lines does not flare out into
-    what crosses it, by more than a width over some stations; all that are known where it never lies still;
-    None where it swells and shrinks on the way.
-    """
-    first, last = int(known[0]), int(known[-1]) + 1
-    if last - first <= reach:
-        return first, last
-    steps = widths[first + reach : last] - widths[first : last - reach]
-    quiet = np.flatnonzero(np.abs(steps) < most_mm)
-    if len(quiet) < FEWEST_STATIONS:
-        return first, last
-    # a flare is still for a moment where it is broadest
-    parts = np.split(quiet, np.flatnonzero(np.diff(quiet) > reach) + 1)
-    longest = max(parts, key=lambda part: int(part[-1] - part[0]))
-    among = steps[quiet[0] : quiet[-1]]
-    if len(longest) < STILL * len(quiet) and among.max() > most_mm and among.min() < -most_mm:
-        return None
-    return first + int(longest[0]), first + int(longest[-1]) + reach + 1

@@ -44,21 +44,21 @@ class Hatching(NamedTuple):
     place_mm: tuple[float, float]
 
 
-def hatching(ways: Sequence[Array]) -> list[Hatching]:
-    """The families of hatching among some strokes, the longest first."""
+def hatching(ways: Sequence[Array], fewest: int = FEWEST) -> list[Hatching]:
+    """The families of hatching among some strokes, of so many at the least, the longest first."""
     long_mm = np.array([length_mm(one_in(way, max(1, len(way) // 200))) for way in ways])
     begins, ends = np.array([way[0] for way in ways]), np.array([way[-1] for way in ways])
     chords = ends - begins
     straight_mm = np.hypot(chords[:, 0], chords[:, 1])
     own = np.flatnonzero((straight_mm > STRAIGHT * long_mm) & (long_mm > LEAST_MM))
-    if len(own) < FEWEST:
+    if len(own) < fewest:
         return []
     headings = np.mod(np.arctan2(chords[own, 1], chords[own, 0]), math.pi)
     pairs, apart_mm = _neighbours(0.5 * (begins + ends)[own], headings, long_mm[own])
     a, _ = pairs.T
     family = grouped(pairs, len(own))
     found = list[Hatching]()
-    for k in np.flatnonzero(np.bincount(family) >= FEWEST):
+    for k in np.flatnonzero(np.bincount(family) >= fewest):
         members, distances_mm = own[family == k], apart_mm[family[a] == k]
         usual_mm = float(np.median(distances_mm))
         if np.mean(np.abs(distances_mm / usual_mm - 1) < EVEN) < EVENLY:

@@ -38,9 +38,8 @@ DOT_WIDTHS = 2.5  # ... and one that is no longer in its own widths a dot; 1.8 i
 LOST_MM = 1.0  # a stretch that is left is told if it is as long
 HALF = 0.5
 TWO_LINES = 1.0  # pen's widths: a way no further from the middle of doubled ink runs in it
-ONCE_SHARE = (
-    0.1  # of doubled ink: its lines bend, and are a little longer or shorter than its middle
-)
+# of doubled ink: its lines bend, and are a little longer or shorter than its middle
+ONCE_SHARE = 0.1
 TINY = 1e-9  # so that a sheet of nothing but filled shapes has a share
 
 

@@ -37,9 +37,8 @@ from morfax.tracer.tangles.tangle import DARKEST
 
 # All limits below were chosen by trial on drawings of two lines and of nets.
 FOOT_WIDTHS, FOOT_MM = 4.0, 1.0  # as far ahead a line that bends ends on others; both together
-FARTHEST_WIDTHS = (
-    30.0  # as far where it comes onto another at a small angle: 15 widths at 4 degrees
-)
+# as far where it comes onto another at a small angle: 15 widths at 4 degrees
+FARTHEST_WIDTHS = 30.0
 POKES_WIDTHS = 5.0  # the end of a line that pokes out further has a stretch of its own
 ON_IT = 0.5  # widths: its straight way on has come to the others
 TOUCHES = 1.0  # widths: two that both end here end beside each other, in ink that runs together

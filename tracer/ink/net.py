@@ -23,7 +23,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.neighbours import pairs_within
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS, strands
+from morfax.tracer.ink.both_lines import strands
+from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS
 from morfax.tracer.ink.felt import FEWEST_STATIONS, Parted, whole
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
@@ -61,6 +62,7 @@ class FeltLine:
     width_mm: float
     length_mm: float
     stretch: int = -1
+    felt_mm: Array = field(default_factory=lambda: np.empty(0))  # the widths along all its ink
 
     @property
     def places_mm(self) -> Array:
@@ -125,7 +127,8 @@ def _line_of(sheet: FeltSheet, n: int, parted: Parted, same: _Same) -> FeltLine:
     """A stretch, or a strand of one, as a line between the junctions that its ends have become."""
     nodes = sheet.graph.stretches[n].nodes
     ends = (-1 - n, -1 - n) if nodes[0] == RING else (same.of(nodes[0]), same.of(nodes[1]))
-    return FeltLine(*parted, ends, sheet.widths_mm[n], sheet.measured[n].length_mm, n)
+    felt_mm = sheet.felt[n].widths_mm
+    return FeltLine(*parted, ends, sheet.widths_mm[n], sheet.measured[n].length_mm, n, felt_mm)
 
 
 def _is_inner(sheet: FeltSheet, number: int, fewest: int) -> bool:

@@ -133,10 +133,10 @@ def parts(junctions: Junctions, taken: Set[int] = frozenset()) -> list[Outline]:
     lines = junctions.net.lines
     left = {n for n, line in enumerate(lines) if line.junctions[0] != line.junctions[1]} - taken
     while True:
-        spurs = _spurs(left, junctions) or _bars(left, junctions)
-        if not spurs:
+        off = spurs(left, junctions) or _bars(left, junctions)
+        if not off:
             break
-        left -= spurs
+        left -= off
     ways = [way for face in ways_round(left, junctions) for way in _simple(face, junctions)]
     # the outside is gone round clockwise
     round_about = [way for way in ways if _area_mm2(way, junctions) < 0]
@@ -154,7 +154,7 @@ def _outside(junctions: Junctions) -> Outline | None:
     )
 
 
-def _spurs(left: set[int], junctions: Junctions) -> set[int]:
+def spurs(left: set[int], junctions: Junctions) -> set[int]:
     """The lines that lead nowhere."""
     count = dict[int, int]()
     for n in left:

@@ -41,9 +41,8 @@ STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning 
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
 NEARER = 0.05  # widths: a way that is so much nearer to its rims, in the mean, is the line's
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
-MOST_LEGS = (
-    10  # 945 pairings; of more legs the straightest are paired first, and partners exchanged
-)
+# 945 pairings; of more legs the straightest are paired first, and partners exchanged
+MOST_LEGS = 10
 NOBODY, ROUNDED = -1, 1e-9
 
 Pair = tuple[int, int]

@@ -11,7 +11,7 @@ Signals: the cells, and places (n, 2) mm about on the rim, in; the rim as it was
 (n, 2) mm at a distance within it, out.
 
 Source: our own; patent ES 361967 follows the middle of a line. Questions: whether it is one broad line or two
-narrow ones the rim does not tell; the ink within does (see `program.small_loops`).
+narrow ones the rim does not tell; the ink within does (see `program.laid.small_loops`).
 """
 
 from __future__ import annotations
@@ -32,9 +32,8 @@ from morfax.tracer.sensing.view import View
 # In widths of the pen, by trial on slots of all shapes:
 SMOOTH = 0.3  # to either side of a place the steps of pixels are smoothed by
 REACH = 0.6  # to either side the edge is looked for
-PARABOLA = (
-    0.4  # to either side of a place: no longer, or it cuts the round corner of a square end
-)
+# to either side of a place: no longer, or it cuts the round corner of a square end
+PARABOLA = 0.4
 TIGHT = 1.0  # radius: where the rim turns so towards the ink, the line has a corner
 BEYOND = 0.25  # before and after such a corner the parabolas are bent by it
 LONGEST_MITRE = 3.0

@@ -17,10 +17,11 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import unit
 from morfax.motion.polyline import length_mm
-from morfax.tracer.ink.doubled import SHARED, TWO
+from morfax.tracer.ink.doubled import SHARED
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.graph import Graph
 from morfax.tracer.ink.run import Run
+from morfax.tracer.ink.swelling import TWO
 
 # All limits below were chosen by trial on drawings of nets.
 SHORT_WIDTHS = 30.0  # a shorter stretch is judged by the widths of those beside it, too

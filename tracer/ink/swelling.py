@@ -33,6 +33,7 @@ SO_NARROW, LEAST_NARROW = 0.05, 0.05
 ONE_WIDTH = 2.0
 SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
 FEWEST = 10  # stations that tell a width
+TWO = 2.5  # times the pen's width: ink that is wider is no two lines of it
 MUCH_HOLLOW = 0.1  # of the ink: less is a place where the pen left its middle pale
 BROADLY = 90.0  # percentile of a stretch's widths: its ink is hardly broader
 
@@ -96,14 +97,17 @@ def stands_out(some: Sequence[Swelling], pen_mm: float) -> bool:
 
 def pen_of_hollow(some: Sequence[Swelling]) -> float:
     """The width of the pen that drew two lines beside each other, mm, where much of a sheet is that; else
-    NaN: the ink's width less what its two dark rows are apart.
+    NaN: the ink's width less what its two dark rows are apart. Between rows that are further apart there
+    would be paper: such ink is a band, a sheet's shadow, say.
     """
     hollow_mm, pens_mm = 0.0, list[float]()
     for run in (each.run for each in some):
         if (found := _hollow(run)) is not None:
             near = int(np.argmin(np.hypot(*(run.places_mm - found.place_mm).T)))
-            hollow_mm += found.length_mm
-            pens_mm.append(float(run.widths_mm[near]) - found.apart_mm)
+            broad_mm = float(run.widths_mm[near])
+            if broad_mm < TWO * (broad_mm - found.apart_mm):
+                hollow_mm += found.length_mm
+                pens_mm.append(broad_mm - found.apart_mm)
     is_much = hollow_mm > MUCH_HOLLOW * sum(each.run.length_mm for each in some)
     return float(np.nanmedian(pens_mm)) if is_much else math.nan
 

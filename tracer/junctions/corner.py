@@ -10,7 +10,7 @@ much a rounded line passes the vertex; an arc that touches both legs passes it b
 Signals: the view, the legs and where they meet in; stretches (n, 2) mm out.
 
 Source: our own, from first principles (see `course`). Other rooms find corners too: `rings.corner_in` in what
-was felt of a line, before there are legs; `program.braking` and `motion.segments` in a finished path.
+was felt of a line, before there are legs; `program.passes.braking` and `motion.segments` in a finished path.
 """
 
 from __future__ import annotations

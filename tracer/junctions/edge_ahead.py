@@ -37,9 +37,8 @@ from morfax.tracer.sensing.leg import Leg, centre_at
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on filled shapes.
-AVERAGED_RAD = (
-    0.36  # that the edge may turn within half of the length over which stations are averaged
-)
+# that the edge may turn within half of the length over which stations are averaged
+AVERAGED_RAD = 0.36
 LEAST_AVERAGED_PX = 1.6  # half of that length at least
 NODES = 3  # within that half
 # stations to either side of a tip, that turn by so much

@@ -53,10 +53,9 @@ FARTHEST_CLEAR = 4.0  # widths; if it is longer, the legs are too nearly in line
 LIKE, CENTRED = 0.2, 0.8
 BEFORE, BEYOND = 0.5, 1.0  # widths that a vertex may move towards the legs, and away from them
 
-# of the width from the middle: where the edge that is followed may be
-NEAR_EDGE, FAR_EDGE = 0.2, 0.85
+NEAR_EDGE = 0.2  # of the width from the middle: the edge that is followed is further out
 OFF, OFF_PX = 1 / 6, 0.2  # of the width, and pixels: farther off its place the edge is lost
-ACROSS = 3.0  # widths to which the other edge is looked for
+ACROSS = 3.0  # widths to which edges are looked for
 
 
 class Walk(NamedTuple):
@@ -263,7 +262,6 @@ def _along_edge(cells, pose, side, width_mm, walk):  # type: ignore[no-untyped-d
     x, y, heading = pose
     alone, been_wide = 0, False
     near = NEAR_EDGE * width_mm
-    far = FAR_EDGE * width_mm
     across = ACROSS * width_mm
     for n in range(walk.stations):
         # 1. the edge, and the middle half a width within it
@@ -271,7 +269,7 @@ def _along_edge(cells, pose, side, width_mm, walk):  # type: ignore[no-untyped-d
             return out[:n].copy()
         nx = -side * math.sin(heading)
         ny = side * math.cos(heading)
-        aside = end_of_ink(cells, Ray(x, y, nx, ny, 0.0), near, far) - 0.5 * width_mm
+        aside = end_of_ink(cells, Ray(x, y, nx, ny, 0.0), near, across) - 0.5 * width_mm
         if not abs(aside) < OFF * width_mm + OFF_PX * cells.pitch_mm:
             return out[:n].copy()
         x += aside * nx

@@ -33,9 +33,8 @@ BEGIN = 0.5  # of the width: a leg begins no further from the place where it is 
 ARCS_APART = 0.5  # widths
 WIDE_GAP_MM = 1.0  # twice the usual gap: over less a leg's own bend will do
 LOOKS_BACK = 2.0  # gaps: so much of the line shows on what circle it goes on
-OFF_CIRCLE = (
-    0.1  # of the width: the line has been a circle if it lies within this, root mean square
-)
+# of the width: the line has been a circle if it lies within this, root mean square
+OFF_CIRCLE = 0.1
 OFF_PLACE = 1.5  # widths from a place on ink, beyond its own blot: legs leave it there
 
 

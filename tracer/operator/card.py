@@ -122,9 +122,8 @@ class Card:
     trace_mm_s: float | None = None
     feed_mm_s: float | None = None
     rapid_mm_s: float | None = None
-    entry_mm: float | None = (
-        None  # the tool goes down to its depth along this length of the line
-    )
+    # the tool goes down to its depth along this length of the line
+    entry_mm: float | None = None
     restart: Restart = "automatic"
     turns: tuple[
         Turn, ...

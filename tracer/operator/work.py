@@ -41,9 +41,8 @@ class Work:
     rapid_mm_s: float = 50.0
     passes_mm: tuple[float, ...] = ()  # depths of the passes before the last
     tabs: Tabs | None = None
-    ramp_rad: float | None = (
-        None  # the tool goes in along the line at this angle; None: straight down
-    )
+    # the tool goes in along the line at this angle; None: straight down
+    ramp_rad: float | None = None
     peck_mm: float | None = None  # how deep a drill goes at a time; None: at once
     cutter_mm: float = 0.0  # the cutter's diameter, which a tab is longer by at its foot
 

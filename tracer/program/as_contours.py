@@ -26,14 +26,14 @@ from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
-from morfax.tracer.program import selection
-from morfax.tracer.program.bars import THICK, bars_along
-from morfax.tracer.program.narrow_bays import explained, is_clear, with_bars
+from morfax.tracer.program.against_ink.bars import THICK, bars_along
+from morfax.tracer.program.against_ink.unexplained import Unexplained
+from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.laid.narrow_bays import explained, is_clear, with_bars
+from morfax.tracer.program.lines import selection
+from morfax.tracer.program.lines.small_rings import pen_mm
 from morfax.tracer.program.one_of_each import one_of_each
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.small_rings import pen_mm
-from morfax.tracer.program.unexplained import Unexplained
-from morfax.tracer.program.window import Window
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.pen import NOWHERE_MM
@@ -154,7 +154,8 @@ def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     drawing, reach_mm = sheet.drawing, REACH * width_mm
     window = Window.about(sheet.drawing, places, reach_mm)
     near = np.zeros(window.shape, np.uint8)
-    column, row = window.pixels(places).T
+    last = np.array(window.shape) - 1  # a place on the sheet's very edge is in its last pixel
+    row, column = np.clip(window.pixels(places)[:, ::-1], 0, last).T
     near[row, column] = 1
     across_px = 2 * round(reach_mm / drawing.pitch_mm) + 1
     reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across_px,) * 2)
@@ -162,4 +163,4 @@ def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     every = 1 + len(i) // MOST_PLACES
     i, j = i[::every] + window.top, j[::every] + window.left
     nothing_mm = np.full(len(i), NOWHERE_MM)
-    return SeenInk.of(drawing, i, j, nothing_mm, width_mm, every)
+    return SeenInk.of(drawing, (i, j), nothing_mm, width_mm, every)

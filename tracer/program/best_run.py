@@ -23,10 +23,9 @@ from morfax.motion.faults import LineFault
 from morfax.tracer.following.attempts import Attempts, longest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.program.lines.selection import SHORT
 from morfax.tracer.program.setup import Setup
 
-# of the ink that is joined to it: a shorter run is along another line, which crosses this one; by trial
-SHORT = 0.5
 ELSEWHERE = 5  # places at which the head is put down when a run leads nowhere; by trial
 
 
@@ -115,9 +114,8 @@ class _Search:
     best: StanceRun | None = None
     leads: list[StanceRun] = field(default_factory=list)
     smooth: list[StanceRun] = field(default_factory=list)
-    settled: bool = (
-        False  # the best is the lead line from the reference point: nothing else is tried
-    )
+    # the best is the lead line from the reference point: nothing else is tried
+    settled: bool = False
 
     def is_over(self, stance: Stance) -> bool:
         """Whether no more stances are tried from this one on."""

@@ -31,14 +31,12 @@ from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
-from morfax.tracer.program.left_ink import LeftInk
-from morfax.tracer.program.selection import LETTER_MM, Contour, least_mm
+from morfax.tracer.program.against_ink.left_ink import LeftInk
+from morfax.tracer.program.lines.selection import LETTER_MM, NEW, SAME_WIDTHS, Contour, least_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_through
 
 # All limits below were chosen by trial on the test drawings.
-NEW = 0.6  # of a line's way: the rest may be another line's too
-SAME_WIDTHS = 0.7  # a place nearer to another line is that line's
 # ink nearer to a way is that way's; where that is all of it, a line may run close beside: then so near
 BESIDE_WIDTHS, CLOSE_WIDTHS = 1.5, 1.2
 RUNS = 60  # tried on a patch, ...

@@ -28,14 +28,13 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.following.start import a_dark_area
 from morfax.tracer.marks.reference import LARGEST_MM
-from morfax.tracer.program import selection
-from morfax.tracer.program.best_run import SHORT
-from morfax.tracer.program.net_lines import net_of, or_outline
-from morfax.tracer.program.net_outline import ABOUT_WIDTHS, may_solve
-from morfax.tracer.program.open_ink import is_of_several, is_open, strokes_of
-from morfax.tracer.program.selection import Contour, Which
+from morfax.tracer.program.laid.small_loops import SmallLoops
+from morfax.tracer.program.lines import selection
+from morfax.tracer.program.lines.selection import SHORT, Contour, Which
+from morfax.tracer.program.nets.net_lines import net_of, or_outline
+from morfax.tracer.program.nets.net_outline import ABOUT_WIDTHS, may_solve
+from morfax.tracer.program.nets.open_ink import is_of_several, is_open, strokes_of
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.small_loops import SmallLoops
 from morfax.tracer.program.trace import followed, followed_from_an_end
 
 # from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of

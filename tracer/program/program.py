@@ -27,18 +27,18 @@ from morfax.motion.by_number import listed
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.passes import Passes
-from morfax.tracer.program.selection import NO_OTHERS, Others
-from morfax.tracer.program.tabs import Tab, tabs_of
+from morfax.tracer.program.lines.selection import NO_OTHERS, Others
+from morfax.tracer.program.passes.passes import Passes
+from morfax.tracer.program.passes.tabs import Tab, tabs_of
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
     from morfax.tracer.following.line import Line
     from morfax.tracer.ink.ledger import Balance
     from morfax.tracer.operator.work import Action, Work
-    from morfax.tracer.program.lost_outlines import LostOutline
-    from morfax.tracer.program.small_rings import SmallPatch
-    from morfax.tracer.program.unexplained import Unexplained
+    from morfax.tracer.program.against_ink.unexplained import Unexplained
+    from morfax.tracer.program.lines.lost_outlines import LostOutline
+    from morfax.tracer.program.lines.small_rings import SmallPatch
 
 ENDINGS = ("lost", "joined", "ended", "closed")  # the one to be told first comes first
 

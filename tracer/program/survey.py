@@ -34,11 +34,11 @@ from morfax.tracer.following.open_ends import from_reference, stances_at
 from morfax.tracer.following.plain_places import aperture_for, stance_near, view_of
 from morfax.tracer.following.start import put_down
 from morfax.tracer.marks.reference import Reference, references
-from morfax.tracer.program import selection
-from morfax.tracer.program.net_outline import AREA_WIDTHS
-from morfax.tracer.program.selection import Contour
+from morfax.tracer.program.laid.small_lines import small_lines
+from morfax.tracer.program.lines import selection
+from morfax.tracer.program.lines.selection import Contour
+from morfax.tracer.program.nets.net_outline import AREA_WIDTHS
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.small_lines import small_lines
 from morfax.tracer.program.trace import followed_from_an_end
 from morfax.tracer.sensing.view import View
 

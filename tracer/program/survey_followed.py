@@ -13,7 +13,7 @@ import numpy as np
 
 from morfax.motion import nesting
 from morfax.tracer.following.line import Line
-from morfax.tracer.program import selection
+from morfax.tracer.program.lines import selection
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.survey import Entry, Kind, Survey
 from morfax.tracer.program.trace_lines import found_lines

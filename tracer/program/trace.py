@@ -26,13 +26,13 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.best_run import Target, best_of
-from morfax.tracer.program.marks_read import with_marks_read
-from morfax.tracer.program.narrow_bays import explained
-from morfax.tracer.program.net_outline import OfNet, of_net, round_ring
+from morfax.tracer.program.laid.narrow_bays import explained
+from morfax.tracer.program.laid.small_loops import SmallLoops
+from morfax.tracer.program.lines.marks_read import with_marks_read
+from morfax.tracer.program.lines.selection import NO_OTHERS, others_than
+from morfax.tracer.program.nets.net_outline import OfNet, of_net, round_ring
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.selection import NO_OTHERS, others_than
 from morfax.tracer.program.setup import HeadProgress, Setup
-from morfax.tracer.program.small_loops import SmallLoops
 
 
 def trace(

@@ -29,15 +29,15 @@ from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.struck_off import struck_off
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program import stroke_order
+from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.as_contours import as_contours
-from morfax.tracer.program.narrow_bays import beside_mended, is_clear
+from morfax.tracer.program.laid.narrow_bays import beside_mended, is_clear
+from morfax.tracer.program.laid.small_loops import Loop, SmallLoops
+from morfax.tracer.program.lines import stroke_order
+from morfax.tracer.program.lines.small_rings import SmallPatch, filled_up
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress, Setup
-from morfax.tracer.program.small_loops import Loop, SmallLoops
-from morfax.tracer.program.small_rings import SmallPatch, filled_up
 from morfax.tracer.program.trace_solids import of_silhouettes, with_outlines
-from morfax.tracer.program.unexplained import Unexplained
 
 NEWEST_BYTES = 8_000_000  # of the newest strokes are kept in memory, 0.8 m at 10 mm/s; chosen
 

@@ -28,11 +28,20 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program import order, selection
 from morfax.tracer.program.arrows import turned_round, with_arrows
 from morfax.tracer.program.joined_lines import joined_to
-from morfax.tracer.program.marks_read import with_marks_read
-from morfax.tracer.program.narrow_bays import explained, with_bars
+from morfax.tracer.program.laid.narrow_bays import explained, with_bars
+from morfax.tracer.program.laid.small_lines import small_lines
+from morfax.tracer.program.lines import order, selection
+from morfax.tracer.program.lines.marks_read import with_marks_read
+from morfax.tracer.program.lines.selection import COVERED, Contour, Which
+from morfax.tracer.program.lines.small_rings import (
+    SmallPatch,
+    filled_up,
+    none_begun,
+    small_rings,
+    unclear_patches,
+)
 from morfax.tracer.program.one_of_each import (
     is_inside,
     one_of_each,
@@ -40,16 +49,7 @@ from morfax.tracer.program.one_of_each import (
     with_least_numbers,
 )
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.selection import COVERED, Contour, Which
 from morfax.tracer.program.setup import HeadProgress, Setup
-from morfax.tracer.program.small_lines import small_lines
-from morfax.tracer.program.small_rings import (
-    SmallPatch,
-    filled_up,
-    none_begun,
-    small_rings,
-    unclear_patches,
-)
 from morfax.tracer.program.trace import followed
 
 

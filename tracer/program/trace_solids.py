@@ -20,7 +20,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.left_out import Area, InkLeft
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.lost_outlines import without_lost
+from morfax.tracer.program.lines.lost_outlines import without_lost
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress
 from morfax.tracer.program.trace_lines import trace_lines

@@ -30,9 +30,8 @@ CIRCLE_SAMPLES = 12
 BALANCED = 0.5  # of the circle is dark on the edge
 TRIES = 3  # circles at a station: each is nearer to the edge than the one before
 FARTHEST_PX = 0.5  # by which a circle is moved at once
-FAINTEST = (
-    0.04  # size of a fundamental that still is an edge: four times that of a scan's noise
-)
+# size of a fundamental that still is an edge: four times that of a scan's noise
+FAINTEST = 0.04
 CERTAIN = 0.1  # size of one that shows the way
 SHORTEST, LONGEST = 0.3, 1.7  # steps that are one step on
 TURNS = 0.5  # cosine: a step turns less than 60 degrees

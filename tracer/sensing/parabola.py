@@ -25,9 +25,8 @@ FEWEST = 8  # stations: a parabola through fewer follows their noise
 # standard errors: neighbouring stations share their ink, so that a bend has to stand out further than three
 BEND_STANDS_OUT = 5.0
 BLOT = 0.03  # of the width: a blot at the junction shows by more
-MISFIT = (
-    1.3  # times the misfit of the nearest part: a longer stretch that fits no worse is one leg
-)
+# times the misfit of the nearest part: a longer stretch that fits no worse is one leg
+MISFIT = 1.3
 
 
 @njit(cache=True)

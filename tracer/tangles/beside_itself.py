@@ -20,9 +20,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 
 NEAR_WIDTHS = 0.6  # sides that are nearer to each other are one line
-ON_WIDTHS = (
-    2.5  # of way between them, at the least: a spike of 28 degrees has its sides so near
-)
+# of way between them, at the least: a spike of 28 degrees has its sides so near
+ON_WIDTHS = 2.5
 APART_WIDTHS = 3.0  # of way between two stretches
 
 

@@ -40,9 +40,8 @@ CORE, ROUNDING = 0.6, 0.4  # of half a shape, as a rounded polygon begins
 # of a loop the worst left 0.21
 BEGIN = 0.3
 MOST_SETTLED = 5  # of the cores, those that explain most to begin with
-SHARPEST = (
-    0.3  # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
-)
+# 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
+SHARPEST = 0.3
 STOPS_RAD = math.radians(
     25.0
 )  # a way that turns by more is run up to there, and on from there; chosen

@@ -83,13 +83,15 @@ class SeenInk(NamedTuple):
     def of(
         cls,
         drawing: Drawing,
-        rows: Pixels,
-        columns: Pixels,
+        pixels: tuple[Pixels, Pixels],
         known_mm: Array,
         width_mm: float,
         every: int,
     ) -> SeenInk:
-        """The ink at some pixels (n,) of a drawing, one in so many, about a line of a width."""
+        """The ink at some pixels of a drawing, one in so many, about a line of a width; their rows (n,) and
+        columns (n,).
+        """
+        rows, columns = pixels
         dark = np.minimum(np.asarray(drawing.darkness[rows, columns], float), DARKEST)
         noise = drawing.noise
         area_mm2, left_by_noise = every * drawing.pitch_mm**2, len(rows) * noise.paper**2

@@ -114,13 +114,14 @@ def _rests(seen, places, drawn, vertices, lines):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True)
-def _changes(seen, places, drawn, vertices, lines, now):  # type: ignore[no-untyped-def]
+def _changes(seen, places, drawn, vertices, now):  # type: ignore[no-untyped-def]
     """By how much each coordinate of the vertices changes what is wrong at each place, per mm.
 
     `now`: squares of the distances, and what is wrong, (2, n).
     """
     n = now.shape[1]
     change, squares = np.zeros((2 * len(vertices), n)), np.empty(n)
+    lines = np.empty((4, most_pieces(drawn, vertices)))
     # 1. the pieces that each vertex does not move
     rests = _rests(seen, places, drawn, vertices, lines)
     for i in range(len(change)):
@@ -155,7 +156,7 @@ def settle(seen, drawn, vertices, rounds):  # type: ignore[no-untyped-def]
     damping = DAMPING
     for _ in range(rounds if len(vertices) > 0 else 0):
         # 1. the normal equations
-        change = _changes(seen, places, drawn, vertices, lines, now)
+        change = _changes(seen, places, drawn, vertices, now)
         square, right = change @ change.T, change @ now[1]
         before = best
         # 2. a step that makes less wrong, damped until it does

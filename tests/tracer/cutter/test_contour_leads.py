@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from morfax.jobs.contour_remarks import of_contouring
+from morfax.jobs.remarks.on_contours import of_contouring
 from morfax.motion.faults import LineFault, MotionFault
 from morfax.motion.motion import join
 from morfax.motion.polyline import area_mm2

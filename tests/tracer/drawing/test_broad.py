@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.jobs.two_lines import TwoLines
+from morfax.jobs.remarks.two_lines import TwoLines
 from morfax.tracer.drawing import broad as broad_lines
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.trace import trace

@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 import pytest
 
-from morfax.jobs.scale_doubts import scale_doubts
+from morfax.jobs.remarks.scale_doubts import scale_doubts
 from morfax.motion.contour import distance
 from morfax.motion.units import MM_PER_INCH
-from morfax.tracer.drawing.coarse import finer
+from morfax.tracer.drawing.coarse import finer, is_hard
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
@@ -89,6 +89,11 @@ def test_hard_lines_of_any_slope_are_found(corner: tuple[float, float]) -> None:
     assert run.ending == "closed"
     off = distance(run.xy_mm[::4], np.vstack([tilted, tilted[:1]]))
     assert off.path_to_reference.rms_mm < 0.25 * PIXEL_MM
+
+
+def test_a_sheet_of_paper_alone_is_not_hard() -> None:
+    """As one on which all that is dark are filled shapes; warnings are errors here."""
+    assert not is_hard(np.zeros((20, 20), np.float32))
 
 
 def test_only_hard_lines_are_made_as_dark_as_before() -> None:

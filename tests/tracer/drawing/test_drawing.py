@@ -356,6 +356,16 @@ def test_a_pattern_that_is_all_over_the_sheet_is_told(
         Drawing.open(tmp_path / "hatched.png")
 
 
+def test_bold_lines_that_take_half_of_the_picture_are_no_pattern(tmp_path: Path) -> None:
+    """Squares within squares, 5 mm broad and 6 mm apart: their levels differ, those of neighbours do not."""
+    y, x = np.abs(np.mgrid[-256:256, -256:256])
+    away_px = np.maximum(x, y)
+    bold = np.where((away_px % 44 < 20) & (away_px < 245), 0, 255).astype(np.uint8)
+    Image.fromarray(bold).save(tmp_path / "bold.png", dpi=(100, 100))
+    widths_mm = Drawing.open(tmp_path / "bold.png").sheet.widths_mm
+    assert np.abs(widths_mm[:5] - 20 * MM_PER_INCH / 100).max() < 0.05  # a fifth of a pixel
+
+
 def test_a_tiff_whose_next_page_has_no_size_is_damaged(tmp_path: Path) -> None:
     """Pillow ends with a TypeError."""
     file = tmp_path / "a.tif"

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 import pytest
 
-from morfax.jobs.hollow_lines import HollowLines
+from morfax.jobs.remarks.hollow_lines import HollowLines
 from morfax.tracer.drawing import hollow as hollow_lines
 from morfax.tracer.drawing.deviation import darkness_across
 from morfax.tracer.drawing.drawing import Drawing

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.jobs.narrow_gaps import NarrowGaps
+from morfax.jobs.remarks.narrow_gaps import NarrowGaps
 from morfax.tracer.drawing.narrow import narrow_gaps
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.jobs.line_settings import LineSettings
-from morfax.jobs.skips import gap_across_skips
+from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.tracing.skips import gap_across_skips
 from morfax.tracer.drawing.skips import SPARE_MM, WIDEST_MM, gap_to_cross_mm, skips_mm
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.program.trace import trace

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from morfax.jobs.remarks_on_ink import of_ink
+from morfax.jobs.remarks.on_ink import of_ink
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace

@@ -12,7 +12,7 @@ import pytest
 
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.program import selection
+from morfax.tracer.program.lines import selection
 from tests.tracer.inked import WIDTH_MM, Points, arc, inked
 
 MIDDLE_MM = np.array([30.0, 30.0])

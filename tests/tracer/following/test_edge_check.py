@@ -11,7 +11,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.edge_check import OFF_MM, kept_to
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.unexplained import Unexplained, _off_edges, _once
+from morfax.tracer.program.against_ink.unexplained import Unexplained, _off_edges, _once
 from morfax.tracer.sensing.photocell import Cells
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import Points, arc, polyline

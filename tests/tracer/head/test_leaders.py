@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.jobs.who_led import WhoLed
+from morfax.jobs.remarks.who_led import WhoLed
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_ink import trace_ink

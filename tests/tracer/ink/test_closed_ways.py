@@ -1,4 +1,4 @@
-"""Closed ways: which lines at a junction are one pen's."""
+"""Closed ways: which lines of a net are no contour's, and which are drawn by one pen."""
 
 from __future__ import annotations
 
@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.chains import Junction, Side
-from morfax.tracer.ink.closed_ways import _are_of_two_pens
+from morfax.tracer.ink.aside import has_arrowhead
+from morfax.tracer.ink.chains import Junction, Junctions, Side
 from morfax.tracer.ink.crossing import Crossing
+from morfax.tracer.ink.net import Net
+from morfax.tracer.ink.onward import Onward
 from morfax.tracer.sensing.leg import Leg
+
+STEP_MM, LINE_MM = 0.05, 0.4
 
 
 @pytest.mark.parametrize(
@@ -21,12 +25,40 @@ from morfax.tracer.sensing.leg import Leg
     ],
 )
 def test_lines_of_two_pens_are_told_from_ink_that_two_lines_share(
-    widths_mm: tuple[float, ...], are_two: bool
+    widths_mm: tuple[float, ...], are_two: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sides = [Side(n, False) for n in range(len(widths_mm))]
     legs = [
         Leg(np.zeros(2), float(n), 0.0, mm, np.empty((0, 3))) for n, mm in enumerate(widths_mm)
     ]
     there = Junction(sides, False, Crossing(legs, [], Settings()))
-    assert _are_of_two_pens(there, sides[0], sides[1]) == are_two
-    assert not _are_of_two_pens(there, sides[0], sides[2])
+    monkeypatch.setattr(Junctions, "at", lambda *_: there)
+    onward = Onward(Junctions(Net([]), Settings()))
+    assert onward.are_of_two_pens(sides[0], sides[1]) == are_two
+    assert not onward.are_of_two_pens(sides[0], sides[2])
+
+
+def widths(*pieces_mm: tuple[float, float, float]) -> np.ndarray:
+    """Widths along a line: pieces, each so long and from one width to another, then 20 mm of line."""
+    every = [
+        np.linspace(a, b, round(mm / STEP_MM))
+        for mm, a, b in (*pieces_mm, (20.0, LINE_MM, LINE_MM))
+    ]
+    return np.concatenate(every)
+
+
+@pytest.mark.parametrize(
+    ("pieces_mm", "is_one"),
+    [
+        (((0.5, 3.0, 0.4), (2.5, 0.4, 1.0)), True),  # its tip on an extension line
+        (((0.3, 0.4, 0.4), (1.0, 0.5, 0.9), (2.0, 3.0, 3.0)), True),  # broader than cells feel
+        (((0.5, 3.0, 0.4),), False),  # a line that ends on another
+        (((2.0, 1.0, 0.4),), False),  # on another at a slope
+        (((2.0, 0.4, 0.4), (1.0, 0.4, 1.0), (1.0, 1.0, 0.4)), False),  # a blot on the way
+        (((0.5, 3.0, 0.4), (0.4, 1.0, 1.0)), False),  # a tick across
+    ],
+)
+def test_an_arrowhead_grows_from_its_tip_and_is_at_once_a_line_again(
+    pieces_mm: tuple[tuple[float, float, float], ...], is_one: bool
+) -> None:
+    assert has_arrowhead(widths(*pieces_mm), STEP_MM, LINE_MM) == is_one

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import shapely
 
-from morfax.jobs.remarks_on_ink import of_ink
-from morfax.jobs.trace_figures import ink as figures_of
+from morfax.jobs.remarks.on_ink import of_ink
+from morfax.jobs.tracing.trace_figures import ink as figures_of
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import strands
+from morfax.tracer.ink.both_lines import strands
 from morfax.tracer.ink.felt import FEWEST_STATIONS
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import ink_left

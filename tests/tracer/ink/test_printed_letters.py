@@ -22,9 +22,8 @@ from tests.tracer.inked import DPI, NOISE, arc, inked, polyline
 FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 LINE_PX, LEFT_PX = 110, 40
 LENS_PX = 0.6  # standard deviation of the spot
-SHARE = (
-    0.97  # of the middle lines of ink; what is left are tips of serifs and stumps beside stems
-)
+# of the middle lines of ink; what is left are tips of serifs and stumps beside stems
+SHARE = 0.97
 
 
 def printed(font: str, size_px: int, *texts: str) -> Drawing:

@@ -12,9 +12,8 @@ from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.sensing.view import View
 from tests.tracer.inked import inked, polyline
 
-MORE_SAMPLES = (
-    300  # the head sets out from rest: so it comes to within half a lead of its last place
-)
+# the head sets out from rest: so it comes to within half a lead of its last place
+MORE_SAMPLES = 300
 
 
 def test_a_cell_that_stops_just_before_a_run_s_end_hands_over_to_memory(

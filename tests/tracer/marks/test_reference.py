@@ -14,7 +14,7 @@ from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.marks import reference
 from morfax.tracer.marks.reference import Reference
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program import selection
+from morfax.tracer.program.lines import selection
 from tests.tracer.inked import UM, arc, cross, inked, polyline, tick
 from tests.tracer.marked import trace
 

@@ -7,7 +7,13 @@ import pytest
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import Points, arc, inked, polyline
-from tests.tracer.program.test_narrow_bays import DEEP_MM, WIDTH_MM, off_mm, plate, with_bay
+from tests.tracer.program.laid.test_narrow_bays import (
+    DEEP_MM,
+    WIDTH_MM,
+    off_mm,
+    plate,
+    with_bay,
+)
 
 UM = 1e-3
 

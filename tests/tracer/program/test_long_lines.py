@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from morfax.jobs import zero
-from morfax.jobs.settings import DrawingFile
+from morfax.jobs.settings import zero
+from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.zero import ZeroOnSheet, _part_mm
 from morfax.jobs.trace import TraceJob, TraceOutputs
-from morfax.jobs.zero import ZeroOnSheet, _part_mm
 from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import is_mapped
@@ -23,7 +23,7 @@ from morfax.tracer.head import loop
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program import braking
+from morfax.tracer.program.passes import braking
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_ink import trace_ink

@@ -18,7 +18,7 @@ from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Work
-from morfax.tracer.program.passes import BRAKE_MM_S2
+from morfax.tracer.program.passes.passes import BRAKE_MM_S2
 from morfax.tracer.program.program import Trace
 
 WORK = Work(depth_mm=4.0, clearance_mm=2.0)

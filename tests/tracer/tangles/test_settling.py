@@ -59,7 +59,7 @@ def test_what_each_vertex_changes_is_found_from_the_pieces_that_it_moves(
     lines = np.empty((4, pen.most_pieces(way, VERTICES_MM)))
     now, places = np.empty((2, len(paper))), PLACES_MM.T.copy()
     settling._wrong(ink, places, way, VERTICES_MM, lines, now)
-    changes = settling._changes(ink, places, way, VERTICES_MM.copy(), lines, now)
+    changes = settling._changes(ink, places, way, VERTICES_MM.copy(), now)
     before = darkness(way, VERTICES_MM)
     for i, change in enumerate(changes):
         moved = VERTICES_MM.copy()

@@ -1,0 +1,109 @@
+"""Remarks on contoured lines: leads that are shorter than asked for, and lines that keep their direction.
+
+Signals in: the traced lines, and what was asked for. Signals out: texts, each with what to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from morfax.tracer.cutter.contouring import Contouring, Lead
+    from morfax.tracer.cutter.cutter import Cutter
+    from morfax.tracer.following.line import Line
+    from morfax.tracer.program.lines.around import Around
+    from morfax.tracer.program.program import Trace
+
+FEW = 6  # lines that are listed with their leads; of more the shortest
+
+
+def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
+    """Remarks on a program whose closed lines were contoured."""
+    if trace.fault is not None and contouring.asks:
+        yield "a line was lost, so morfax cannot know which lines are holes: some lines may be cut as traced"
+        return
+    closed = [line for line in trace.lines if line.ending == "closed"]
+    if contouring.lead_in is not None:
+        yield from _of_leads("lead-in", contouring.lead_in, closed)
+    if contouring.lead_out is not None:
+        yield from _of_leads("lead-out", contouring.lead_out, closed)
+    asked = contouring.milling is not None and not contouring.by_machine
+    open_lines = sorted({line.number for line in trace.lines if _is_cut_open(line)})
+    if open_lines and (asked or contouring.moves_start):
+        numbers = ", ".join(map(str, open_lines))
+        are = f"line {numbers} is" if len(open_lines) == 1 else f"lines {numbers} are"
+        yield f"{are} open and cut as traced: direction, start and leads are for closed lines"
+
+
+def of_order(trace: Trace, order: Sequence[int]) -> Iterator[str]:
+    """Lines that the operator has put behind one in which they lie."""
+    if not order:
+        return
+    from morfax.motion.nesting import nested
+
+    lines = [line for line in trace.lines if len(line.xy_mm) > 1]
+    inside = nested([line.loop_mm for line in lines], [not line.is_open for line in lines])
+    for outer in range(len(lines)):
+        late = [lines[i].number for i in range(outer + 1, len(lines)) if inside[i, outer]]
+        if late:
+            numbers = ", ".join(map(str, late))
+            yield (
+                f"--order cuts line {lines[outer].number} before line {numbers} inside it: the part may be"
+                " loose by then"
+            )
+
+
+def of_around(
+    found: Sequence[Around], cutter: Cutter | None, contouring: Contouring
+) -> Iterator[str]:
+    """Lines that look like the outline of a part only because the line round them was not asked for."""
+    inner = [each for each in found if not each.is_lost]
+    on_side = contouring.has_leads or contouring.milling is not None
+    if not inner or (cutter.side != "outside" if cutter is not None else not on_side):
+        return
+    lines = ", ".join(str(each.line) for each in inner)
+    outer = ", ".join(str(number) for number in sorted({each.outer for each in inner}))
+    do = "" if cutter is None else "give --side inside for a hole, or "
+    are = f"line {lines} lies" if len(inner) == 1 else f"lines {lines} lie"
+    yield (
+        f"{are} inside line {outer}, which is not cut: without line {outer} morfax cuts the outline of a part"
+        f" there, not a hole; {do}cut line {outer}, too"
+    )
+
+
+def _of_leads(name: str, asked: Lead, closed: list[Line]) -> Iterator[str]:
+    """The lines whose leads are shorter than asked for, with what each has."""
+    got = [(_size_mm(name, line), line.number) for line in closed if not line.is_lead]
+    short = sorted(pair for pair in got if pair[0] < asked.size_mm)
+    if not short:
+        return
+    listed = [
+        f"{size_mm:g} mm at line {number}" if size_mm else f"none at line {number}"
+        for size_mm, number in short[:FEW]
+    ]
+    more = (
+        f" and {len(short) - FEW} more lines, which the figures list"
+        if len(short) > FEW
+        else ""
+    )
+    yield (
+        f"there is no room for a {name} of {asked.size_mm:g} mm everywhere: {', '.join(listed)}{more}"
+    )
+
+
+def _size_mm(name: str, line: Line) -> float:
+    """The size of a line's lead, mm; 0 without."""
+    if line.leads is None:
+        return 0.0
+    return round(line.leads.in_mm if name == "lead-in" else line.leads.out_mm, 2)
+
+
+def _is_cut_open(line: Line) -> bool:
+    """Whether a line is cut that does not come round."""
+    return (
+        len(line.xy_mm) > 1
+        and not line.is_guide
+        and not line.is_lead
+        and line.ending != "closed"
+    )

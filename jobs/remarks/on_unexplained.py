@@ -1,0 +1,75 @@
+"""Remarks on places at which closed lines are not what is drawn.
+
+Signals in: the traced lines. Signals out: one text for each kind of place, each with what to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from morfax.tracer.program.against_ink.unexplained import Kind, Unexplained
+    from morfax.tracer.program.program import Trace
+
+
+def of_unexplained(trace: Trace) -> Iterator[str]:
+    """Closed lines that may be other lines than those drawn, by what is there."""
+    is_closed = any(line.ending == "closed" for line in trace.lines)
+    for kind in SAID:
+        places = [place for place in trace.unexplained if place.kind == kind]
+        if places:
+            yield _said(kind, places, "closed line" if is_closed else "line")
+
+
+def _said(kind: Kind, places: Sequence[Unexplained], line: str) -> str:
+    """What is said of the places of a kind on a line; the first of them is the worst."""
+    (one, several), text = SAID[kind]
+    worst = places[0]
+    (x, y), mm = worst[:2]
+    many = f"1 {one}" if len(places) == 1 else f"{len(places)} {several}"
+    at = f"{x:.1f},{y:.1f} mm"
+    return text.format(many=many, at=at, mm=mm, line=line, dpi=worst.wants_dpi)
+
+
+# of each kind: one and several of its places, and the text, in which {mm} is what the worst place measures
+SAID: dict[Kind, tuple[tuple[str, str], str]] = {
+    # tips of filled shapes that the way cuts short
+    "tip": (
+        ("tip", "tips"),
+        "the path cuts {many} of the shape short, by up to {mm:.2f} mm at {at}; printed twice as large, and "
+        "with --scale 0.5, by half of that",
+    ),
+    # ink that is joined to the line, and beside its way
+    "ink": (
+        ("piece of ink", "pieces of ink"),
+        "{many} joined to the {line} beside its way, up to {mm:.1f} mm from it, at {at}: a tip or a bay that "
+        "is narrower than two lines, or another line; --picture marks it, and --lines all follows other "
+        "lines too",
+    ),
+    # a way over bare paper
+    "bare": (
+        ("", ""),
+        "the closed line runs over {mm:.1f} mm of bare paper at {at}, where no ink leads: look at --picture, "
+        "and draw the line there",
+    ),
+    # a way beside its own ink
+    "beside": (
+        ("place", "places"),
+        "the closed line runs beside its ink at {many}, the longest {mm:.1f} mm at {at}: look there in "
+        "--picture; a notch or a tongue that is narrower than two lines is followed if it is drawn with a "
+        "finer pen",
+    ),
+    # strokes within ink that is as broad as two lines
+    "broad": (
+        ("piece of ink is", "pieces of ink are"),
+        "{many} about as broad as two lines, the longest {mm:.1f} mm at {at}: if it is a slot, a notch or a "
+        "tongue, its two sides are not followed; draw it with a finer pen, or scan it at a higher resolution",
+    ),
+    # a way over pale pixels of a coarse scan
+    "pale": (
+        ("place", "places"),
+        "not sure that the closed line is the one drawn: the pixels are too large to tell at {many}, the "
+        "first at {at}, where a spike or a bay may be cut off; scan at {dpi} dpi",
+    ),
+}

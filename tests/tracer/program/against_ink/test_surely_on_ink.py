@@ -1,0 +1,71 @@
+"""What is surely on its ink is below its limit, and the proof is as sharp as the judgement itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.tracer.program.against_ink.pen_on_ink import Pen, Room, Ways, over_at
+from morfax.tracer.program.against_ink.surely_on_ink import _in_boxes_about, may_be_over
+from tests.tracer.inked import Points
+
+SHAPE = (60, 90)
+NOISE = 0.03  # of the paper
+SIDE = 5
+
+
+def part(aside_px: float, seed: int) -> tuple[Points, Ways, Pen, Points]:
+    """A line of 4 px in a noisy picture along row 30, with a dot of ink beside it, and a way that leaves it
+    aside over 20 px; a pen, and stations.
+    """
+    rows, columns = np.mgrid[0 : SHAPE[0], 0 : SHAPE[1]].astype(float)
+    noise = np.random.default_rng(seed).normal(0, NOISE, SHAPE)
+    dot = np.hypot(rows - 33, columns - 70) < 2
+    seen = np.clip(2.5 - np.abs(rows - 30), 0, 1).clip(dot) + noise
+    along = np.arange(90.0)
+    beside = np.where((along > 20) & (along < 40), 30 + aside_px, 30.0)
+    places = np.column_stack([along, beside]).astype(np.float32)
+    ways = Ways(places, np.zeros(90, np.int32), np.array([2.0]), np.array([True]))
+    pen = Pen(2.0, 0.5, 5.0, 0.5 * NOISE**2, (0.8, 0.9, 1.0, 1.1, 1.25), 0.0)
+    stations = np.round(places[::3]).astype(int)
+    return seen.astype(np.float32), ways, pen, stations
+
+
+@pytest.mark.parametrize("aside_px", [0.0, 1.0, 2.0, 4.0])
+@pytest.mark.parametrize("limit", [0.015, 0.05, 0.2])
+def test_what_is_not_over_by_the_proof_is_not_over_by_all_pens(
+    aside_px: float, limit: float
+) -> None:
+    for seed in range(3):
+        seen, ways, pen, stations = part(aside_px, seed)
+        room = Room.of(seen.size, pen.reach_px)
+        may = np.empty(len(stations), bool)
+        over = over_at(seen, ways, stations, pen, room)
+        may_be_over(seen, ways, stations, np.full(len(over), limit), pen, room, may)
+        # boxes whose middle is beyond the picture are looked at as well: no station is near its rim in rows
+        inner = (stations[:, 0] >= SIDE) & (stations[:, 0] < SHAPE[1] - SIDE)
+        assert may[inner].tolist() == (over[inner] > limit).tolist()
+        assert not room.number.any() and not room.spread.any()
+
+
+def test_a_right_way_is_surely_on_its_ink_and_a_wrong_one_is_not() -> None:
+    """The kernel's plain Python; the dot beside the line is ink that no pen draws, and is no fault."""
+    for aside_px, is_over in ((0.0, False), (3.0, True)):
+        seen, ways, pen, stations = part(aside_px, 1)
+        room, may = Room.of(seen.size, pen.reach_px), np.empty(len(stations), bool)
+        limits = np.full(len(stations), 0.05)
+        may_be_over.py_func(seen, ways, stations, limits, pen, room, may)
+        assert may.any() == is_over
+
+
+@pytest.mark.parametrize("pixel", [(10, 8), (0, 0), (19, 14), (2, 13)])
+def test_sums_over_the_boxes_about_the_pixels_about_one(pixel: tuple[int, int]) -> None:
+    values = np.random.default_rng(1).normal(size=(15, 20))
+    boxes, padded = np.empty((SIDE, SIDE)), np.pad(values, 2 * SIDE)
+    _in_boxes_about.py_func(values, pixel, np.empty(2 * SIDE - 1), boxes)
+    for i in range(SIDE):
+        for j in range(SIDE):
+            row = pixel[1] + i - SIDE // 2 + 2 * SIDE
+            column = pixel[0] + j - SIDE // 2 + 2 * SIDE
+            box = padded[row - 2 : row + 3, column - 2 : column + 3]
+            assert boxes[i, j] == pytest.approx(box.sum(), abs=1e-12)  # rounding

@@ -1,0 +1,144 @@
+"""The lines of a net: each closed line once, told by the junctions; the head is put down for no trial."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+import shapely
+
+from morfax.tracer.following.attempts import Attempts
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace_lines import found_lines, trace_lines
+from tests.tracer.inked import Points, arc, inked, polyline
+
+FRAME = polyline((8, 8), (58, 8), (58, 44), (8, 44), (8, 8))
+HOLE = arc((24, 26), 6)
+SQUARE = polyline((38, 18), (50, 18), (50, 30), (38, 30), (38, 18))
+CORNERS_MM = 0.15  # the pen's corners
+
+
+@pytest.fixture
+def no_trials(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The head is not put down to look where a line leads."""
+
+    def refuse(*_: object) -> None:
+        raise AssertionError("the head is put down for a trial")
+
+    monkeypatch.setattr(Attempts, "run", refuse)
+
+
+def cut(*lines: Points) -> list[Line]:
+    """The contours of a sheet."""
+    return list(trace_lines(inked(*lines, seed=3)).lines)
+
+
+def are(lines: Sequence[Line], *drawn: Points) -> bool:
+    """Whether lines are just the closed ones that were drawn, each once."""
+    ways = [shapely.LinearRing(line.loop_mm[::20]) for line in lines if line.ending == "closed"]
+    near = [
+        sum(way.hausdorff_distance(shapely.LineString(line)) < CORNERS_MM for way in ways)
+        for line in drawn
+    ]
+    return len(ways) == len(lines) == len(drawn) and near == [1] * len(drawn)
+
+
+def hatching(apart_mm: float, *holes: Points) -> list[Points]:
+    """Lines at 45 degrees across the frame, but not the holes."""
+    area = shapely.Polygon(FRAME).difference(
+        shapely.union_all([shapely.Polygon(h) for h in holes])
+    )
+    lines = [shapely.LineString([(x, 0), (x + 60, 60)]) for x in np.arange(-49, 60, apart_mm)]
+    pieces = shapely.get_parts(shapely.intersection(shapely.MultiLineString(lines), area))
+    return [shapely.get_coordinates(piece) for piece in pieces if piece.length > 1]
+
+
+@pytest.mark.usefixtures("no_trials")
+def test_hatching_is_no_line_and_breaks_none() -> None:
+    hatched = hatching(5.3, HOLE, SQUARE)
+    lines = cut(FRAME, HOLE, SQUARE, *hatched)
+    assert are(lines, FRAME, HOLE, SQUARE)
+
+
+@pytest.mark.usefixtures("no_trials")
+def test_hatching_that_goes_on_from_a_side_of_a_square_takes_no_partner_from_it() -> None:
+    beyond = polyline((50, 30), (50, 44)), polyline((38, 24), (30, 24))
+    assert are(cut(FRAME, SQUARE, *beyond), FRAME, SQUARE)
+
+
+@pytest.mark.usefixtures("no_trials")
+def test_circles_that_overlap_are_cut_as_the_pen_drew_them() -> None:
+    circles = [arc((16 + 10 * k, 20 + 4 * (k % 2)), 8) for k in range(4)]
+    assert are(cut(*circles), *circles)
+
+
+@pytest.mark.parametrize("apart_mm", [16.3, 16.0, 15.7])
+def test_circles_that_touch_are_two_lines(apart_mm: float) -> None:
+    circles = arc((16, 20), 8), arc((16 + apart_mm, 20), 8)
+    assert are(cut(*circles), *circles)
+
+
+@pytest.mark.usefixtures("no_trials")
+def test_bars_and_a_grid_are_left_out_and_told() -> None:
+    bars = [polyline((x, 8), (x, 44)) for x in (18, 30, 45)]
+    bars += [polyline((8, y), (58, y)) for y in (16, 33)]
+    trace = trace_lines(inked(FRAME, *bars, seed=3))
+    assert are(trace.lines, FRAME)
+    assert trace.left_out_mm == pytest.approx(3 * 36 + 2 * 50, rel=0.1)
+
+
+def test_what_only_bars_join_is_gone_round_part_by_part() -> None:
+    """Two shapes with a bar across, from corner to corner, and a bar from one to the other."""
+    left = polyline((8, 8), (24, 8), (24, 30), (8, 30), (8, 8))
+    right = left + np.array([28, 4])
+    bars = [polyline(shape[0], shape[2]) for shape in (left, right)]
+    assert are(cut(left, right, *bars, polyline((24, 20), (36, 20))), left, right)
+
+
+def test_a_stroke_across_is_a_line_if_both_its_ends_are_free() -> None:
+    across = polyline((24, 16), (24, 36)), polyline((4, 38), (12, 38))
+    lines = cut(HOLE, FRAME, *across[:1], polyline((24, 36), (24, 44)))
+    assert are([line for line in lines if line.ending == "closed"], FRAME, HOLE)
+    assert [line.ending for line in cut(HOLE, across[0])].count("ended") == 1
+
+
+def test_numbers_are_those_of_the_lines_that_are_listed() -> None:
+    drawing = inked(FRAME, HOLE, SQUARE, *hatching(5.3, HOLE, SQUARE), seed=3)
+    every = {line.number: line for line in trace_lines(drawing).lines}
+    assert sorted(every) == [1, 2, 3]
+    for number, line in every.items():
+        (alone,) = found_lines(Setup(drawing.sheet), (number,)).lines
+        assert alone.length_mm == line.length_mm
+    assert every[1].length_mm > every[2].length_mm > every[3].length_mm
+
+
+def arrow(tip: tuple[float, float], way: tuple[float, float]) -> list[Points]:
+    """An arrowhead 3.5 mm long, filled with lines."""
+    ends, (u, v) = np.linspace(-0.45, 0.45, 7), way
+    return [polyline(tip, (tip[0] + 3.5 * u - k * v, tip[1] + 3.5 * v + k * u)) for k in ends]
+
+
+def test_a_dimension_is_no_side_of_a_contour() -> None:
+    """Its extension lines go straight on from the sides of the frame."""
+    below = polyline((8, 8), (8, 0)), polyline((58, 8), (58, 0)), polyline((8, 2), (58, 2))
+    lines = cut(FRAME, *below, *arrow((8, 2), (1, 0)), *arrow((58, 2), (-1, 0)))
+    assert are(lines, FRAME)
+
+
+def test_a_centre_line_makes_no_halves() -> None:
+    """Nor does the open arc of a thread round the hole."""
+    thread = arc((24, 26), 7.5)[: int(0.74 * len(HOLE))]
+    lines = cut(FRAME, HOLE, thread, polyline((14, 26), (34, 26)), polyline((24, 16), (24, 36)))
+    assert are([line for line in lines if line.ending == "closed"], FRAME, HOLE)
+
+
+def test_hatching_that_ends_at_corners_cuts_none_off() -> None:
+    """One stroke goes from a corner of the bore to a corner of the outline."""
+    bore = polyline((30, 20), (58, 20), (58, 32), (30, 32), (30, 20))
+    area = shapely.Polygon(FRAME).difference(shapely.Polygon(bore))
+    strokes = [shapely.LineString([(x, 0), (x + 60, 60)]) for x in np.arange(-50, 60, 4.0)]
+    pieces = shapely.get_parts(shapely.intersection(shapely.MultiLineString(strokes), area))
+    lines = cut(FRAME, bore[1:], *(shapely.get_coordinates(p) for p in pieces if p.length > 1))
+    assert are(lines[-1:], FRAME)

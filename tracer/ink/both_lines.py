@@ -1,0 +1,103 @@
+"""Both lines: the two lines of a pen whose ink runs together along a stretch.
+
+Signals: the stations along a stretch of doubled ink (see `doubled`; places mm, widths mm) and the pen's width
+in; out the stations of both lines, half a pen's width within the rims of their ink.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.plane import left_of_headings
+from morfax.tracer.drawing.thinning import Indices
+from morfax.tracer.ink.felt import FEWEST_STATIONS
+from morfax.tracer.ink.run import Run, smooth
+
+# All limits below were chosen by trial on drawings of nets and on line art.
+# of its way: ink of two lines that becomes wider by more has come to others that cross it
+FLARE = 0.15
+TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
+# widths from there: the slope of the ink's width up to the nearer place ...
+CROSSED = 3.0, 6.0
+# ... is so much of that between the two, or more: of lines that only touch, as a parabola does, a third
+LEVEL_OFF = 0.45
+# of the stations where ink lies still: of two lines more lie together, between flares. Ink that swells and
+# shrinks on the way is a line that is broader at its bends, as a printed letter's (0.2 to 0.7; a pen's loop
+# 0.83); by trial
+STILL = 0.75
+
+
+def strands(stations: Run, width_mm: float) -> list[Run]:
+    """The two lines of a width whose ink runs together along some stations: half a width within its rims.
+
+    None where the ink swells on the way. Where the ink is as narrow as one line they touch, or change sides:
+
+        width │ ╲  ╱  crosses: it comes and goes at a slope     ╲_  _╱  touches: the slope fades
+              │  ╲╱                                               ╲╱
+    """
+    known = np.flatnonzero(np.isfinite(stations.widths_mm))
+    if len(known) < FEWEST_STATIONS:
+        return []
+    at = np.arange(len(stations))
+    widths = np.interp(at, known, stations.widths_mm[known])
+    reach = max(1, round(0.5 * width_mm / stations.view.step_mm))
+    part_of = _without_flares(widths, known, reach, FLARE * reach * stations.view.step_mm)
+    if part_of is None:
+        return []
+    first, last = part_of
+    part, widths = stations.part(first, last), widths[first:last]
+    aside = 0.5 * np.maximum(widths - width_mm, 0.0)
+    aside *= _sides(aside, width_mm, stations.view.step_mm)
+    normals = left_of_headings(part.headings_rad)
+    own = replace(part, widths_mm=np.full(len(part), width_mm), is_strand=True)
+    return [
+        smooth(replace(own, places_mm=part.places_mm + side * aside[:, None] * normals))
+        for side in (1, -1)
+    ]
+
+
+def _sides(aside: Array, width_mm: float, step_mm: float) -> Array:
+    """On which side one of two lines is at each station, 1 or -1: it changes where they cross."""
+    near, far = (round(share * width_mm / step_mm) for share in CROSSED)
+    sides = np.ones(len(aside))
+    narrow = np.flatnonzero(aside < TOUCHING * width_mm)
+    for some in np.split(narrow, np.flatnonzero(np.diff(narrow) > near) + 1):
+        if not len(some) or some[0] < far or some[-1] + far >= len(aside):
+            continue
+        at = round(float(some.mean()))
+        slopes = [
+            (aside[at + side * far] - aside[at + side * near]) / (far - near)
+            for side in (-1, 1)
+        ]
+        chords = [aside[at + side * near] / near for side in (-1, 1)]
+        if min(chords) > LEVEL_OFF * max(slopes) and min(slopes) > 0:
+            sides[at:] *= -1
+    return sides
+
+
+def _without_flares(
+    widths: Array, known: Indices, reach: int, most_mm: float
+) -> tuple[int, int] | None:
+    """The first station and the one after the last between which ink of two lines does not flare out into
+    what crosses it, by more than a width over some stations; all that are known where it never lies still;
+    None where it swells and shrinks on the way.
+    """
+    first, last = int(known[0]), int(known[-1]) + 1
+    if last - first <= reach:
+        return first, last
+    steps = widths[first + reach : last] - widths[first : last - reach]
+    quiet = np.flatnonzero(np.abs(steps) < most_mm)
+    if len(quiet) < FEWEST_STATIONS:
+        return first, last
+    # a flare is still for a moment where it is broadest
+    parts = np.split(quiet, np.flatnonzero(np.diff(quiet) > reach) + 1)
+    longest = max(parts, key=lambda part: int(part[-1] - part[0]))
+    among = steps[quiet[0] : quiet[-1]]
+    if len(longest) < STILL * len(quiet) and among.max() > most_mm and among.min() < -most_mm:
+        return None
+    return first + int(longest[0]), first + int(longest[-1]) + reach + 1

@@ -1,0 +1,212 @@
+"""Own ink: whether a pen along closed ways would leave the ink that is on the sheet.
+
+    ║  ╭╮  ║      the head went straight across a bay, or cut its end short: there the pen's ink lies beside
+    ║  ││  ║      the sheet's
+    ╚══╯╰══╝
+
+Within some widths of a way each pixel is held against the ink of a pen (see `pen_on_ink`) on whatever way is
+nearest to it, of that width which explains a box about it best: a line that swells is no other line. What the
+pen draws on paper there is summed,
+
+    over = (sum((drawn - seen)²) - what the paper's noise leaves) · area of a pixel / width²
+
+and so is the ink that it leaves; a way is beside its ink where the lesser of both is large, and far above
+that of most of its line. By itself neither tells: another line or a tick leaves ink, and a gap is paper.
+
+Signals: the drawing and lines that were followed in; stretches of closed ones beside their ink out.
+
+Source: our own, as tangles are redrawn. Questions: a way that cuts off ink, and stays on ink, as along a
+tick, is not found.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.median import median, percentile
+from morfax.motion.polyline import evenly
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.against_ink.pen_on_ink import Pen, Room, Ways, over_at
+from morfax.tracer.program.against_ink.surely_on_ink import may_be_over
+
+# Limits chosen by trial on 625 right ways of parts, holes, slots, notches and tongues, none of which comes
+# above them. Of 25 wrong ones 12 do, and of those that are more than 0.4 mm off all but two.
+OVER = 0.05
+MOST_SPECKS = 2.2  # the same in pixels: so much is left by specks, which a scan has
+OF_MOST = 6.0  # times what is over on most of the line
+MOST = 60.0  # percent of the line
+REACH_WIDTHS = 1.25  # from a way: ink further away is another line's
+OF_WIDTH = (0.8, 0.9, 1.0, 1.1, 1.25)  # of the line's: pens that are tried
+STATION_WIDTHS = 0.25  # between the places at which a way is judged
+# between the places that stand for a way: near its edge they are 0.04 px off it
+PLACES_PX = 1.0
+TILE_PX = 128  # of what is judged in one
+QUICK_PX = 256  # of what is looked through first
+
+
+class Beside(NamedTuple):
+    """A stretch of a closed way beside its ink: the place furthest beside it, how long it is, mm, and whether
+    it is above the whole limit.
+    """
+
+    place_mm: tuple[float, float]
+    length_mm: float
+    is_sure: bool
+
+
+class _Tiles(NamedTuple):
+    """In which tile of a side each place of the ways is, the places in the order of these, and tiles in a
+    row.
+    """
+
+    side_px: int
+    of_place: NDArray[np.int32]
+    order: NDArray[np.int64]
+    across: int
+
+    @classmethod
+    def of(cls, ways: Ways, side_px: int) -> _Tiles:
+        """The tiles of some ways; the last of each row is empty."""
+        column, row = np.maximum(ways.places_px.T / side_px, 0).astype(np.int32)
+        across = 2 + int(column.max())
+        of_place = row * across + column
+        return cls(side_px, of_place, np.argsort(of_place, kind="stable"), across)
+
+    def about(self, row: int, column: int) -> NDArray[np.int64]:
+        """The numbers of the places in a tile and in the eight about it."""
+        firsts = (np.arange(row - 1, row + 2) * self.across + column - 1)[:, None]
+        edges = (firsts + np.array([0, 3])).astype(
+            self.of_place.dtype
+        )  # else all would be copied
+        ends = np.searchsorted(self.of_place, edges, sorter=self.order)
+        return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
+
+
+def beside(drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0) -> Iterator[Beside]:
+    """Where closed lines run beside their ink, by so much of the limit; nothing where no pen can be told."""
+    if not drawing.noise.softness_px > 0 or drawing.grainy:
+        return
+    ways = _ways(drawing, lines)
+    doubtful = _doubtful(drawing, ways, of_limit) if ways.closed.any() else ways.closed
+    judged = list(_judged(drawing, ways, of_limit, doubtful)) if doubtful.any() else []
+    if not judged:
+        return
+    line, station, over = (np.concatenate(column) for column in zip(*judged, strict=True))
+    for number in np.flatnonzero(doubtful):
+        own = np.flatnonzero(line == number)
+        order = own[np.argsort(station[own], kind="stable")]
+        least = float(_least(ways.half_px[number]))
+        if len(order):
+            least = max(least, OF_MOST * percentile(over[order], MOST))
+        for first, last in _stretches(over[order] > of_limit * least):
+            stretch = order[first:last]
+            worst = stretch[int(np.argmax(over[stretch]))]
+            places = 1 + station[stretch[-1]] - station[stretch[0]]
+            place_mm = _mm(drawing, ways.places_px[station[worst]])
+            long_mm = float(places * PLACES_PX * drawing.pitch_mm)
+            yield Beside(place_mm, long_mm, bool(over[worst] > least))
+
+
+def _least(half_px: Array) -> Array:
+    """What is over by no more is noise or specks; of lines of half a width in pixels."""
+    return np.maximum(OVER, MOST_SPECKS / (2 * half_px) ** 2)
+
+
+def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
+    """The ways of lines in pixels of the sheet."""
+    pitch_mm, rows = drawing.pitch_mm, drawing.darkness.shape[0]
+    ways = [evenly(line.places_mm, PLACES_PX * pitch_mm) for line in lines]
+    places = [np.column_stack([way[:, 0], rows * pitch_mm - way[:, 1]]) for way in ways]
+    return Ways(
+        np.vstack([(some / pitch_mm - 0.5).astype(np.float32) for some in places]),
+        np.repeat(np.arange(len(ways), dtype=np.int32), [len(way) for way in ways]),
+        np.array([0.5 * line.width_mm / pitch_mm for line in lines]),
+        np.array([line.ending == "closed" and not line.on_edge for line in lines]),
+    )
+
+
+def _doubtful(drawing: Drawing, ways: Ways, of_limit: float) -> NDArray[np.bool_]:
+    """Which closed lines are not surely on their ink: most are, and need not be judged."""
+    doubtful = np.zeros(len(ways.closed), bool)
+    limits = of_limit * _least(ways.half_px)
+    for part in _parts(drawing, ways, ways.closed, QUICK_PX, of_limit):
+        line = ways.line[part.stations]
+        is_over = np.empty(len(line), bool)
+        may_be_over(part.seen, part.ways, part.at, limits[line], part.pen, part.room, is_over)
+        doubtful[line[is_over]] = True
+    return doubtful
+
+
+def _judged(
+    drawing: Drawing, ways: Ways, of_limit: float, which: NDArray[np.bool_]
+) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
+    """The stations of some closed lines, tile by tile: line, number of the place, and what is over."""
+    for part in _parts(drawing, ways, which, TILE_PX, of_limit):
+        over = over_at(part.seen, part.ways, part.at, part.pen, part.room)
+        yield ways.line[part.stations], part.stations, over
+
+
+class _Part(NamedTuple):
+    """A tile of the sheet with what lies about it: the darkness, the ways as they are seen from its corner,
+    the numbers of the stations in the tile and their pixels, the pen, and room to work in.
+    """
+
+    seen: NDArray[np.float32]
+    ways: Ways
+    stations: NDArray[np.int64]
+    at: NDArray[np.int64]
+    pen: Pen
+    room: Room
+
+
+def _parts(
+    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], side_px: int, of_limit: float
+) -> Iterator[_Part]:
+    """The tiles of a side in which some of the closed lines have stations."""
+    tiles, pen = _Tiles.of(ways, side_px), _pen(drawing, ways, of_limit * OVER)
+    is_station = which[ways.line] & (np.arange(len(ways.line)) % _every(ways) == 0)
+    margin = math.ceil(2 * (REACH_WIDTHS + 1) * pen.half_px) + 1
+    room = Room.of((side_px + 2 * margin) ** 2, pen.reach_px)
+    for number in sorted(set(tiles.of_place[is_station].tolist())):
+        row, column = divmod(number, tiles.across)
+        near = tiles.about(row, column)
+        stations = near[is_station[near] & (tiles.of_place[near] == number)]
+        top, left = max(row * side_px - margin, 0), max(column * side_px - margin, 0)
+        down, along = (row + 1) * side_px + margin, (column + 1) * side_px + margin
+        seen = np.ascontiguousarray(drawing.darkness[top:down, left:along])
+        corner = np.array([left, top], np.float32)
+        at = np.round(ways.places_px[stations] - corner).astype(int)
+        at = np.clip(at, 0, np.array(seen.shape)[::-1] - 1)
+        yield _Part(seen, ways.seen_from(corner, near), stations, at, pen, room)
+
+
+def _pen(drawing: Drawing, ways: Ways, over: float) -> Pen:
+    """The pen of most closed lines; what it draws on paper matters above a limit."""
+    half_px, noise = median(ways.half_px[ways.closed]), drawing.noise
+    reach_px, paper = 2 * REACH_WIDTHS * half_px, 0.5 * noise.paper**2
+    return Pen(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, over)
+
+
+def _every(ways: Ways) -> int:
+    """One place of the ways in so many is a station."""
+    return max(1, round(2 * STATION_WIDTHS * float(np.min(ways.half_px)) / PLACES_PX))
+
+
+def _stretches(above: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """The first and the one after the last of each stretch of stations that are above the limit."""
+    edges = np.flatnonzero(np.diff(np.r_[False, above, False].astype(np.int8)))
+    return [(int(first), int(last)) for first, last in edges.reshape(-1, 2)]
+
+
+def _mm(drawing: Drawing, place_px: NDArray[np.float32]) -> tuple[float, float]:
+    """A place in pixels, on the sheet in mm."""
+    column, row = place_px.tolist()
+    rows = drawing.darkness.shape[0]
+    return (column + 0.5) * drawing.pitch_mm, (rows - row - 0.5) * drawing.pitch_mm

@@ -1,0 +1,241 @@
+"""Pen on ink: a part of a sheet is held against the ink of a pen on the ways there, pixel by pixel.
+
+    1. what way is nearest to each pixel within reach: its line, and how far it is
+    2. what a pen of the felt width leaves wrong in the box about each of those pixels; where that is hardly
+       anything, the best pen draws no more than that on paper, and stations are judged by it
+    3. else the pen, of some widths, that explains each box best: what it draws on paper, and what it leaves
+
+Signals: darkness of a part of the sheet (rows, columns), places of the ways (n, 2) in its columns and rows,
+stations (m, 2) of closed lines among them; what is over about each station out (see `own_ink`).
+
+Source: our own. Questions: none.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
+from morfax.tracer.tangles.pen import ink_at
+from morfax.tracer.tangles.tangle import DARKEST
+
+
+class Pen(NamedTuple):
+    """The pen of most lines: half its width and its softness in pixels, how far from a way it is looked at,
+    the variance of the paper's noise on either side, shares of the width that are tried, and how much may be
+    over for nothing else to be tried, in widths.
+    """
+
+    half_px: float
+    softness_px: float
+    reach_px: float
+    noise: float
+    of_width: tuple[float, ...]
+    over: float
+
+
+class Ways(NamedTuple):
+    """Places (n, 2) of all ways on a sheet, columns and rows in pixels; the number of the line of each; and
+    by lines: half the width in pixels, and whether it is closed.
+    """
+
+    places_px: NDArray[np.float32]
+    line: NDArray[np.int32]
+    half_px: Array
+    closed: NDArray[np.bool_]
+
+    def seen_from(self, corner: NDArray[np.float32], some: NDArray[np.int64]) -> Ways:
+        """Some of the places, counted from a corner."""
+        return self._replace(places_px=self.places_px[some] - corner, line=self.line[some])
+
+
+class Room(NamedTuple):
+    """Room to work in, for as many pixels (n,) as the largest part of a sheet has: squares of distances,
+    numbers, rows and columns of pixels that have one (2, n), and two rows of values; the first, second and
+    fourth are as empty after each part as before it.
+    """
+
+    away2: NDArray[np.float32]
+    number: NDArray[np.int32]
+    numbered: NDArray[np.int32]
+    spread: Array
+    boxes: Array
+
+    @classmethod
+    def of(cls, pixels: int, reach_px: float) -> Room:
+        """Room for so many pixels within a reach: made once, as the system wipes what it gives out."""
+        away2 = np.full(pixels, reach_px**2, np.float32)
+        number, numbered = np.zeros(pixels, np.int32), np.empty((2, pixels), np.int32)
+        return cls(away2, number, numbered, np.zeros(pixels), np.empty(pixels))
+
+
+class Band(NamedTuple):
+    """Pixels nearest to closed ways: rows and columns, how far the way is, half its width, the darkness."""
+
+    row: NDArray[np.int32]
+    column: NDArray[np.int32]
+    away_px: Array
+    half_px: Array
+    dark: Array
+
+
+@njit(cache=True)
+def over_at(seen, ways, stations, pen, room):  # type: ignore[no-untyped-def]
+    """What is over in the worst box about each station (m,), in widths of the pen squared."""
+    band = band_of(seen, ways, pen, room)
+    clear(seen, band, room)
+    shape, side = seen.shape, 2 * round(pen.half_px) + 1
+    spread, boxes = (
+        room.spread[: seen.size].reshape(shape),
+        room.boxes[: seen.size].reshape(shape),
+    )
+    width2, over = (2 * pen.half_px) ** 2, np.empty(len(stations))
+    # 1. the felt pen alone
+    values = np.empty(len(band.dark))
+    for k in range(len(values)):
+        wrong = ink_at(band.away_px[k], pen.half_px, pen.softness_px) - band.dark[k]
+        values[k] = wrong * wrong - 2 * pen.noise
+    most = in_boxes(band, values, side, spread, boxes)
+    if most < pen.over * width2:
+        for k in range(len(stations)):
+            over[k] = most_about(boxes, stations[k], side) / width2
+        return over
+    # 2. the best of some pens
+    on_paper, on_ink = np.zeros(shape), np.zeros(shape)
+    _best(band, pen, spread, on_paper, on_ink)
+    for k in range(len(stations)):
+        paper, left = (
+            most_about(on_paper, stations[k], side),
+            most_about(on_ink, stations[k], side),
+        )
+        over[k] = min(paper, left) / width2
+    return over
+
+
+@njit(cache=True)
+def _best(band, pen, spread, on_paper, on_ink):  # type: ignore[no-untyped-def]
+    """Fill in what the pen that explains each box best draws on paper there, and what ink it leaves."""
+    side = 2 * round(pen.half_px) + 1
+    paper, left = np.empty(len(band.dark)), np.empty(len(band.dark))
+    papers, lefts = np.empty(spread.shape), np.empty(spread.shape)
+    least = np.full(spread.shape, np.inf)
+    for share in pen.of_width:
+        for k in range(len(band.dark)):
+            away_px = band.away_px[k] - (share - 1) * band.half_px[k]
+            wrong = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
+            paper[k] = max(wrong, 0.0) ** 2 - pen.noise
+            left[k] = max(-wrong, 0.0) ** 2 - pen.noise
+        in_boxes(band, paper, side, spread, papers)
+        in_boxes(band, left, side, spread, lefts)
+        for i in range(len(spread)):
+            for j in range(spread.shape[1]):
+                both = papers[i, j] + lefts[i, j]
+                if both < least[i, j]:
+                    least[i, j], on_paper[i, j], on_ink[i, j] = both, papers[i, j], lefts[i, j]
+
+
+@njit(cache=True)
+def band_of(seen, ways, pen, room):  # type: ignore[no-untyped-def]
+    """The pixels of a part of the sheet that are nearest to closed ways; their numbers, from 1, are left in
+    the room until it is cleared.
+    """
+    away2 = room.away2[: seen.size].reshape(seen.shape)
+    number = room.number[: seen.size].reshape(seen.shape)
+    count = _nearest(ways, pen.reach_px, away2, number, room.numbered)
+    row, column = np.empty(count, np.int32), np.empty(count, np.int32)
+    away, half, dark = np.empty(count), np.empty(count), np.empty(count)
+    n = 0
+    for k in range(count):
+        i, j = room.numbered[0, k], room.numbered[1, k]
+        line = number[i, j] - 1
+        number[i, j] = 0
+        if ways.closed[line]:
+            row[n], column[n] = i, j
+            away[n], half[n] = math.sqrt(away2[i, j]), ways.half_px[line]
+            dark[n] = min(float(seen[i, j]), DARKEST)
+            n += 1
+            number[i, j] = n
+        away2[i, j] = pen.reach_px**2
+    return Band(row[:n], column[:n], away[:n], half[:n], dark[:n])
+
+
+@njit(cache=True)
+def clear(seen, band, room):  # type: ignore[no-untyped-def]
+    """Take the numbers of a band's pixels out of the room."""
+    number = room.number[: seen.size].reshape(seen.shape)
+    for k in range(len(band.row)):
+        number[band.row[k], band.column[k]] = 0
+
+
+@njit(cache=True)
+def _nearest(ways, reach_px, away2, number, numbered):  # type: ignore[no-untyped-def]
+    """For each pixel the square of how far the nearest place of some ways is, if less than what is there,
+    and the number, from 1, of which line it is; no place changes a pixel out of reach. Fill in which pixels
+    have got a number, and give how many.
+    """
+    places, lines = ways.places_px, ways.line
+    rows, columns = away2.shape
+    across2, count = np.empty(2 * math.ceil(reach_px) + 2, np.float32), 0
+    for k in range(len(places)):
+        x, y, line = places[k, 0], places[k, 1], lines[k]
+        left = max(0, math.ceil(x - reach_px))
+        wide = min(columns, int(x + reach_px) + 1) - left
+        for j in range(wide):
+            across2[j] = (left + j - x) ** 2
+        for row in range(max(0, math.ceil(y - reach_px)), min(rows, int(y + reach_px) + 1)):
+            down2 = np.float32((row - y) ** 2)
+            for j in range(wide):
+                square = across2[j] + down2
+                if square < away2[row, left + j]:
+                    away2[row, left + j] = square
+                    if number[row, left + j] == 0:
+                        numbered[0, count], numbered[1, count] = row, left + j
+                        count += 1
+                    number[row, left + j] = line + 1
+    return count
+
+
+@njit(cache=True)
+def in_boxes(band, values, side, spread, sums):  # type: ignore[no-untyped-def]
+    """Fill in sums of the values of the band's pixels over a box about each pixel; give the largest sum.
+
+    `spread` is room to work in: zeros before and after.
+    """
+    rows, columns = sums.shape
+    half, most = side // 2, -np.inf
+    for k in range(len(values)):
+        spread[band.row[k], band.column[k]] = values[k]
+    # sums down the columns, with half a box of paper to the left and right of them
+    down = np.zeros(columns + 2 * half + 1)
+    inner = down[half + 1 : half + 1 + columns]
+    for row in range(-half, rows):
+        if row + half < rows:
+            inner += spread[row + half]
+        if row > half:
+            inner -= spread[row - half - 1]
+        if row < 0:
+            continue
+        total = down[:side].sum()
+        for column in range(columns):
+            total += down[column + side] - down[column]
+            sums[row, column] = total
+            most = max(most, total)
+    for k in range(len(values)):
+        spread[band.row[k], band.column[k]] = 0.0
+    return most
+
+
+@njit(cache=True)
+def most_about(boxes, pixel, side):  # type: ignore[no-untyped-def]
+    """The most that is in the boxes about a pixel (column and row)."""
+    half, most = side // 2, -np.inf
+    for row in range(max(0, pixel[1] - half), min(len(boxes), pixel[1] + half + 1)):
+        left, right = max(0, pixel[0] - half), min(boxes.shape[1], pixel[0] + half + 1)
+        for column in range(left, right):
+            most = max(most, boxes[row, column])
+    return most

@@ -1,0 +1,125 @@
+"""Surely on ink: a quick proof that what a pen leaves wrong about stations of a way is below a limit.
+
+`over_at` (see `pen_on_ink`) has the pen of several widths that explains a box best. Whatever pen that is, it
+leaves no more than the felt pen, and neither what it draws on paper nor what ink it leaves counts for less
+than no noise at all. So both are below
+
+    over <= sum((drawn by the felt pen - seen)²) - noise · pixels of the box
+
+and only boxes that are above the limit by this are looked at with all the pens.
+
+Signals: as of `over_at`, and the limit of each station (m,) in; out for each whether it may be over.
+
+Source: our own. Questions: none.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from morfax.motion.compiled import njit
+from morfax.tracer.program.against_ink.pen_on_ink import band_of, clear
+from morfax.tracer.tangles.pen import ink_at
+
+ROUNDED = 1e-9  # of a limit: more than the sums of a box are rounded by
+KEPT = 1021  # boxes of which is kept what was told; a prime number
+WIDEST_PX = 1 << 20  # more than any part of a sheet is wide: a box's number tells its place
+
+
+@njit(cache=True)
+def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (m,) with whether more than its limit, in widths of the pen squared, is over about each
+    station.
+    """
+    band = band_of(seen, ways, pen, room)
+    spread = room.spread[: seen.size].reshape(seen.shape)
+    for k in range(len(band.dark)):
+        wrong = ink_at(band.away_px[k], pen.half_px, pen.softness_px) - band.dark[k]
+        spread[band.row[k], band.column[k]] = wrong * wrong - pen.noise
+    side = 2 * round(pen.half_px) + 1
+    down, boxes = np.empty(2 * side - 1), np.empty((side, side))
+    told = np.full((KEPT, 3), -1.0)
+    for k in range(len(stations)):
+        limit = (1 - ROUNDED) * limits[k] * (2 * pen.half_px) ** 2
+        _in_boxes_about(spread, stations[k], down, boxes)
+        out[k] = boxes.max() > limit and _is_over(
+            (boxes, told), (seen, band, room), stations[k], limit, pen
+        )
+    for k in range(len(band.dark)):
+        spread[band.row[k], band.column[k]] = 0.0
+    clear(seen, band, room)
+
+
+@njit(cache=True)
+def _in_boxes_about(values, pixel, down, boxes):  # type: ignore[no-untyped-def]
+    """Fill in the sums of values over the boxes about each pixel of the box about a pixel (column, row).
+
+    `down` is room to work in: sums of each column, two sides less one wide.
+    """
+    side = len(boxes)
+    top, left = pixel[1] - side + 1, pixel[0] - side + 1
+    first, last = max(left, 0), min(left + len(down), values.shape[1])
+    down[:] = 0.0
+    inner = down[first - left : last - left]
+    for n in range(2 * side - 1):
+        if 0 <= top + n < len(values):
+            entering = values[top + n, first:last]
+            for j in range(len(inner)):
+                inner[j] += entering[j]
+        if n >= side and 0 <= top + n - side < len(values):
+            leaving = values[top + n - side, first:last]
+            for j in range(len(inner)):
+                inner[j] -= leaving[j]
+        if n >= side - 1:
+            across = boxes[n - side + 1]
+            across[:] = 0.0
+            for i in range(side):
+                for j in range(side):
+                    across[j] += down[i + j]
+
+
+@njit(cache=True)
+def _is_over(found, part, station, limit, pen):  # type: ignore[no-untyped-def]
+    """Whether the best pens draw more than a limit on paper in a box about a station, and leave more ink.
+
+    What is told of a box is kept for the next stations, as long as no other needs its place: `told` has the
+    box's number, and both.
+    """
+    (boxes, told), half = found, round(pen.half_px)
+    most_paper, most_left = -np.inf, -np.inf
+    for i in range(len(boxes)):
+        for j in range(len(boxes)):
+            if boxes[i, j] <= limit:
+                continue
+            box = station[0] + j - half, station[1] + i - half
+            number = box[1] * WIDEST_PX + box[0]
+            kept = told[number % KEPT]
+            if kept[0] != number:
+                kept[0] = number
+                kept[1], kept[2] = _best_in(part, box, pen)
+            most_paper, most_left = max(most_paper, kept[1]), max(most_left, kept[2])
+    return min(most_paper, most_left) > limit
+
+
+@njit(cache=True)
+def _best_in(part, box, pen):  # type: ignore[no-untyped-def]
+    """What the pen that explains the box about a pixel (column, row) best draws on paper there, and what ink
+    it leaves.
+    """
+    seen, band, room = part
+    number = room.number[: seen.size].reshape(seen.shape)
+    half, least = round(pen.half_px), np.inf
+    best_paper, best_left = 0.0, 0.0
+    for share in pen.of_width:
+        paper, left = 0.0, 0.0
+        for i in range(max(0, box[1] - half), min(len(seen), box[1] + half + 1)):
+            for j in range(max(0, box[0] - half), min(seen.shape[1], box[0] + half + 1)):
+                k = number[i, j] - 1
+                if k >= 0:
+                    away_px = band.away_px[k] - (share - 1) * band.half_px[k]
+                    wrong = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
+                    paper += max(wrong, 0.0) ** 2 - pen.noise
+                    left += max(-wrong, 0.0) ** 2 - pen.noise
+        if paper + left < least:
+            least, best_paper, best_left = paper + left, paper, left
+    return best_paper, best_left

@@ -1,0 +1,251 @@
+"""What lines that came round do not explain: ink of theirs along which no line runs, and ways without ink.
+
+Signals: the sheet and the lines that were followed in; out the places at which the head's own pen would not
+have drawn what is there.
+
+    ───╮  ╭───     a tip that the head passed by: its ink lies more than a width and a half beside every way
+       │──│
+       ╰──╯        a way over bare paper, longer than a gap that the head may cross
+
+A line that comes round may still be another than the one that was drawn, where tips and bays are narrower
+than two lines.
+
+On a coarse scan, whose pixels were made finer, lines look a pixel wider than they are, and a way that cuts
+off a spike or a bay runs over ink that is paler than a line, not over paper. Where lines are about a pixel
+wide, the ink that a pen would leave on the way is held against the sheet's (see `redrawn`).
+
+Source: our own; the operator of patent ES 361967 looks at the drawing and at the part. Questions: whether ink
+beside a line belongs to it, or is another line that touches it, the pen cannot know.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import lengths_mm, nearest_mm, with_places
+from morfax.tracer.drawing import coarse
+from morfax.tracer.drawing.components import joined
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.sharpening import turned_at
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.against_ink.own_ink import beside
+from morfax.tracer.program.against_ink.redrawn import most_astray
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.photocell import darkness_along, without_aperture
+
+BEYOND_WIDTHS = 1.5  # beyond the edge of a line ink is no longer that line's
+BARE = 0.25  # darkness: paler places are paper
+# darkness: on a coarse scan a line's middle is darker; of 135 right paths on lines of 1 to 2 pixels 3 come
+# below it, in blurred corners, and all of 10 wrong ones; by trial
+PALE = 0.6
+TIP = np.radians(120.0)  # a corner that turns by more is a tip
+CUT_MM = 0.1  # ten times a corner's error
+BESIDE = 2.0  # times as far apart as both are off: it is the same tip
+BESIDE_WIDTHS = 3.0  # of a place: it has been found already
+EVERY_MM = 0.05  # between the places of an edge, as between those of a way
+# darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
+# less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
+ASTRAY = 0.2
+
+
+Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale"]
+
+
+class Unexplained(NamedTuple):
+    """A place that the ways do not explain: where, how much (mm), and what is there.
+
+    ink       ink beside all ways: how far it reaches
+    tip       a tip of a filled shape, or its edge: how much of it the way cuts off
+    bare      a way over bare paper: for how long
+    beside    a way beside its own pen's ink: for how long
+    broad     strokes within ink that is as broad as two lines: for how long
+    pale      on a coarse scan a way over ink that is pale: for how long; and `wants_dpi`, the resolution that
+        would show what is there
+    """
+
+    place_mm: tuple[float, float]
+    length_mm: float
+    kind: Kind
+    wants_dpi: int | None = None
+    is_sure: bool = True
+
+
+def unexplained(
+    setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
+) -> tuple[Unexplained, ...]:
+    """What the closed ones of some lines leave unexplained, the longest first; of lines that ran into
+    themselves only ink, for there the head may have turned off its line. A way is beside its ink from so much
+    of the limit on.
+
+    Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
+    """
+    closed = [line for line in lines if line.ending == "closed"]
+    if not _come_round(lines) or setup.operator.reads_marks(lines):
+        return ()
+    sheet, gap_mm = setup.sheet, setup.settings.gap_mm
+    found = [*ink_beside(sheet, lines), *_bare_ways(sheet, closed, gap_mm)]
+    found += _tips_cut(sheet.drawing.edges_mm, closed)
+    found += _once(_off_edges(sheet.drawing, closed))
+    found = found or list(_astray(sheet, closed))
+    found += _beside_ink(sheet.drawing, lines, found, of_limit)
+    return tuple(sorted(found, key=lambda place: -place.length_mm))
+
+
+def beside_ink(
+    setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
+) -> tuple[Unexplained, ...]:
+    """Where closed lines run beside their ink, from so much of the limit on; the longest first."""
+    found = _beside_ink(setup.sheet.drawing, lines, (), of_limit) if lines else ()
+    return tuple(sorted(found, key=lambda place: -place.length_mm))
+
+
+def _beside_ink(
+    drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained], of_limit: float
+) -> Iterator[Unexplained]:
+    """Stretches of closed lines beside their ink, but for those about what was found otherwise."""
+    about_mm = BESIDE_WIDTHS * max(line.width_mm for line in lines)
+    for place_mm, long_mm, is_sure in beside(drawing, lines, of_limit):
+        if all(math.dist(place_mm, other.place_mm) > about_mm for other in found):
+            yield Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
+
+
+def _come_round(lines: Sequence[Line]) -> list[Line]:
+    """Those of some lines that came round."""
+    return [line for line in lines if line.ending in ("closed", "joined")]
+
+
+def ink_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Unexplained]:
+    """Ink of the patches of those of some lines that came round, beside all ways."""
+    patches, come_round = sheet.patches, _come_round(lines)
+    if not come_round:
+        return
+    # 1. the patches on which they run
+    own = np.zeros(patches.count, bool)
+    own[[sheet.patch_at(line.loop_mm[0]) for line in come_round]] = True
+    runs = np.flatnonzero(own[patches.patch] & ~sheet.are_solid[patches.patch])
+    if not len(runs):
+        return
+    # 2. how far both ends of their runs are from the ways
+    ways = np.vstack([line.places_mm for line in lines])
+    ends = np.vstack([sheet.run_begins_mm(runs), sheet.run_ends_mm(runs)])
+    away_mm = nearest_mm(ends, ways).reshape(2, -1)
+    width_mm = np.array([line.width_mm for line in come_round]).max()
+    widths_mm = np.maximum(sheet.widths_mm[patches.patch[runs]], width_mm)
+    widths_mm = widths_mm - (_pixel_mm(sheet) if _is_coarse(sheet) else 0.0)
+    far = away_mm.max(axis=0) > (0.5 + BEYOND_WIDTHS) * widths_mm
+    # 3. those that lie together, where each reaches furthest
+    runs, away_mm, ends = runs[far], away_mm[:, far], ends.reshape(2, -1, 2)[:, far]
+    group, count = joined(patches.row[runs], patches.begin[runs], patches.end[runs], True)
+    for number in range(count):
+        mine = np.flatnonzero(group == number)
+        furthest = np.unravel_index(np.argmax(away_mm[:, mine]), (2, len(mine)))
+        x, y = ends[:, mine][furthest]
+        yield Unexplained((float(x), float(y)), float(away_mm[:, mine].max()), "ink")
+
+
+def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[Unexplained]:
+    """Stretches of closed lines over bare paper."""
+    for line in closed:
+        places = line.loop_mm
+        come_mm, dark = lengths_mm(places), _darkness(sheet, places)
+        bare = list(_stretches(dark < BARE, come_mm, gap_mm + BEYOND_WIDTHS * line.width_mm))
+        for middle, long_mm in bare:
+            x, y = places[middle]
+            yield Unexplained((float(x), float(y)), long_mm, "bare")
+        if bare or not _is_coarse(sheet):
+            continue
+        for middle, long_mm in _stretches(dark < PALE, come_mm, 0.0):
+            x, y = places[middle]
+            yield Unexplained((float(x), float(y)), long_mm, "pale", _wanted_dpi(sheet))
+
+
+def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Unexplained]:
+    """Tips of filled shapes that the picture shows, and the way does not come to."""
+    tips = [edge[:-1][turned_at(edge[:-1], 1) > TIP] for edge in edges_mm]
+    places = np.vstack([np.empty((0, 2)), *tips])
+    if not len(places) or not closed:
+        return
+    # an edge that was not followed is further away
+    away_mm = nearest_mm(places, np.vstack([line.places_mm for line in closed]))
+    for k in np.flatnonzero((away_mm > CUT_MM) & (away_mm < OFF_MM)):
+        x, y = places[k]
+        yield Unexplained((float(x), float(y)), float(away_mm[k]), "tip")
+
+
+def _off_edges(drawing: Drawing, closed: Sequence[Line]) -> Iterator[Unexplained]:
+    """Where the ways and the edges of filled shapes are further apart than a fine scan allows."""
+    most_mm = most_off_mm(drawing.pitch_mm * drawing.enlarged)
+    if not drawing.edges_mm or not closed or most_mm <= OFF_MM:
+        return
+    ways = [line.places_mm for line in closed]
+    edges = [with_places(edge, EVERY_MM) for edge in drawing.edges_mm]
+    for lines, others in ((edges, ways), (ways, edges)):
+        all_mm = nearest_mm(np.vstack(lines), np.vstack(others))
+        ends = np.cumsum([len(line) for line in lines])
+        for line, away_mm in zip(lines, np.split(all_mm, ends[:-1]), strict=True):
+            if np.median(away_mm) > OFF_MM:
+                continue  # an edge that was not followed
+            off = np.diff(np.r_[False, away_mm > OFF_MM, False].astype(np.int8))
+            for begin, end in np.flatnonzero(off).reshape(-1, 2):
+                worst = int(begin + np.argmax(away_mm[begin:end]))
+                x, y = line[worst]
+                yield Unexplained((float(x), float(y)), float(away_mm[worst]), "tip")
+
+
+def _once(places: Iterable[Unexplained]) -> list[Unexplained]:
+    """The places without those beside a worse one: there the edge and the way are both off."""
+    kept = list[Unexplained]()
+    for place in sorted(places, key=lambda place: -place.length_mm):
+        beside_mm = (math.dist(place.place_mm, other.place_mm) for other in kept)
+        if min(beside_mm, default=math.inf) > BESIDE * place.length_mm:
+            kept.append(place)
+    return kept
+
+
+def _stretches(
+    there: NDArray[np.bool_], come_mm: Array, least_mm: float
+) -> Iterator[tuple[int, float]]:
+    """The middle and the length (mm) of each stretch of a way that is longer than the least."""
+    edges = np.flatnonzero(np.diff(np.r_[False, there, False])).reshape(-1, 2)
+    for begin, end in edges:
+        long_mm = float(come_mm[end - 1] - come_mm[begin])
+        if long_mm > least_mm:
+            yield int(begin + end) // 2, long_mm
+
+
+def _astray(sheet: Sheet, closed: Sequence[Line]) -> Iterator[Unexplained]:
+    """Where the ink of closed lines of about a pixel is not what a pen would leave on their ways."""
+    is_finest = _is_coarse(sheet) and sheet.drawing.seen_px < coarse.SEEN_PX
+    for line in closed if is_finest else ():
+        most = most_astray(sheet.drawing, line.loop_mm)
+        if most.darkness > ASTRAY:
+            yield Unexplained(most.place_mm, _pixel_mm(sheet), "pale", _wanted_dpi(sheet))
+
+
+def _wanted_dpi(sheet: Sheet) -> int:
+    """The resolution that would show what is there."""
+    return coarse.wanted_dpi(_pixel_mm(sheet))
+
+
+def _is_coarse(sheet: Sheet) -> bool:
+    """Whether the lines of the picture were too few pixels wide."""
+    return sheet.drawing.finer > 1
+
+
+def _pixel_mm(sheet: Sheet) -> float:
+    """The pitch of the picture's own pixels."""
+    return sheet.drawing.pitch_mm * sheet.drawing.finer
+
+
+def _darkness(sheet: Sheet, places_mm: Array) -> Array:
+    """Darkness of the drawing at places (n, 2) mm, under a cell as small as a point."""
+    cells = without_aperture(sheet.drawing, BARE)
+    return np.asarray(darkness_along(cells, places_mm))

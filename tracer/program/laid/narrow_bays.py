@@ -1,0 +1,275 @@
+"""Narrow bays: notches and tongues of a closed line hardly wider than two lines, laid where the head fails.
+
+    ───╮   ╭───     the head cut the end short, ran out and back between the sides, or passed the bay by
+       ╰───╯
+
+Where a closed way leaves its ink unexplained (see `unexplained`), or comes beside itself (see
+`beside_itself`), a rule of a few straight pieces is laid by the ink between clean places of the way on either
+side (see `tangles.folding_rule`). If that explains the ink, and the head's own way does not, the head runs
+along the rule from memory.
+
+Signals: the sheet and lines in; the lines with their narrow bays mended, and what is still unexplained, out.
+
+Source: our own. Questions: a tick as thick as two lines is taken for a bay; one of a single line is not.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from hashlib import sha1
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.against_ink.bars import bar_at, reaches
+from morfax.tracer.program.against_ink.unexplained import (
+    Unexplained,
+    beside_ink,
+    ink_beside,
+    unexplained,
+)
+from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.laid.bay_run import Bay, laid
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.tangles import beside_itself, folding_rule, pen
+from morfax.tracer.tangles.folding_rule import Rule
+from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk, middles_mm
+
+# In widths of the line, chosen by trial on plates with notches and tongues:
+LEG = 1.5  # of the way before and after a bay show where the line comes from and goes on
+MOUTH = 1.0  # from a bar of ink to the way that it is joined to
+WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
+REACH = 2.2  # of the ink about the way that is looked at
+# at the edge of that, half as much ink as a line has there, so far from all lines, goes on; less is specks
+EDGE, OWN = 0.2, 0.8
+LONGEST = 80.0  # a longer stretch is no bay
+OF_LOOP = 0.8  # nor is one that is so much of its line
+MOST_PLACES = 1500  # of ink: enough to place a corner within 10 um
+FURTHER = 0.01  # as much more must be left for each width more of a way that runs out and back on one line
+# of what a way leaves that does not come beside itself, where the rule draws otherwise: less is a blot,
+# or what a rubber left
+MOST_LEFT = 0.3
+DOUBTFUL = 0.3  # of the limit above which a way is beside its ink: it may be wrong
+ROUNDS = 3  # a bay may come to light when another is mended
+MOST = 40  # bays of one line that are tried
+
+
+LeftBy = Callable[[Setup, Sequence[Line], float], tuple[Unexplained, ...]]
+
+
+class Suspect(NamedTuple):
+    """A stretch of a way that may be a bay: its first and last place, places (n, 2) mm of ink beside it that
+    belong to it, and whether the way comes beside itself.
+    """
+
+    first: int
+    last: int
+    beyond_mm: Array
+    is_beside_itself: bool = False
+
+
+def explained(
+    setup: Setup, lines: Sequence[Line]
+) -> tuple[list[Line], tuple[Unexplained, ...]]:
+    """The lines with their narrow bays mended, and what they leave unexplained."""
+    return _mended(setup, lines, unexplained)
+
+
+def beside_mended(
+    setup: Setup, lines: Sequence[Line]
+) -> tuple[list[Line], tuple[Unexplained, ...]]:
+    """The same of lines along all the ink of a sheet, of which none is another's bar."""
+    return _mended(setup, lines, beside_ink)
+
+
+def with_bars(setup: Setup, lines: Sequence[Line]) -> list[Line]:
+    """The lines with those narrow bays mended that show as bars of ink beside them."""
+    return _once_mended(setup, lines, tuple(ink_beside(setup.sheet, lines)))
+
+
+def is_clear(drawing: Drawing) -> bool:
+    """Whether a drawing is of lines that show where a pen was: on large pixels each step of them looks like
+    a corner.
+    """
+    is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
+    return is_fine and not drawing.grainy and not drawing.edges_mm
+
+
+def _mended(
+    setup: Setup, lines: Sequence[Line], left_by: LeftBy
+) -> tuple[list[Line], tuple[Unexplained, ...]]:
+    """The lines with their narrow bays mended, until no more is found, and what is left of what was told."""
+    lines, left = list(lines), left_by(setup, lines, DOUBTFUL)
+    for _ in range(ROUNDS):
+        mended = _once_mended(setup, lines, left)
+        if all(new is line for new, line in zip(mended, lines, strict=True)):
+            break
+        lines, left = mended, left_by(setup, mended, DOUBTFUL)
+    return lines, tuple(place for place in left if place.is_sure)
+
+
+def _once_mended(
+    setup: Setup, lines: Sequence[Line], left: Sequence[Unexplained]
+) -> list[Line]:
+    """The lines with their narrow bays mended; those of a drawn program as they are."""
+    if setup.operator.reads_marks(lines):
+        return list(lines)
+    return [_Bays(setup, line, lines, left).mended() for line in lines]
+
+
+@dataclass(frozen=True)
+class _Bays:
+    """The narrow bays of one of some lines, of which places are left unexplained."""
+
+    setup: Setup
+    line: Line
+    lines: Sequence[Line]
+    left: Sequence[Unexplained]
+
+    def mended(self) -> Line:
+        """The line as it is, or along the rules that explain narrow bays on it."""
+        line = self.line
+        is_marked = line.is_lead or line.reference_mm is not None or line.marks or line.guides
+        is_plain = line.ending == "closed" and not is_marked and not line.loop_from
+        if not is_plain or line.on_edge or not is_clear(self.setup.sheet.drawing):
+            return line
+        step_mm = STEP_WIDTHS * line.width_mm
+        way = evenly(line.loop_mm, step_mm)
+        round_mm = len(way) * step_mm
+        suspects = list(self._suspects(way, step_mm))[:MOST]
+        bays = [bay for each in suspects if (bay := self._bay(way, step_mm, each)) is not None]
+        if line.as_told:  # it begins where it is told to
+            bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < round_mm]
+        bays = _apart(bays, round_mm)
+        return laid(self.setup, line, bays, round_mm) if bays else line
+
+    def _suspects(self, way: Array, step_mm: float) -> Iterator[Suspect]:
+        """Where the way may have passed a bay by or cut it short."""
+        width_mm, nothing = self.line.width_mm, np.empty((0, 2))
+        beside = beside_itself.stretches(way, step_mm, width_mm)
+        for first, last in beside:
+            yield Suspect(first, last, nothing, True)
+        for place in self.left:
+            reach_mm, middle = place.length_mm + width_mm, np.array(place.place_mm)
+            if not reaches(way, middle - reach_mm, middle + reach_mm):
+                continue
+            away_mm = np.hypot(*(way - place.place_mm).T)
+            at = int(np.argmin(away_mm))
+            if place.kind == "beside" and away_mm[at] < width_mm:
+                half = max(round(0.5 * place.length_mm / step_mm), 1)
+                yield Suspect(at - half, at + half, nothing)
+            elif place.kind == "ink" and away_mm[at] < place.length_mm + width_mm:
+                yield from self._round_bar(way, step_mm, place, beside)
+
+    def _round_bar(
+        self, way: Array, step_mm: float, place: Unexplained, beside: list[tuple[int, int]]
+    ) -> Iterator[Suspect]:
+        """The stretch of the way that a bar of ink is joined to, if it is joined to no other; all of one that
+        comes beside itself.
+        """
+        width_mm = self.line.width_mm
+        bar = bar_at(self.setup.sheet.drawing, self.lines, place, width_mm)
+        mouth = np.flatnonzero(nearest_mm(way, bar) < MOUTH * width_mm)
+        if not len(mouth):
+            return
+        first, last = beside_itself.shortest(mouth, len(way))
+        if last - first < 2 * WIDEST * width_mm / step_mm:
+            for begin, end in beside:
+                if begin <= last and first <= end:
+                    first, last = min(first, begin), max(last, end)
+            yield Suspect(first, last, bar)
+
+    def _bay(self, way: Array, step_mm: float, suspect: Suspect) -> Bay | None:
+        """The bay that a stretch of the way is, if a rule explains its ink better than the way does."""
+        # 1. the stretch with clean line on either side, and the ink about it
+        width_mm, leg = self.line.width_mm, round(LEG / STEP_WIDTHS)
+        first, last = suspect.first - leg, suspect.last + leg
+        long = last - first
+        if long > OF_LOOP * len(way) or long * step_mm > LONGEST * width_mm:
+            return None
+        own = way[np.arange(first, last + 1) % len(way)]
+        rest = way[np.arange(last, first + len(way) + 1) % len(way)]
+        about = np.vstack([own, suspect.beyond_mm])
+        ink = self._ink(about, rest)
+        if self._goes_on(ink, about):
+            return None
+        # 2. the best rule along the way, or round a bar of ink
+        rules = list[Rule]()
+        if not len(suspect.beyond_mm):
+            rules += folding_rule.along(own, ink.half_mm)
+        if suspect.is_beside_itself or len(suspect.beyond_mm):
+            legs = np.vstack([own[: leg + 1], own[-leg - 1 :]])
+            rules += folding_rule.round_bar(ink, legs)
+        rule = self._explained(ink, rules)
+        if rule is None:
+            return None
+        # 3. against the way
+        widths = rule.length_mm / width_mm
+        drawn_by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
+        own_misfit = ink.misfit(drawn_by_own)
+        gain = own_misfit - rule.misfit + FURTHER * (STEP_WIDTHS * long - widths)
+        is_like = rule.misfit < LIKE * widths
+        drawn = ink.drawn_along(rule.way, rule.half_mm)
+        is_like &= suspect.is_beside_itself or ink.share_left(drawn, drawn_by_own) < MOST_LEFT
+        if not is_like or gain < GAIN * widths:
+            return None
+        return Bay(first * step_mm, last * step_mm, rule, gain)
+
+    def _explained(self, ink: SeenInk, rules: list[Rule]) -> Rule | None:
+        """The rule that explains an ink best. A bay is looked at again when another was mended; the same
+        rules are fitted to the same ink once.
+        """
+        kept, key = self.setup.rules, sha1(pickle.dumps((ink, rules))).digest()
+        if key not in kept:
+            kept[key] = folding_rule.explained(ink, rules)
+        return kept[key]
+
+    def _goes_on(self, ink: SeenInk, about: Array) -> bool:
+        """Whether ink beside all lines goes on beyond what is looked at: another line, or a longer bar."""
+        beside = (ink.darkness > 0.5) & (ink.known_mm > OWN * self.line.width_mm)
+        away_mm = pen.away_from(ink.places_mm[beside], about)
+        far = np.count_nonzero(away_mm > (REACH - EDGE) * self.line.width_mm)
+        return bool(far * ink.area_mm2 > 0.5 * EDGE * self.line.width_mm**2)
+
+    def _ink(self, about: Array, rest: Array) -> SeenInk:
+        """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
+        drawing, width_mm = self.setup.sheet.drawing, self.line.width_mm
+        # 1. the pixels within reach
+        reach_mm = REACH * width_mm
+        i, j = Window.about(drawing, about, reach_mm).grid()
+        within = np.flatnonzero(pen.away_from(middles_mm(drawing, i, j), about) < reach_mm)
+        every = 1 + len(within) // MOST_PLACES
+        i, j = i[within[::every]], j[within[::every]]
+        # 2. how far they are from what is drawn anyway
+        places = middles_mm(drawing, i, j)
+        low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
+        known_mm = pen.away_from(places, rest)
+        for line in self.lines:
+            if line is not self.line and reaches(line.places_mm, low, high):
+                known_mm = np.minimum(known_mm, nearest_mm(places, line.places_mm))
+        return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
+
+
+def _apart(bays: list[Bay], length_mm: float) -> list[Bay]:
+    """Those of some bays that gain most, none of which lies on another."""
+    kept = list[Bay]()
+    for bay in sorted(bays, key=lambda bay: -bay.gain):
+        if all(_are_apart(bay, other, length_mm) for other in kept):
+            kept.append(bay)
+    return kept
+
+
+def _are_apart(bay: Bay, other: Bay, length_mm: float) -> bool:
+    """Whether two bays of a closed way of a length do not lie on one another."""
+    rounds = (-length_mm, 0.0, length_mm)
+    return all(
+        bay.last_mm + more < other.first_mm or other.last_mm < bay.first_mm + more
+        for more in rounds
+    )

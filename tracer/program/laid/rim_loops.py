@@ -1,0 +1,91 @@
+"""Rim loops: a closed line of any shape whose sides run together, laid within the rim of its ink.
+
+    ╭──╮        an arc, a hook, a wave: what a compass does not draw (see `tangles.compass`), and the head
+    ╰─╮╰────╮   does not follow, since between the sides its cells see little paper or none
+      ╰─────╯
+
+Signals: a patch of ink of a sheet in; the way within its rim as a core for the compass out, or none.
+
+Source: our own (see `ink.rim`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import islice
+
+import cv2
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.median import median
+from morfax.motion.plane import NO_LENGTH
+from morfax.motion.polyline import area_mm2, length_mm
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
+from morfax.tracer.ink.rim import felt_rim
+from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.lines.selection import lines_of
+from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.compass import Core
+
+# of the ink and what lies within it, in widths of the pen: one line is 1 broad, two that touch are 2; sides
+# that are further apart the head follows as any line
+BROAD = 1.6, 4.2
+LONGEST = 800.0  # widths round; chosen
+STRETCH = 20.0  # widths along a line: they show how wide the pen is
+DISTINCT = 0.2  # of a step: places nearer to each other are one corner
+FELT_PLACES = 9  # the pen's width is the middle one of so many of the plainest places
+AS_WIDE = 0.15  # of the pen's width: a line that differs by more is another pen's
+
+
+def narrow_outline(sheet: Sheet, patch: int, pen_mm: float) -> Array | None:
+    """The outline (n, 2) mm of a patch of ink, counter-clockwise, if with what lies within it is about as
+    broad as two lines beside each other; None for another.
+    """
+    if sheet.lengths_mm[patch] > LONGEST * pen_mm:
+        return None
+    top, bottom, left, right = sheet.patches.boxes[patch].tolist()
+    own = sheet.patches.alone(patch)
+    ink = np.pad(sheet.patches.painted(own, top, bottom, left, right), 1)
+    outlines, _ = cv2.findContours(ink, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    column, row = max(outlines, key=len)[:, 0].T.astype(float)
+    up = len(sheet.drawing.darkness) - (row - 1 + top) - 0.5
+    places = np.column_stack([column - 1 + left + 0.5, up]) * sheet.drawing.pitch_mm
+    # the outline runs through the middles of pixels
+    broad = (broad_mm(places) + sheet.drawing.pitch_mm) / pen_mm
+    is_narrow = BROAD[0] < broad < BROAD[1] and length_mm(places) < LONGEST * pen_mm
+    return places[:: 1 if area_mm2(places) > 0 else -1] if is_narrow else None
+
+
+def broad_mm(way: Array) -> float:
+    """How broad a long area within a closed way (n, 2) mm is, in the mean."""
+    return 2 * abs(area_mm2(way)) / max(length_mm(way), NO_LENGTH)
+
+
+def core_within(view: View, outline: Array, width_mm: float) -> Core | None:
+    """The way of a pen of a width within the rim that the cells feel about an outline (n, 2) mm."""
+    rim = felt_rim(view, outline)
+    if rim is None:
+        return None
+    way = rim.way(0.5 * width_mm)
+    apart_mm = np.hypot(*np.diff(way, axis=0, prepend=way[-1:]).T)
+    return Core(way[apart_mm > DISTINCT * view.step_mm], 0.0, 0.5 * width_mm)
+
+
+def felt_pen_mm(sheet: Sheet, aperture_mm: float | None, pen_mm: float) -> float:
+    """The pen's width as the cells feel it, where the longest of its lines is plain; they see no more of the
+    sheet than a stretch of that.
+    """
+    lines = lines_of(sheet)
+    of_pen = np.abs(sheet.widths_mm[lines] / pen_mm - 1) < AS_WIDE
+    stroke = sheet.stroke(int(lines[of_pen][0]) if of_pen.any() else int(lines[0]))
+    reach_mm = STRETCH * pen_mm
+    x, y = stroke.middles_mm[0].tolist()
+    places = places_of(stroke, (x, y), reach_mm)
+    window = Window.about(sheet.drawing, places, reach_mm)
+    edges = window.top, window.left, window.bottom, window.right
+    view = view_of(replace(sheet, window=edges), aperture_mm, pen_mm)
+    stances = islice(plainest_first(view, places), FELT_PLACES)
+    felt_mm = np.array([stance.view.width_mm for stance in stances])
+    return median(felt_mm) if len(felt_mm) else pen_mm

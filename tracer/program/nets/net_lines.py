@@ -1,0 +1,133 @@
+"""The lines of a net, by its junctions: closed ways, and strokes that go across from end to end.
+
+Signals: a set-up and a patch of ink in; its lines out, the longest closed one first.
+
+    ╭──┬──────╮      the outline; closed lines within it; strokes with two free ends
+    │  │ ╭──╮ │
+    ╰──┴─┤  ├─┼─     bars and hatching are none: most of a way round them is along other lines
+         ╰──╯ │
+
+Each junction is solved once, with all its legs, so that all lines through it agree. The head is put down once
+for each line, and never for a trial.
+
+Source: our own. Questions: a line whose bays run together makes a net too, of which junctions show only the
+way past the bays. Such a net is not clear, and the head looks for its way itself (see `net_outline`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from morfax.motion.polyline import nearest_mm
+from morfax.tracer.following.line import Line
+from morfax.tracer.following.start import ends_of
+from morfax.tracer.program.lines.selection import (
+    LETTER_MM,
+    NEW,
+    SAME_WIDTHS,
+    SHORT,
+    Contour,
+    least_mm,
+)
+from morfax.tracer.program.nets.net_outline import (
+    NEARLY_ALL,
+    are_nets,
+    chain_mm,
+    junctions_of,
+    line_along,
+    may_solve,
+    outline_of,
+    touches_itself,
+)
+from morfax.tracer.program.setup import Setup
+
+if TYPE_CHECKING:
+    from morfax.tracer.ink.chains import Chain
+
+
+def net_of(setup: Setup, contour: Contour) -> NetLines | None:
+    """The net that a patch is, if lines cross or touch on it, none of which comes from a reference point."""
+    stroke = contour.stroke
+    if not may_solve(setup) or not are_nets(setup.sheet)[stroke.patch]:
+        return None
+    ends = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
+    if any(stance.reference_mm is not None for stance, _ in ends):
+        return None
+    return NetLines(setup, stroke.patch, contour.number)
+
+
+class NetLines:
+    """The lines of a net that its junctions show."""
+
+    def __init__(self, setup: Setup, patch: int, number: int) -> None:
+        """Solve the junctions of a patch; all its lines have the patch's number."""
+        self._setup, self._number = setup, number
+        self._junctions = junctions_of(setup, patch)
+        self._ink_mm = float(setup.sheet.lengths_mm[patch])
+        self._width_mm = float(setup.sheet.widths_mm[patch])
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether the junctions show its lines: it is not one line that touches itself."""
+        from morfax.tracer.ink.outlines import straight_chains
+
+        if not touches_itself(self._junctions):
+            return True
+        closed_mm = sum(way.length_mm for way in straight_chains(self._junctions))
+        return closed_mm > NEARLY_ALL * sum(
+            line.length_mm for line in self._junctions.net.lines
+        )
+
+    def lines(self) -> list[Line]:
+        """All lines, the longest closed one first."""
+        found = self._besides(set())
+        return sorted(found, key=lambda line: (line.ending != "closed", -line.length_mm))
+
+    def besides(self, line: Line) -> list[Line]:
+        """The lines beside one that was followed."""
+        near_mm = SAME_WIDTHS * self._width_mm
+        followed = {
+            n
+            for n, felt in enumerate(self._junctions.net.lines)
+            if np.mean(nearest_mm(felt.places_mm, line.places_mm) < near_mm) > NEW
+        }
+        return self._besides(followed)
+
+    def _besides(self, taken: set[int]) -> list[Line]:
+        """The lines beside those lines of the net that are taken."""
+        from morfax.tracer.ink.closed_ways import closed_ways, share_beside
+        from morfax.tracer.ink.outlines import is_free
+
+        junctions, shortest_mm = self._junctions, float(least_mm(self._width_mm))
+        closed = [way.chain for way in closed_ways(junctions, taken, NEW)]
+        taken = taken.union(*({link.line for link in chain.links} for chain in closed))
+        across = [
+            chain
+            for chain in junctions.chains()
+            if is_free(chain, junctions) and share_beside(chain, taken, junctions) > NEW
+        ]
+        return [
+            self._run(chain)
+            for chain in closed + across
+            if chain_mm(chain, junctions) > (shortest_mm if chain.closed else LETTER_MM)
+        ]
+
+    def _run(self, chain: Chain) -> Line:
+        """The head's run along a chain."""
+        line = line_along(self._setup, chain, self._junctions)
+        return replace(line, number=self._number, ink_mm=self._ink_mm)
+
+
+def or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:
+    """A line that was followed on a patch; where it is a smaller part of a net, the net's outline."""
+    if line is None or line.reference_mm is not None or line.is_lead:
+        return line
+    if line.ending == "closed" and line.length_mm > SHORT * line.ink_mm:
+        return line
+    outline = outline_of(setup, contour.stroke.patch)
+    if outline is None or (line.ending == "closed" and outline.length_mm < line.length_mm):
+        return line
+    return replace(outline, number=contour.number)
