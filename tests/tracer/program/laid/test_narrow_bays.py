@@ -11,7 +11,7 @@ import shapely
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
-from morfax.tracer.program import narrow_bays
+from morfax.tracer.program.laid import narrow_bays
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed
