@@ -13,8 +13,6 @@ from __future__ import annotations
 
 import builtins
 import ctypes
-import importlib.machinery
-import importlib.util
 import pickle
 import sys
 from collections.abc import Callable
@@ -24,6 +22,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from morfax.motion import processor
+from morfax.motion.extension import extension, folder_of
 
 if TYPE_CHECKING:
     from morfax.motion.compiled import Kernel
@@ -50,7 +49,7 @@ class Linker:
         self.target = processor.target(llvm)
         self.triple = llvm.get_process_triple()
         self.names: set[str] = set()
-        dynfunc, helpers, runtime = (_extension(name) for name in EXTENSIONS)
+        dynfunc, helpers, runtime = (extension("numba", name) for name in EXTENSIONS)
         self._make_function, self._environment = dynfunc.make_function, dynfunc.Environment
         self._name_all(dynfunc.c_helpers, helpers.c_helpers, runtime.c_helpers)
         _serve_pickles(helpers.c_helpers["unpickle"])
@@ -156,27 +155,7 @@ def linker() -> Linker:
     return Linker()
 
 
-def _extension(name: str) -> Any:
-    """One of numba's extension modules, loaded without the package's `__init__`."""
-    full = f"numba.{name}"
-    if full not in sys.modules:
-        folder = numba_folder().joinpath(*name.split(".")[:-1])
-        stem = name.split(".")[-1]
-        endings = importlib.machinery.EXTENSION_SUFFIXES
-        file = next(file for ending in endings if (file := folder / f"{stem}{ending}").exists())
-        spec = importlib.util.spec_from_file_location(full, file)
-        if spec is None or spec.loader is None:
-            raise ImportError(full)
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        sys.modules[full] = module
-    return sys.modules[full]
-
-
 @cache
 def numba_folder() -> Path:
     """Where numba is installed."""
-    spec = importlib.machinery.PathFinder.find_spec("numba")
-    if spec is None or spec.origin is None:
-        raise ImportError("numba")
-    return Path(spec.origin).parent
+    return folder_of("numba")

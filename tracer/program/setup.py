@@ -17,6 +17,7 @@ from morfax.tracer.operator.operator import Operator
 
 if TYPE_CHECKING:
     from morfax.tracer.ink.chains import Junctions
+    from morfax.tracer.tangles.folding_rule import Rule
 
 HeadProgress = Callable[[float, float], None]  # how far the head has come, of what length, mm
 
@@ -31,6 +32,8 @@ class Setup:
     progress: HeadProgress | None = None
     # the junctions of the patch of ink that was solved last, by its number (see `net_outline`)
     newest: dict[int, Junctions] = field(default_factory=dict, repr=False, compare=False)
+    # the rules that explain the ink of narrow bays, by that ink (see `narrow_bays`)
+    rules: dict[bytes, Rule | None] = field(default_factory=dict, repr=False, compare=False)
     # the head's runs with just this set-up
     runs: Branches = field(default_factory=Branches, init=False, repr=False, compare=False)
 

@@ -30,6 +30,7 @@ from morfax.motion.plane import NOTHING_MM2, unit
 from morfax.motion.polyline import area_mm2
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
 SHARP = (3, 4, 5, 6)  # corners of the polygons that are tried
@@ -141,8 +142,6 @@ def _settled(ink: SeenInk, start: Core) -> Core | None:
     """A core moved to where the pen leaves the ink that is there; None if the pen becomes another, or the way
     runs off that ink, or turns back and forth.
     """
-    from scipy.optimize import least_squares
-
     count, is_sharp = len(start.points_mm), start.radius_mm == 0
     drawn = np.empty(len(ink.places_mm))
 
@@ -155,10 +154,7 @@ def _settled(ink: SeenInk, start: Core) -> Core | None:
         return drawn - ink.darkness
 
     figures = np.r_[start.points_mm.ravel(), [] if is_sharp else start.radius_mm, start.half_mm]
-    fit = least_squares(
-        wrong, figures, method="lm", diff_step=1e-4, max_nfev=STEPS * len(figures)
-    )
-    core = core_of(fit.x)
+    core = core_of(fitted(wrong, figures, STEPS * len(figures)))
     is_pen = 0.5 * ink.half_mm < core.half_mm < 2 * ink.half_mm
     is_loop = is_pen and core.is_convex and ink.holds(np.vstack(core.stretches()))
     return with_misfit(ink, core) if is_loop else None

@@ -33,6 +33,7 @@ from morfax.motion.polyline import area_mm2, evenly, length_mm
 from morfax.tracer.sensing.leg import TURNS_BACK
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import bent_rule, beside_itself, pen
+from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
 # which of so many corners are rounded: the patterns that are tried
@@ -177,8 +178,6 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     """A rule moved to where the pen leaves the ink that is there; None if the pen becomes another,
     comes off the ink, or runs out and back along one line.
     """
-    from scipy.optimize import least_squares
-
     size, is_rounded = start.corners_mm.size, bool(start.rounded.any())
 
     def rule_of(figures: Array) -> Rule:
@@ -198,8 +197,7 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
 
     radius = [start.radius_mm] if is_rounded else []
     figures = np.r_[start.corners_mm.ravel(), radius, start.half_mm]
-    fit = least_squares(wrong, figures, changes, method="lm", max_nfev=STEPS * len(figures))
-    rule = rule_of(fit.x)
+    rule = rule_of(fitted(wrong, figures, STEPS * len(figures), changes))
     least, most = LIKE_PEN
     is_pen = least * ink.half_mm < rule.half_mm < most * ink.half_mm
     is_way = is_pen and ink.holds(rule.way) and _is_apart(rule, ink.width_mm)

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import uniform_filter1d
 
 from morfax.motion.contour import distance
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.felt import feel_along
-from morfax.tracer.ink.shared_ink import SLACK, SharedInk, kept_in_ink
+from morfax.tracer.ink.shared_ink import SLACK, SharedInk, _averaged, kept_in_ink
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
@@ -133,3 +134,11 @@ def test_a_circle_that_touches_a_line_is_no_corner_there() -> None:
     away_mm = np.hypot(*(closed[0].xy_mm - (14, 6.8)).T)
     # a pixel is 0.127 mm
     assert np.abs(away_mm - 2.8).max() < 0.1
+
+
+def test_moves_are_averaged_as_scipy_does_to_the_last_bit() -> None:
+    random = np.random.default_rng(2)
+    for places in (0.3, 1.6, 2.0, 7.0, 12.2, 90.0):
+        moves = random.normal(size=(40, 2))
+        theirs = uniform_filter1d(moves, max(1, round(places)), axis=0, mode="nearest")
+        assert np.array_equal(_averaged(moves, places), theirs)

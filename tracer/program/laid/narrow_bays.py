@@ -15,8 +15,10 @@ Source: our own. Questions: a tick as thick as two lines is taken for a bay; one
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from hashlib import sha1
 from typing import NamedTuple
 
 import numpy as np
@@ -205,7 +207,7 @@ class _Bays:
         if suspect.is_beside_itself or len(suspect.beyond_mm):
             legs = np.vstack([own[: leg + 1], own[-leg - 1 :]])
             rules += folding_rule.round_bar(ink, legs)
-        rule = folding_rule.explained(ink, rules)
+        rule = self._explained(ink, rules)
         if rule is None:
             return None
         # 3. against the way
@@ -219,6 +221,15 @@ class _Bays:
         if not is_like or gain < GAIN * widths:
             return None
         return Bay(first * step_mm, last * step_mm, rule, gain)
+
+    def _explained(self, ink: SeenInk, rules: list[Rule]) -> Rule | None:
+        """The rule that explains an ink best. A bay is looked at again when another was mended; the same
+        rules are fitted to the same ink once.
+        """
+        kept, key = self.setup.rules, sha1(pickle.dumps((ink, rules))).digest()
+        if key not in kept:
+            kept[key] = folding_rule.explained(ink, rules)
+        return kept[key]
 
     def _goes_on(self, ink: SeenInk, about: Array) -> bool:
         """Whether ink beside all lines goes on beyond what is looked at: another line, or a longer bar."""

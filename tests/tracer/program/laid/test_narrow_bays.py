@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -9,8 +11,13 @@ import shapely
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
+from morfax.tracer.program.laid import narrow_bays
 from morfax.tracer.program.program import Trace
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace import followed
 from morfax.tracer.program.trace_lines import trace_lines
+from morfax.tracer.tangles import folding_rule
+from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import Points, inked, polyline
 
 WIDTH_MM, DEEP_MM = 0.5, 3.0
@@ -74,3 +81,26 @@ def test_a_tick_of_one_line_and_a_bar_to_another_are_no_bays() -> None:
     trace = contours(plate(), tick, bar)
     line = max(trace.lines, key=lambda each: each.length_mm)
     assert line.length_mm == pytest.approx(92, abs=0.5)
+
+
+def test_the_same_rules_are_fitted_to_the_same_ink_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fitted, explained = list[SeenInk](), folding_rule.explained
+
+    def counted(ink: SeenInk, rules: list[folding_rule.Rule]) -> folding_rule.Rule | None:
+        fitted.append(ink)
+        return explained(ink, rules)
+
+    monkeypatch.setattr(folding_rule, "explained", counted)
+    setup = Setup(inked(with_bay(1.1 * WIDTH_MM, DEEP_MM), width_mm=WIDTH_MM, seed=1).sheet)
+    line = followed(setup, None)
+    (mended,), _ = narrow_bays.explained(setup, [line])
+    first = len(fitted)
+    assert first and mended is not line
+    (again,), _ = narrow_bays.explained(setup, [line])
+    assert len(fitted) == first and np.array_equal(again.xy_mm, mended.xy_mm)
+    # of other ink the rules are others
+    other = Setup(inked(with_bay(1.1 * WIDTH_MM, 2.5), width_mm=WIDTH_MM, seed=1).sheet)
+    narrow_bays.explained(replace(other, rules=setup.rules), [followed(other, None)])
+    assert len(fitted) > first
