@@ -89,8 +89,9 @@ class FeltSheet:
     settings: Settings
     ends: list[Ends]  # of each stretch, whether the ink ends there
     doubled: Doubled = field(default_factory=Doubled)
-    # stretches that have turned out to be two lines
-    together: set[int] = field(default_factory=set)
+    together: set[int] = field(
+        default_factory=set
+    )  # stretches that have turned out to be two lines
     _taken: dict[tuple[int, float], Taken] = field(default_factory=dict)
 
     def taken(self, number: int) -> Taken:
@@ -106,7 +107,7 @@ class FeltSheet:
         return self._taken[key]
 
     def _of_one_line(self, number: int, clean: list[Run], parted: list[Array]) -> Parted:
-        """Clean runs, without those of two lines of which one ends on the way but up to an end of the ink."""
+        """Clean runs without those that two lines share of which one ends on the way."""
         doubled = self.doubled
         is_whole = number in doubled.throughout(self.felt)
         if not doubled.is_sure or number not in doubled.stations or is_whole:
@@ -115,9 +116,7 @@ class FeltSheet:
         own = [n for n, run in enumerate(clean) if median(run.widths_mm) < shared_mm]
         if not own:
             return clean, parted
-        begins, ends = self.ends[number]
-        first, last = 0 if begins else own[0], len(clean) - 1 if ends else own[-1]
-        return clean[first : last + 1], parted[first:last]
+        return clean[own[0] : own[-1] + 1], parted[own[0] : own[-1]]
 
     def is_shared(self, number: int) -> bool:
         """Whether the ink along a stretch is that of two lines, each as wide as its line is taken to be."""

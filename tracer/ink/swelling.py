@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import ROBUST, median
+from morfax.motion.median import median
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.hollow import Hollow, hollow
 from morfax.tracer.ink.felt import Ends
@@ -31,9 +31,6 @@ NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
 SO_NARROW, LEAST_NARROW = 0.05, 0.05
 # times as much ink is as narrow as the pen as is a little broader, or more: of 14 nets of one pen 3.9 or more
 ONE_WIDTH = 2.0
-# of the ink: it shows the pen, and steps in the width are no rough edges; of real sheets that took lettering
-# for pairs of lines 0.08
-MUCH_NARROW = 0.3
 SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
 FEWEST = 10  # stations that tell a width
 TWO = 2.5  # times the pen's width: ink that is wider is no two lines of it
@@ -43,14 +40,13 @@ BROADLY = 90.0  # percentile of a stretch's widths: its ink is hardly broader
 
 class Swelling(NamedTuple):
     """A stretch: its stations, where the ink ends, its widths averaged, mm (NaN near its ends), and how they
-    differ from that, of a width: in all, and without steps, as where one of two lines ends.
+    differ from that, of a width.
     """
 
     run: Run
     ends: Ends
     averaged: Array
     rough: float
-    mostly: float
 
     @classmethod
     def of(cls, run: Run, ends: Ends) -> Swelling | None:
@@ -69,12 +65,8 @@ class Swelling(NamedTuple):
         reach = max(1, round(0.5 * AVERAGED * usual_mm / run.view.step_mm))
         padded = np.pad(filled, reach, mode="edge")
         averaged = np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
-        off_widths = (run.widths_mm - averaged)[inside] / usual_mm
-        rough, mostly = (
-            float(np.sqrt(np.mean(off_widths**2))),
-            ROBUST * median(np.abs(off_widths)),
-        )
-        return cls(run, ends, np.where(inside, averaged, np.nan), rough, mostly)
+        rough = float(np.sqrt(np.mean((run.widths_mm - averaged)[inside] ** 2))) / usual_mm
+        return cls(run, ends, np.where(inside, averaged, np.nan), rough)
 
     @property
     def known(self) -> Array:
@@ -86,14 +78,12 @@ def pen_of(some: Sequence[Swelling]) -> float:
     """The width of a sheet's pen, the narrowest, mm; NaN if the sheet is not clean."""
     if not some:
         return math.nan
-    lengths = [len(each.known) * each.run.view.step_mm for each in some]
+    lengths = np.array([len(each.known) * each.run.view.step_mm for each in some])
+    rough = float(np.average([each.rough for each in some], weights=lengths))
     widths = np.sort(np.concatenate([each.known for each in some]))
     pen_mm = float(widths[round(NARROWEST * (len(widths) - 1))])
     are_narrow = np.abs(widths / pen_mm - 1) < SO_NARROW
-    share = float(np.mean(are_narrow))
-    roughs = [each.mostly if share > MUCH_NARROW else each.rough for each in some]
-    rough = float(np.average(roughs, weights=lengths))
-    is_clean = rough < SMOOTH_EDGES and share > LEAST_NARROW
+    is_clean = rough < SMOOTH_EDGES and float(np.mean(are_narrow)) > LEAST_NARROW
     return float(np.median(widths[are_narrow])) if is_clean else math.nan
 
 

@@ -12,7 +12,6 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.swelling import Swelling, pen_of_hollow
-from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import WIDTH_MM, inked, polyline, together
 
 CLEAR = polyline((5, 40), (55, 40))  # a line by itself
@@ -46,15 +45,3 @@ def test_a_band_that_is_paler_in_its_middle_tells_no_pen() -> None:
     felt = felt_of(Drawing(darkness, pitch_mm))
     found = [Swelling.of(run, ends) for run, ends in zip(felt.felt, felt.ends, strict=True)]
     assert math.isnan(pen_of_hollow([each for each in found if each is not None]))
-
-
-def test_a_line_that_ends_beside_another_is_no_rough_edge() -> None:
-    """On a coarse sheet the steps in the width of some pairs were taken for rough edges: not told."""
-    pairs = [
-        line
-        for y in (12, 18, 24)
-        for line in (polyline((5, y), (25, y)), polyline((9, y + 0.6), (23, y + 0.6)))
-    ]
-    alone = [polyline((30, y), (60, y + 2)) for y in (12, 18, 24, 30)]
-    found = trace_ink(inked(*pairs, *alone, width_mm=0.7, dpi=200, seed=1))
-    assert found.ink is not None and found.ink.single_mm > 20
