@@ -74,7 +74,31 @@ def corner_ahead(view: View, seen: Array, here: int) -> FeltCorner | None:
 
 def round_corner(planner: Planner, felt: FeltCorner) -> Plan | None:
     """The way round a corner in what was felt; None if its ink shows none."""
-    return _by_vertex(planner, felt) or _by_round(planner, felt.seen, felt.station)
+    return _by_vertex(planner, felt) or _by_round(planner, felt)
+
+
+def corner_of_round(view: View, felt: FeltCorner) -> Corner | None:
+    """The corner of the two legs about a round; None if there is none.
+
+    Each leg is felt up to where its ink shows that the round begins: what is felt of a round is averaged over
+    more of the line than the round is long.
+    """
+    seen, last, first = felt.seen, felt.station - SKIPPED - 1, felt.station + SKIPPED + 1
+    while last + 1 >= LEG_STATIONS and first <= len(seen) - LEG_STATIONS:
+        incoming = leg_of(seen[: last + 1], True, view.leg_mm)
+        outgoing = leg_of(seen[first:], False, view.leg_mm)
+        corner = Corner.of(incoming, outgoing)
+        if corner is None:
+            return None
+        touch_mm = rounding(view, corner)[1]
+        back, on = (
+            BENT_BACK if leg.bend_per_mm else max(0, math.ceil((touch_mm - mm) / view.step_mm))
+            for leg, mm in ((incoming, corner.beyond_mm), (outgoing, corner.before_mm))
+        )
+        if not back and not on:
+            return corner
+        last, first = last - back, first + on
+    return None
 
 
 def _felt_on(view: View, seen: Array) -> Array:
@@ -103,33 +127,15 @@ def _by_vertex(planner: Planner, felt: FeltCorner) -> Plan | None:
     return plan if is_as_felt(view, plan, felt.seen, angle) else None
 
 
-def _by_round(planner: Planner, seen: Array, i: int) -> Plan | None:
-    """The way by an arc between two straight legs about a station; None if there is none.
-
-    Each leg is felt up to where its ink shows that the round begins: what is felt of a round is averaged over
-    more of the line than the round is long.
-    """
-    view = planner.view
-    last = i - SKIPPED - 1
-    first = i + SKIPPED + 1
-    while last + 1 >= LEG_STATIONS and first <= len(seen) - LEG_STATIONS:
-        incoming = leg_of(seen[: last + 1], True, view.leg_mm)
-        outgoing = leg_of(seen[first:], False, view.leg_mm)
-        corner = Corner.of(incoming, outgoing)
-        if corner is None:
-            return None
-        touch_mm = rounding(view, corner)[1]
-        back, on = (
-            BENT_BACK if leg.bend_per_mm else max(0, math.ceil((touch_mm - mm) / view.step_mm))
-            for leg, mm in ((incoming, corner.beyond_mm), (outgoing, corner.before_mm))
-        )
-        if not back and not on:
-            plan = _by_arc(planner, corner, touch_mm)
-            if plan is None or not is_as_felt(view, plan, seen, corner.deflection_rad):
-                return None
-            return plan
-        last, first = last - back, first + on
-    return None
+def _by_round(planner: Planner, felt: FeltCorner) -> Plan | None:
+    """The way by an arc between two straight legs about a station; None if there is none."""
+    corner = corner_of_round(planner.view, felt)
+    if corner is None:
+        return None
+    plan = _by_arc(planner, corner, rounding(planner.view, corner)[1])
+    if plan is None or not is_as_felt(planner.view, plan, felt.seen, corner.deflection_rad):
+        return None
+    return plan
 
 
 def _by_arc(planner: Planner, corner: Corner, touch_mm: float) -> Plan | None:

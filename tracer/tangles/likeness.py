@@ -57,6 +57,10 @@ class Patch:
 
     def misfit(self, way: Array) -> float:
         """Mean square of what a pen on a way (n, 2) mm draws too dark or too light, 1 for ink or none."""
+        return float(np.mean(self.wrong(way) ** 2))
+
+    def wrong(self, way: Array) -> Array:
+        """What a pen on a way (n, 2) mm draws too dark or too light at each place, 1 for ink or none."""
         distance, drawn = pen.away_from(self.places_mm, way), np.empty(len(self.places_mm))
         pen.ink(distance, self.half_mm, self.softness_mm, drawn)
-        return float(np.mean((drawn - self.darkness) ** 2))
+        return drawn - self.darkness

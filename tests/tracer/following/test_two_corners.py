@@ -1,0 +1,78 @@
+"""Two corners beside one another are two corners, and a round is an arc, by the ink that a pen leaves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.motion.arrays import Array
+from morfax.motion.contour import distance
+from morfax.tracer.following import follower
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, arc, inked, polyline
+
+TURN = np.radians(60)
+# a corner of a pen is right to a quarter of a pixel of 85 um, and the head lags behind it by less than 10 um
+CORNER_MM = 30 * UM
+CUT_OFF_MM = 60 * UM  # an arc in place of two corners 0.6 to 0.75 mm apart is 69 to 96 um off
+FLOOR_MM = 0.6  # high: the floor, or the arc in its place
+
+
+def valley(side_mm: float) -> Array:
+    """A bar with a valley in its lower side, whose floor is so long; closed."""
+    down = 4 * np.array([np.cos(TURN), -np.sin(TURN)])
+    first = np.array([20.0, 20.0])
+    low = first + down
+    floor = low + np.array([side_mm, 0.0])
+    up = floor + down * np.array([1.0, -1.0])
+    bar = (first, low, floor, up, (up[0] + 10, 20), (up[0] + 10, 30), (10, 30), (10, 20), first)
+    return polyline(*(tuple(place) for place in bar))
+
+
+def rounded_valley(radius_mm: float) -> Array:
+    """The same with a floor that is an arc."""
+    down = 4 * np.array([np.cos(TURN), -np.sin(TURN)])
+    first = np.array([20.0, 20.0])
+    low = first + down
+    centre = low + radius_mm * np.array([np.sin(TURN), np.cos(TURN)])
+    ends_deg = np.degrees([-np.pi / 2 - TURN, -np.pi / 2 + TURN])
+    floor = arc(tuple(centre), radius_mm, *ends_deg)
+    up = floor[-1] + down * np.array([1.0, -1.0])
+    bar = (up, (up[0] + 10, 20), (up[0] + 10, 30), (10, 30), (10, 20), first, low)
+    return np.vstack([polyline(*(tuple(place) for place in bar)), floor])
+
+
+def worst_mm(line: Array, seed: int) -> float:
+    """How far the valley's floor and its ends are at the most from the path of the head."""
+    run = trace(inked(line, width_mm=0.5, seed=seed))
+    assert run.fault is None
+    floor = line[line[:, 1] < line[:, 1].min() + FLOOR_MM]
+    return distance(run.xy_mm[::4], floor).reference_to_path.max_mm
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("widths", [1.2, 1.5])
+def test_two_corners_with_a_short_side_between_are_both_sharp(widths: float, seed: int) -> None:
+    assert worst_mm(valley(widths * 0.5), seed) < CORNER_MM
+
+
+@pytest.mark.parametrize("widths", [1.2, 1.5])
+def test_by_an_arc_they_are_cut_off(widths: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(follower, "or_two_corners", lambda planner, felt, plan: plan)
+    monkeypatch.setattr(follower, "is_laid_beside", lambda view, felt, plan: False)
+    assert worst_mm(valley(widths * 0.5), 1) > CUT_OFF_MM
+
+
+@pytest.mark.parametrize("radius_mm", [0.6, 1.2])
+def test_a_round_stays_an_arc(radius_mm: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    laid = list[bool]()
+    chosen = follower.or_two_corners
+
+    def noted(planner, felt, plan):  # type: ignore[no-untyped-def]
+        found = chosen(planner, felt, plan)
+        laid.append(found is not plan)
+        return found
+
+    monkeypatch.setattr(follower, "or_two_corners", noted)
+    assert worst_mm(rounded_valley(radius_mm), 1) < CORNER_MM
+    assert laid and not any(laid)
