@@ -30,7 +30,7 @@ from morfax.tracer.following.felt_line import (
     trail_behind,
 )
 from morfax.tracer.following.followed import Followed
-from morfax.tracer.following.hidden_corner import hides_corner, is_laid_beside
+from morfax.tracer.following.hidden_corner import hides_corner
 from morfax.tracer.following.run_ends import RunEnds
 from morfax.tracer.following.two_corners import or_two_corners
 from morfax.tracer.following.way_home import WayHome
@@ -181,9 +181,9 @@ class Follower(RunEnds):
         corner = None if felt is None else round_corner(self._planner(), felt)
         if felt is not None:
             corner = or_two_corners(self._planner(), felt, corner)
-            if corner is not None and not is_laid_beside(self.view, felt, corner):
+            if corner is not None:
                 return self._pass(corner)
-            if corner is not None or hides_corner(self.view, felt):
+            if hides_corner(self.view, felt):
                 return self._through_legs(felt.legs(self.view)[0])
         # 4. clean line
         if self._agreement.goes_on(self.carriage, self.view, seen):

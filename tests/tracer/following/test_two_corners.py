@@ -50,7 +50,7 @@ def worst_mm(line: Array, seed: int) -> float:
     return distance(run.xy_mm[::4], floor).reference_to_path.max_mm
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, 3])
 @pytest.mark.parametrize("widths", [1.2, 1.5])
 def test_two_corners_with_a_short_side_between_are_both_sharp(widths: float, seed: int) -> None:
     assert worst_mm(valley(widths * 0.5), seed) < CORNER_MM
@@ -59,7 +59,6 @@ def test_two_corners_with_a_short_side_between_are_both_sharp(widths: float, see
 @pytest.mark.parametrize("widths", [1.2, 1.5])
 def test_by_an_arc_they_are_cut_off(widths: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(follower, "or_two_corners", lambda planner, felt, plan: plan)
-    monkeypatch.setattr(follower, "is_laid_beside", lambda view, felt, plan: False)
     assert worst_mm(valley(widths * 0.5), 1) > CUT_OFF_MM
 
 
