@@ -16,6 +16,8 @@ Source: our own.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,64 +26,118 @@ from morfax.motion.polyline import APART_MM, with_places
 from morfax.tracer.following.hidden_corner import REACH_WIDTHS, is_rough
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.plan import Plan
-from morfax.tracer.junctions.corner import Corner, rounding
-from morfax.tracer.junctions.felt_corner import FeltCorner, corner_of_round
+from morfax.tracer.junctions.corner import Corner
+from morfax.tracer.junctions.felt_corner import (
+    LEG_STATIONS,
+    SKIPPED,
+    FeltCorner,
+    corner_of_round,
+    is_as_felt,
+)
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
+from morfax.tracer.sensing.leg import STRAIGHT, leg_of
+from morfax.tracer.sensing.view import View
 
-# of what a pen leaves unexplained beside the corner: two corners go before an arc if they leave so much less;
-# on rounds of 0.5 to 2.5 widths they gain less than 0.1 of it, and mostly leave more
-GAIN = 0.1
+APART_WIDTHS = 3.0  # two corners farther apart have a leg between them
+MOST_TIMES = 2.0  # as far as the arc that leaves as much ink touches its legs
 MOST = 40  # times that the ink is drawn for the two places
 PLACES = 8  # of a leg, which bends little
 
 
-def or_two_corners(planner: Planner, felt: FeltCorner, plan: Plan | None) -> Plan | None:
-    """A plan round a corner; in place of an arc, or of none, the way by two corners, if their ink is more
-    like what is there.
+class _Over(NamedTuple):
+    """When two corners go before a way round: what it leaves unexplained at the least, and what they gain, in
+    times of what a pen leaves beside it.
     """
-    if (plan is not None and len(plan.stretches) > 1) or is_rough(planner.view, felt):
-        return plan
-    corner = corner_of_round(planner.view, felt)
-    if corner is None:
-        return plan
-    ends_mm = _better(planner, corner, felt.seen[:, :2] if plan is None else plan.stretches[0])
-    return plan if ends_mm is None else _plan(planner, corner, ends_mm)
+
+    worse: float
+    gain: float
 
 
-def _better(planner: Planner, corner: Corner, round_mm: Array) -> Array | None:
-    """How far before and behind the vertex the two corners are, mm; None if a way (n, 2) round is as good."""
+# on rounds of 0.5 to 2.5 widths two corners gain less than 0.1, and mostly leave more; what is left at a
+# right vertex is less than twice as much as beside it
+OVER_ARC, OVER_OTHER = _Over(0.0, 0.1), _Over(2.0, 1.0)
+
+
+def or_two_corners(planner: Planner, felt: FeltCorner, plan: Plan | None) -> Plan | None:
+    """A plan round a corner, or none; instead the way by two corners, if their ink is more like what is
+    there.
+    """
+    view = planner.view
+    if is_rough(view, felt):
+        return plan
+    round_mm = felt.seen[:, :2] if plan is None else np.vstack(plan.stretches)
+    if plan is not None and len(plan.stretches) == 1:
+        over, corners = OVER_ARC, [corner_of_round(view, felt)]
+    else:
+        over, corners = OVER_OTHER, list(_beside_another(view, felt))
+    found = [_better(planner, corner, round_mm, over) for corner in corners if corner]
+    better = [it for it in found if it is not None]
+    if not better:
+        return plan
+    best = max(better, key=lambda it: it.gain)
+    two = _plan(planner, best.corner, best.ends_mm)
+    return two if is_as_felt(view, two, felt.seen, best.corner.deflection_rad) else plan
+
+
+def _beside_another(view: View, felt: FeltCorner) -> Iterator[Corner]:
+    """The corners that the legs make if the line turns there at the first of two corners, or the second."""
+    apart = math.ceil(APART_WIDTHS * view.width_mm / view.step_mm)
+    for back, on in ((0, apart), (apart, 0)):
+        last, first = felt.station - SKIPPED - 1 - back, felt.station + SKIPPED + 1 + on
+        if last + 1 >= LEG_STATIONS and first <= len(felt.seen) - LEG_STATIONS:
+            incoming = leg_of(felt.seen[: last + 1], True, view.leg_mm)
+            outgoing = leg_of(felt.seen[first:], False, view.leg_mm)
+            corner = Corner.of(incoming, outgoing)
+            # a leg that bends goes round another corner
+            if corner is None or incoming.bend_per_mm or outgoing.bend_per_mm:
+                continue
+            is_near = math.dist(corner.vertex_mm, felt.place_mm) < APART_WIDTHS * view.width_mm
+            if is_near and corner.deflection_rad > STRAIGHT:
+                yield corner
+
+
+class _Two(NamedTuple):
+    """Two corners: the one of their legs, how far before and behind it they are, mm, and what they gain."""
+
+    corner: Corner
+    ends_mm: Array
+    gain: float
+
+
+def _better(planner: Planner, corner: Corner, round_mm: Array, over: _Over) -> _Two | None:
+    """The two corners in place of a way (n, 2) round; None if they do not go before it."""
     from morfax.tracer.tangles.least_squares import fitted
     from morfax.tracer.tangles.likeness import Patch, Pen
 
     # 1. the ink about the round
-    view = planner.view
-    missing_mm, touch_mm = rounding(view, corner)
-    beside_mm = REACH_WIDTHS * view.width_mm
-    reach_mm, pen = 0.5 * touch_mm + beside_mm, Pen.of(view, corner.incoming)
-    middle = round_mm[np.argmin(np.hypot(*(round_mm - corner.vertex_mm).T))]
-    patch = Patch.about(view, middle, reach_mm, pen)
-    # 2. a side as far from the vertex as the arc, and from there to where least is unexplained
-    first_mm = missing_mm / math.sin(corner.deflection_rad / 2)
-    figures = fitted(
-        lambda ends_mm: patch.wrong(_legs(corner, ends_mm, 3 * reach_mm)),
-        np.full(2, first_mm),
-        MOST,
+    view, pen = planner.view, Pen.of(planner.view, corner.incoming)
+    away_mm = np.hypot(*(round_mm - corner.vertex_mm).T)
+    first_mm = float(away_mm.min()) / math.sin(corner.deflection_rad / 2)
+    first_mm = max(first_mm, 0.5 * view.width_mm)
+    if first_mm > APART_WIDTHS * view.width_mm:
+        return None
+    most_mm, beside_mm = MOST_TIMES * first_mm, REACH_WIDTHS * view.width_mm
+    patch = Patch.about(view, round_mm[np.argmin(away_mm)], first_mm + beside_mm, pen)
+    long_mm = most_mm + 3 * beside_mm
+    come, go = np.split(_legs(corner, np.full(2, most_mm), long_mm), 2)
+    by_round = patch.misfit(np.vstack([come, round_mm, go]))
+    before_mm, behind_mm = _legs(corner, np.full(2, most_mm + beside_mm), 0.0)[[0, -1]]
+    usual = min(
+        Patch.about(view, place_mm, beside_mm, pen).misfit(leg)
+        for place_mm, leg in ((before_mm, come), (behind_mm, go))
+    )
+    if by_round < over.worse * usual:
+        return None
+    # 2. a side as far from the vertex as the round, and from there to where least is unexplained
+    ends_mm = fitted(
+        lambda ends: patch.wrong(_legs(corner, ends, long_mm)), np.full(2, first_mm), MOST
     )
     room_mm = corner.beyond_mm + ahead_mm(planner.stands[0], corner.incoming)
-    if not (figures.min() > 0 and figures.max() < touch_mm and figures[0] < room_mm):
+    if not (ends_mm.min() > 0 and ends_mm.max() < most_mm and ends_mm[0] < room_mm):
         return None
     # 3. held against the round
-    way = _legs(corner, figures, 3 * reach_mm)
-    come, go = np.split(_legs(corner, np.full(2, touch_mm), 3 * reach_mm), 2)
-    gain = patch.misfit(np.vstack([come, round_mm, go])) - patch.misfit(way)
-    usual = min(
-        Patch.about(view, at, beside_mm, pen).misfit(way)
-        for at in (
-            corner.incoming.at(corner.beyond_mm - touch_mm - beside_mm),
-            corner.outgoing.at(touch_mm + beside_mm - corner.before_mm),
-        )
-    )
-    return figures if gain > GAIN * usual else None
+    gain = by_round - patch.misfit(_legs(corner, ends_mm, long_mm))
+    return _Two(corner, ends_mm, gain) if gain > over.gain * usual else None
 
 
 def _legs(corner: Corner, ends_mm: Array, long_mm: float) -> Array:

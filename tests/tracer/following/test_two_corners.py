@@ -50,8 +50,8 @@ def worst_mm(line: Array, seed: int) -> float:
     return distance(run.xy_mm[::4], floor).reference_to_path.max_mm
 
 
-@pytest.mark.parametrize("seed", [1, 3])
-@pytest.mark.parametrize("widths", [1.2, 1.5])
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("widths", [1.2, 1.5, 1.8])
 def test_two_corners_with_a_short_side_between_are_both_sharp(widths: float, seed: int) -> None:
     assert worst_mm(valley(widths * 0.5), seed) < CORNER_MM
 
