@@ -23,10 +23,8 @@ if TYPE_CHECKING:
 
 UM_PER_MM = 1000.0
 WIDTH_IN, SHEET_IN = 8.5, 8.0  # of a figure, and of the sheet in it
-WIDE_IN, PANEL_IN = (
-    11.0,
-    1.8,
-)  # a figure of several pictures; height of a curve over time or way
+WIDE_IN = 11.0  # a figure of several pictures
+PANEL_IN = 1.8  # height of a curve over time or way
 NUMBERS_IN = 1.4  # room for a title, and for the numbers along the axes
 FLATTEST, TALLEST = 0.2, 1.4  # height to width of what is drawn
 DPI = 130

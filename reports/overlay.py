@@ -206,19 +206,12 @@ def _numbers(plate: Plate, picture: Picture) -> None:
 
     Of very many lines only the longest, which have the lowest numbers: the rings would hide the path.
     """
-    lowest = sorted(picture.numbers_mm, key=lambda each: (len(each[0]), each[0]))[
-        :MOST_NUMBERED
-    ]
-    for number, place_mm in picture.numbers_mm if len(lowest) < MOST_NUMBERED else lowest:
-        plate.add(
-            Words(
-                place_mm,
-                number,
-                WORDS_PT,
-                offset_pt=(-BELOW_PT[0], BELOW_PT[1]),
-                ring=REFERENCE,
-            )
-        )
+    numbers = sorted((number for number, _ in picture.numbers_mm), key=lambda it: (len(it), it))
+    beside_pt = -BELOW_PT[0], BELOW_PT[1]
+    longest = set(numbers[:MOST_NUMBERED])
+    for number, place_mm in picture.numbers_mm:
+        if number in longest:
+            plate.add(Words(place_mm, number, WORDS_PT, offset_pt=beside_pt, ring=REFERENCE))
 
 
 def _stops(plate: Plate, picture: Picture) -> None:

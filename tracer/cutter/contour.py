@@ -251,9 +251,8 @@ def _about(every: Array, here: int, reach: int, closed: bool) -> tuple[Array, Ar
 def nearest_place(path_mm: Array, place_mm: Array, number: int) -> tuple[float, PathPlace]:
     """How far a path is from a place at its nearest, mm, and where that is."""
     steps = np.diff(path_mm, axis=0)
-    squared = np.maximum(
-        np.einsum("ij,ij->i", steps, steps), NOTHING_MM2
-    )  # no step of length 0
+    # no step of length 0
+    squared = np.maximum(np.einsum("ij,ij->i", steps, steps), NOTHING_MM2)
     share = np.einsum("ij,ij->i", place_mm - path_mm[:-1], steps) / squared
     share = np.clip(share, 0.0, 1.0)
     away = np.hypot(*(path_mm[:-1] + share[:, None] * steps - place_mm).T)

@@ -34,7 +34,7 @@ from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import deepened, deepened_note
 from morfax.tracer.drawing.levelling import levelled
 from morfax.tracer.drawing.narrow import Strips
-from morfax.tracer.drawing.noise import Noise, measured, within
+from morfax.tracer.drawing.noise import Noise, Within, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
@@ -247,10 +247,7 @@ class Drawing:
             pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes)
         if pale_mm:
             lines = within(darkness, paper_noise)
-        if lines.seen_px < coarse.SEEN_PX:
-            notes = (*notes, coarse.note(lines.seen_px, pitch_mm))
-        elif grain.is_too_thin(drawn_grain, lines.width_px):
-            notes = (*notes, grain.thin_note(pitch_mm))
+        notes += _of_few_pixels(lines, drawn_grain, pitch_mm)
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
         # 3. grain, of lines as they are drawn
         slit = grain.slit_for(drawn_grain, lines.width_px, pitch_mm)
@@ -287,6 +284,15 @@ def _cleared(darkness: Any, pitch_mm: float, reading: Reading) -> tuple[Any, tup
     edges = without_border(darkness)
     border = border_note(edges) if edges else None
     return darkness, tuple(note for note in (printed, border) if note is not None)
+
+
+def _of_few_pixels(lines: Within, drawn_grain: float, pitch_mm: float) -> tuple[str, ...]:
+    """What the operator should know of lines that are few pixels wide."""
+    if lines.seen_px < coarse.SEEN_PX:
+        return (coarse.note(lines.seen_px, pitch_mm),)
+    if grain.is_too_thin(drawn_grain, lines.width_px):
+        return (grain.thin_note(pitch_mm),)
+    return ()
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Any:

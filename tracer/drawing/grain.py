@@ -53,9 +53,8 @@ EMPTY = 0.3  # of the ink's darkness: where nothing is darker, behind a spot of 
 TILE_PX = 512
 # a slit that is as wide on a picture reduced by one of these, standard deviation, looks at that
 REDUCED, NARROWEST_PX = (8, 4, 2), 1.0
-SOFTENED_BY = (
-    1 / 4
-)  # px²: variance of means of pixels, 1/12, and of interpolation between them, 1/6
+# px²: variance of means of pixels, 1/12, and of interpolation between them, 1/6
+SOFTENED_BY = 1 / 4
 
 
 class Slit(NamedTuple):

@@ -19,6 +19,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.motion.plane import direction
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.plain_places import local_view
 from morfax.tracer.head.stance import Stance
@@ -107,7 +108,7 @@ def _leading_away(
         if len(arcs) != 1:
             continue
         heading = float(arcs.mean())
-        start = place + radius * _direction(heading)
+        start = place + radius * direction(heading)
         seen = local.feel(start, heading, 2 * local.leg_mm)
         is_line = (len(seen) - 1) * local.step_mm > LEAD_LEGS * local.leg_mm
         if stroke.is_at(start) and is_line:
@@ -153,7 +154,7 @@ def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
     if len(arcs) != 1 or arcs[0, 1] - arcs[0, 0] > math.pi / 2:
         return None
     heading = float(arcs.mean())
-    inward = place + radius * _direction(heading)
+    inward = place + radius * direction(heading)
     right, left = local.edges(inward, heading, 2 * local.width_mm)
     width_mm, off_mm = left - right, WIDTH_OFF * view.width_mm + WIDTH_OFF_PX * view.pitch_mm
     if not abs(width_mm - view.width_mm) < off_mm:
@@ -202,8 +203,3 @@ def _is_mark(view: View, inward: Array, heading: float, radius: float) -> bool:
     # the other half, as it is felt, leads to its tip more surely than the first
     beyond = straight_on(view, on, 0.0) or on
     return stroke_end(view, beyond, longest + beyond_mm) is not None
-
-
-def _direction(heading: float) -> Array:
-    """The unit vector of a heading, (2,)."""
-    return np.array([math.cos(heading), math.sin(heading)])

@@ -1,4 +1,4 @@
-"""Two corners beside one another, as at the root of a gear's tooth, which the ink's edge shows as one arc.
+"""Two corners beside one another, as at the root of a gear's tooth, where an arc or one vertex was laid.
 
     ────────╮ .  vertex       an arc touches both legs; or they end before and behind the vertex, and a short
              ╲   .            side joins them: whichever leaves the ink that is there
@@ -8,7 +8,8 @@
 The short side is hidden between stations that feel a corner, and has no leg. So the two places where the legs
 end move to where a pen leaves least unexplained.
 
-Signals: the planner, a corner in what was felt, and the way by an arc in; the better way out.
+Signals: the planner, a corner in what was felt, and the way that was laid round it, or none, in; the better
+way out.
 
 Source: our own.
 """
@@ -27,17 +28,12 @@ from morfax.tracer.following.hidden_corner import REACH_WIDTHS, is_rough
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.corner import Corner
-from morfax.tracer.junctions.felt_corner import (
-    LEG_STATIONS,
-    SKIPPED,
-    FeltCorner,
-    corner_of_round,
-    is_as_felt,
-)
+from morfax.tracer.junctions.felt_corner import FeltCorner, corner_of_round, is_as_felt
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
-from morfax.tracer.sensing.leg import STRAIGHT, leg_of
+from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import View
 
+# Chosen by trial on racks of teeth and on rounds, drawn with known truth.
 APART_WIDTHS = 3.0  # two corners farther apart have a leg between them
 MOST_TIMES = 2.0  # as far as the arc that leaves as much ink touches its legs
 MOST = 40  # times that the ink is drawn for the two places
@@ -82,18 +78,13 @@ def or_two_corners(planner: Planner, felt: FeltCorner, plan: Plan | None) -> Pla
 def _beside_another(view: View, felt: FeltCorner) -> Iterator[Corner]:
     """The corners that the legs make if the line turns there at the first of two corners, or the second."""
     apart = math.ceil(APART_WIDTHS * view.width_mm / view.step_mm)
-    for back, on in ((0, apart), (apart, 0)):
-        last, first = felt.station - SKIPPED - 1 - back, felt.station + SKIPPED + 1 + on
-        if last + 1 >= LEG_STATIONS and first <= len(felt.seen) - LEG_STATIONS:
-            incoming = leg_of(felt.seen[: last + 1], True, view.leg_mm)
-            outgoing = leg_of(felt.seen[first:], False, view.leg_mm)
-            corner = Corner.of(incoming, outgoing)
-            # a leg that bends goes round another corner
-            if corner is None or incoming.bend_per_mm or outgoing.bend_per_mm:
-                continue
-            is_near = math.dist(corner.vertex_mm, felt.place_mm) < APART_WIDTHS * view.width_mm
-            if is_near and corner.deflection_rad > STRAIGHT:
-                yield corner
+    for corner in (felt.corner(view, 0, apart), felt.corner(view, apart, 0)):
+        # a leg that bends goes round another corner
+        if corner is None or corner.incoming.bend_per_mm or corner.outgoing.bend_per_mm:
+            continue
+        is_near = math.dist(corner.vertex_mm, felt.place_mm) < APART_WIDTHS * view.width_mm
+        if is_near and corner.deflection_rad > STRAIGHT:
+            yield corner
 
 
 class _Two(NamedTuple):

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import direction
 from morfax.tracer.corrections.on_sheet import REACH_MM, REACH_WIDTHS, TurnAt
 from morfax.tracer.following.felt_line import nearest_station, station_before
 from morfax.tracer.head.carriage import Carriage
@@ -170,7 +171,7 @@ def _told_by(view: View, incoming: Leg, turn_at: TurnAt) -> bool:
     """Whether a correction is about the junction ahead of a leg, and about a head that comes by that leg."""
     reach_mm = max(REACH_MM, REACH_WIDTHS * view.width_mm)
     way = turn_at.place_mm - incoming.end_mm
-    ahead = np.array([math.cos(incoming.heading_rad), math.sin(incoming.heading_rad)])
+    ahead = direction(incoming.heading_rad)
     along, aside = float(way @ ahead), abs(float(way[1] * ahead[0] - way[0] * ahead[1]))
     if not -view.width_mm < along < 2 * reach_mm or aside > reach_mm:
         return False

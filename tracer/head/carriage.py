@@ -17,7 +17,7 @@ import numpy as np
 from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import LongArray
-from morfax.motion.plane import heading_of
+from morfax.motion.plane import direction, heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head import kernel, mount, screws, slow_cell, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
@@ -157,7 +157,7 @@ class Carriage:
     def ahead(self, place: Array) -> float:
         """How far ahead of the axis a place is, mm along the heading."""
         stands, heading = self.stands()
-        return float((place - stands) @ np.array([math.cos(heading), math.sin(heading)]))
+        return float((place - stands) @ direction(heading))
 
     def follow(self, view: View, home: Home, samples: int = CHUNK) -> int:
         """Follow the line until something happens, or for so many samples; why it stopped (see `state`)."""

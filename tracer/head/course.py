@@ -23,6 +23,7 @@ import numpy as np
 from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
+from morfax.motion.plane import direction
 from morfax.motion.polyline import APART_MM
 from morfax.tracer.sensing.leg import Leg, centre_at
 from morfax.tracer.sensing.view import View
@@ -92,8 +93,7 @@ def to_end(stands: tuple[Array, float], leg: Leg, end_mm: float) -> Array:
 
 def ahead_mm(place: Array, leg: Leg) -> float:
     """How far ahead of a place a leg's clean end is, mm along the leg."""
-    way = np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
-    return float((leg.end_mm - place) @ way)
+    return float((leg.end_mm - place) @ direction(leg.heading_rad))
 
 
 def on_ink(view: View, stretches: list[Array]) -> bool:

@@ -19,6 +19,7 @@ import math
 
 import numpy as np
 
+from morfax.motion.plane import direction
 from morfax.tracer.ink.chains import Junctions
 
 # a line of the net, and whether it is gone along from its last place to its first
@@ -52,7 +53,7 @@ def _orders(left: set[int], junctions: Junctions) -> Orders:
                 continue
             out = end - middle
             if math.hypot(*out) < leg.width_mm:  # few legs, near together: by where they head
-                out = -np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
+                out = -direction(leg.heading_rad)
             edge = side.line, side.last
             orders.setdefault(number, []).append((math.atan2(out[1], out[0]), edge))
     return {number: sorted(edges) for number, edges in orders.items()}

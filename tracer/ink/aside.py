@@ -19,7 +19,8 @@ import math
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.motion.plane import direction
 from morfax.motion.polyline import length_mm
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
 from morfax.tracer.ink.hatching import ALIKE, STRAIGHT, Hatching, hatching
@@ -160,10 +161,10 @@ def _beside_families(
     within, beside = set[int](), set[int]()
     begins, ends = np.array([way[0] for way in ways]), np.array([way[-1] for way in ways])
     middles, chords = 0.5 * (begins + ends), ends - begins
-    long_mm = np.maximum(np.hypot(chords[:, 0], chords[:, 1]), 1e-9)
+    long_mm = np.maximum(np.hypot(chords[:, 0], chords[:, 1]), NOT_ZERO)
     straight = long_mm + widths_mm > STRAIGHT * np.array([length_mm(way) for way in ways])
     for family in families:
-        heading = np.array([math.cos(family.heading_rad), math.sin(family.heading_rad)])
+        heading = direction(family.heading_rad)
         cross_mm = np.abs(chords[:, 0] * heading[1] - chords[:, 1] * heading[0])
         like = np.flatnonzero(
             straight & (cross_mm < math.sin(ALIKE) * long_mm + 0.5 * widths_mm)
@@ -201,16 +202,16 @@ def _ends_on_line(side: Side, onward: Onward) -> bool:
 
 def _way(chain: Chain, junctions: Junctions) -> Array:
     """Places along an open chain, (n, 2) mm, from the junction where it begins to that where it ends."""
-    lines, (first, last) = junctions.net.lines, _ends(chain)
-    along = [lines[n].places_mm[:: -1 if back else 1] for n, back in chain.links]
-    return np.vstack([_end_mm(first, junctions), *along, _end_mm(last, junctions)])
+    first, last = _ends(chain)
+    along = junctions.places_along(chain)
+    return np.vstack([_end_mm(first, junctions), along, _end_mm(last, junctions)])
 
 
 def _end_mm(side: Side, junctions: Junctions) -> Array:
     """Where a line ends, straight on from its clean end: beside the place where lines meet, (x, y) mm."""
     there = junctions.at(side)
     leg = there.leg(side)
-    way = np.array([math.cos(leg.heading_rad), math.sin(leg.heading_rad)])
+    way = direction(leg.heading_rad)
     return np.asarray(
         leg.end_mm + max(0.0, float((meeting_place(there.legs) - leg.end_mm) @ way)) * way
     )

@@ -176,6 +176,11 @@ class Junctions:
             there.crossing = self.known.setdefault(there.crossing.key, there.crossing)
         return found
 
+    def places_along(self, chain: Chain) -> Array:
+        """The places (n, 2) mm of a chain's lines, one after the other as it goes along them."""
+        lines = self.net.lines
+        return np.vstack([lines[n].places_mm[:: -1 if back else 1] for n, back in chain.links])
+
     def _trim(self) -> None:
         """Take the legs of wide junctions from further off, and longer: near to where two lines run together
         each has felt the other's rim.

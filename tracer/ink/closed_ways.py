@@ -128,8 +128,7 @@ def share_beside(chain: Chain, taken: set[int], junctions: Junctions) -> float:
 def _goes_round(chain: Chain, junctions: Junctions, aside: Set[int]) -> bool:
     """Whether nearly all lines of a net, but those aside, lie on or inside a closed chain: its silhouette."""
     lines, on_it = junctions.net.lines, {link.line for link in chain.links}
-    way = np.vstack([lines[n].places_mm[:: -1 if back else 1] for n, back in chain.links])
-    outline = way.astype(np.float32).reshape(-1, 1, 2)
+    outline = junctions.places_along(chain).astype(np.float32).reshape(-1, 1, 2)
     all_mm = inside_mm = 0.0
     for n, line in enumerate(lines):
         if n in aside:

@@ -25,6 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.plane import direction
 from morfax.motion.polyline import length_mm, lengths_mm, nearest_mm
 from morfax.tracer.following.felt_line import bare_from_mm, bare_stretch
 from morfax.tracer.following.follower import SWELLS
@@ -249,7 +250,7 @@ class InkHead:
         step_mm = run.view.step_mm
         spacing = max(1, round(NODES_MM / step_mm))
         nodes = [stands]
-        way = np.array([math.cos(end[1]), math.sin(end[1])])
+        way = direction(end[1])
         for k in range(at + spacing, len(run), spacing):
             place, left_mm = run.places_mm[k], (len(run) - 1 - k) * step_mm
             # a loop comes by its end at its beginning, too

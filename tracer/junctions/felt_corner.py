@@ -64,6 +64,16 @@ class FeltCorner(NamedTuple):
         incoming = leg_of(self.seen[: self.station - SKIPPED], True, view.leg_mm)
         return incoming, leg_of(self.seen[self.station + SKIPPED + 1 :], False, view.leg_mm)
 
+    def corner(self, view: View, back: int, on: int) -> Corner | None:
+        """The corner of legs that end so many stations further back, and begin so many further on; None if
+        one of them is too short, or they do not meet.
+        """
+        last, first = self.station - SKIPPED - 1 - back, self.station + SKIPPED + 1 + on
+        if last + 1 < LEG_STATIONS or first > len(self.seen) - LEG_STATIONS:
+            return None
+        incoming = leg_of(self.seen[: last + 1], True, view.leg_mm)
+        return Corner.of(incoming, leg_of(self.seen[first:], False, view.leg_mm))
+
 
 def corner_ahead(view: View, seen: Array, here: int) -> FeltCorner | None:
     """The corner in what was felt, ahead of station `here`; None if there is none."""
@@ -83,21 +93,19 @@ def corner_of_round(view: View, felt: FeltCorner) -> Corner | None:
     Each leg is felt up to where its ink shows that the round begins: what is felt of a round is averaged over
     more of the line than the round is long.
     """
-    seen, last, first = felt.seen, felt.station - SKIPPED - 1, felt.station + SKIPPED + 1
-    while last + 1 >= LEG_STATIONS and first <= len(seen) - LEG_STATIONS:
-        incoming = leg_of(seen[: last + 1], True, view.leg_mm)
-        outgoing = leg_of(seen[first:], False, view.leg_mm)
-        corner = Corner.of(incoming, outgoing)
-        if corner is None:
-            return None
+    back = on = 0
+    while (corner := felt.corner(view, back, on)) is not None:
         touch_mm = rounding(view, corner)[1]
-        back, on = (
+        more_back, more_on = (
             BENT_BACK if leg.bend_per_mm else max(0, math.ceil((touch_mm - mm) / view.step_mm))
-            for leg, mm in ((incoming, corner.beyond_mm), (outgoing, corner.before_mm))
+            for leg, mm in (
+                (corner.incoming, corner.beyond_mm),
+                (corner.outgoing, corner.before_mm),
+            )
         )
-        if not back and not on:
+        if not more_back and not more_on:
             return corner
-        last, first = last - back, first + on
+        back, on = back + more_back, on + more_on
     return None
 
 

@@ -54,13 +54,15 @@ def near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
     if near.mean() > MOSTLY:
         return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
     # 2. each stretch behind the spot
-    seen, halo = _bare(darkness.shape), math.ceil(HALO_SPREADS * sigma_px) + 1
-    side = TILE_BLOCKS * BLOCK_PX
+    seen, side = _bare(darkness.shape), TILE_BLOCKS * BLOCK_PX
     edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     row, begin = np.nonzero(edges == 1)
     right = np.nonzero(edges == -1)[1]
     for top, first, last in (side * np.column_stack([row, begin, right])).tolist():
-        _blur(darkness, sigma_px, (top, first, top + side, last), halo, seen)
+        window = top, first, top + side, last
+        seen[top : top + side, first:last] = _behind(
+            lambda a, b, c, d: darkness[a:b, c:d], sigma_px, window
+        )
     return seen
 
 
@@ -70,34 +72,21 @@ def part_behind(
     """A window of a sheet of a shape behind a spot, within a rim of paper where the sheet goes on; and how
     much of the sheet is beyond. `seen` gives the sheet's darkness.
     """
-    rows, columns = shape
-    top, left, bottom, right = (
-        window[0],
-        window[1],
-        min(window[2], rows),
-        min(window[3], columns),
-    )
+    (rows, columns), (top, left, bottom, right) = shape, window
+    bottom, right = min(bottom, rows), min(right, columns)
     first, last = max(0, top - 1), min(rows, bottom + 1)
     begin, end = max(0, left - 1), min(columns, right + 1)
-    halo = math.ceil(HALO_SPREADS * sigma_px) + 1
-    above, beside = max(0, top - halo), max(0, left - halo)
-    about = seen(above, min(bottom + halo, rows), beside, min(right + halo, columns))
-    soft = cv2.GaussianBlur(about, (0, 0), sigma_px)
     part = np.zeros((last - first, end - begin), np.float32)
-    own = soft[top - above : bottom - above, left - beside : right - beside]
+    own = _behind(seen, sigma_px, (top, left, bottom, right))
     part[top - first : bottom - first, left - begin : right - begin] = own
     return part, (first, begin, rows - last, columns - end)
 
 
-def _blur(
-    darkness: Darkness, sigma_px: float, window: Window, halo: int, seen: Darkness
-) -> None:
-    """Fill in a window of a sheet behind a spot that looks a halo beyond it."""
+def _behind(seen: Seen, sigma_px: float, window: Window) -> Darkness:
+    """A window of a sheet, as far as the sheet goes, behind a spot that looks a halo beyond it."""
     top, left, bottom, right = window
-    above = max(0, top - halo)
-    beside = max(0, left - halo)
-    soft = cv2.GaussianBlur(
-        darkness[above : bottom + halo, beside : right + halo], (0, 0), sigma_px
-    )
+    halo = math.ceil(HALO_SPREADS * sigma_px) + 1
+    above, beside = max(0, top - halo), max(0, left - halo)
+    soft = cv2.GaussianBlur(seen(above, bottom + halo, beside, right + halo), (0, 0), sigma_px)
     own = soft[top - above : bottom - above, left - beside : right - beside]
-    seen[top:bottom, left:right] = own
+    return np.asarray(own, np.float32)
