@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import Fault
 from morfax.motion.files import for_soundfile
 
@@ -71,7 +72,7 @@ def damages(level: Array, tracks: list[str]) -> list[dict[str, Any]]:
         usual = float(np.median(own))
         weak = np.r_[False, own < WEAK * usual, False].astype(np.int8)
         for a, b in np.flatnonzero(np.diff(weak)).reshape(-1, 2):
-            least = float(own[a:b].min()) / max(usual, 1e-9)
+            least = float(own[a:b].min()) / max(usual, NOT_ZERO)
             found.append(
                 {
                     "track": name,

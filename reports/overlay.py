@@ -18,11 +18,11 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
+from morfax.motion.units import POINTS_PER_INCH
 from morfax.reports import corrected, labels, leaders, left_out
 from morfax.reports.canvas import (
     COMPRESSION,
     DPI,
-    PT_PER_IN,
     REFERENCE,
     UM_PER_MM,
     grey,
@@ -105,7 +105,9 @@ def draw(picture: Picture, file: FilePath) -> None:
             Spot(at, "+", SPOT_PT, BLACK, order=ON_SPOTS),
             Words(at, str(number), NAME_PT, offset_pt=BESIDE_PT),
         )
-    labels.spread(main, page.main.width_in * PT_PER_IN, page.main.height_in * PT_PER_IN)
+    labels.spread(
+        main, page.main.width_in * POINTS_PER_INCH, page.main.height_in * POINTS_PER_INCH
+    )
     if file.suffix.lower() == PIXELS:
         from morfax.reports import bitmap
 

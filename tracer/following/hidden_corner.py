@@ -16,10 +16,10 @@ import numpy as np
 from morfax.tracer.head.slow_cell import rough_mm
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.junctions.felt_corner import FeltCorner
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import View
 
-REACH_WIDTHS = 1.5  # of the line's width about a place: there a pen that turns leaves other ink
 # times what the line beside it leaves unexplained, for grain and noise are the same there; and where the legs
 # meet at a clear angle
 WORSE, WORSE_AT_ANGLE = 3.0, 1.5
@@ -38,7 +38,7 @@ def hides_corner(view: View, felt: FeltCorner) -> bool:
 
     incoming, outgoing = felt.legs(view)
     # 1. what a pen along the felt line leaves unexplained at the corner, and beside it
-    reach_mm = REACH_WIDTHS * view.width_mm
+    reach_mm = CLEAR_WIDTHS * view.width_mm
     along = np.linspace(0.0, 3 * reach_mm, ALONG)
     places = np.vstack([incoming.at(-along[::-1]), felt.rounded, outgoing.at(along)])
     around = felt.place_mm, incoming.at(-reach_mm), outgoing.at(reach_mm)

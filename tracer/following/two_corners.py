@@ -24,19 +24,19 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import APART_MM, with_places
-from morfax.tracer.following.hidden_corner import REACH_WIDTHS, is_rough
+from morfax.tracer.following.hidden_corner import is_rough
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.junctions.felt_corner import FeltCorner, corner_of_round, is_as_felt
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS
 from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.seen_ink import STEPS
 
 # Chosen by trial on racks of teeth and on rounds, drawn with known truth.
-APART_WIDTHS = 3.0  # two corners farther apart have a leg between them
 MOST_TIMES = 2.0  # as far as the arc that leaves as much ink touches its legs
-MOST = 40  # times that the ink is drawn for the two places
 PLACES = 8  # of a leg, which bends little
 
 
@@ -77,12 +77,12 @@ def or_two_corners(planner: Planner, felt: FeltCorner, plan: Plan | None) -> Pla
 
 def _beside_another(view: View, felt: FeltCorner) -> Iterator[Corner]:
     """The corners that the legs make if the line turns there at the first of two corners, or the second."""
-    apart = math.ceil(APART_WIDTHS * view.width_mm / view.step_mm)
+    apart = math.ceil(ABOUT_WIDTHS * view.width_mm / view.step_mm)
     for corner in (felt.corner(view, 0, apart), felt.corner(view, apart, 0)):
         # a leg that bends goes round another corner
         if corner is None or corner.incoming.bend_per_mm or corner.outgoing.bend_per_mm:
             continue
-        is_near = math.dist(corner.vertex_mm, felt.place_mm) < APART_WIDTHS * view.width_mm
+        is_near = math.dist(corner.vertex_mm, felt.place_mm) < ABOUT_WIDTHS * view.width_mm
         if is_near and corner.deflection_rad > STRAIGHT:
             yield corner
 
@@ -105,9 +105,9 @@ def _better(planner: Planner, corner: Corner, round_mm: Array, over: _Over) -> _
     away_mm = np.hypot(*(round_mm - corner.vertex_mm).T)
     first_mm = float(away_mm.min()) / math.sin(corner.deflection_rad / 2)
     first_mm = max(first_mm, 0.5 * view.width_mm)
-    if first_mm > APART_WIDTHS * view.width_mm:
+    if first_mm > ABOUT_WIDTHS * view.width_mm:
         return None
-    most_mm, beside_mm = MOST_TIMES * first_mm, REACH_WIDTHS * view.width_mm
+    most_mm, beside_mm = MOST_TIMES * first_mm, CLEAR_WIDTHS * view.width_mm
     patch = Patch.about(view, round_mm[np.argmin(away_mm)], first_mm + beside_mm, pen)
     long_mm = most_mm + 3 * beside_mm
     come, go = np.split(_legs(corner, np.full(2, most_mm), long_mm), 2)
@@ -121,7 +121,7 @@ def _better(planner: Planner, corner: Corner, round_mm: Array, over: _Over) -> _
         return None
     # 2. a side as far from the vertex as the round, and from there to where least is unexplained
     ends_mm = fitted(
-        lambda ends: patch.wrong(_legs(corner, ends, long_mm)), np.full(2, first_mm), MOST
+        lambda ends: patch.wrong(_legs(corner, ends, long_mm)), np.full(2, first_mm), STEPS
     )
     room_mm = corner.beyond_mm + ahead_mm(planner.stands[0], corner.incoming)
     if not (ends_mm.min() > 0 and ends_mm.max() < most_mm and ends_mm[0] < room_mm):

@@ -24,12 +24,13 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median, weighted_median
 from morfax.motion.plane import unit
 from morfax.motion.polyline import length_mm
+from morfax.tracer.drawing.broad import SHORT_WIDTHS
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import ONE_PEN, Window
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.doubled import BROADER, LEAST_PX, LEAST_WIDTHS, SHARED, Doubled
+from morfax.tracer.ink.doubled import BROADER, LEAST_PX, LEAST_WIDTHS, Doubled
 from morfax.tracer.ink.felt import (
     Ends,
     Parted,
@@ -40,7 +41,8 @@ from morfax.tracer.ink.felt import (
 )
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
-from morfax.tracer.ink.straight_on import SHORT_WIDTHS, Measured, StraightOn, of_two_lines
+from morfax.tracer.ink.straight_on import Measured, StraightOn, of_two_lines
+from morfax.tracer.limits import WIDER
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.photocell import LEVEL
 from morfax.tracer.sensing.view import View
@@ -112,7 +114,7 @@ class FeltSheet:
         is_whole = number in doubled.throughout(self.felt)
         if not doubled.is_sure or number not in doubled.stations or is_whole:
             return clean, parted
-        shared_mm = SHARED * doubled.pen_mm
+        shared_mm = WIDER * doubled.pen_mm
         own = [n for n, run in enumerate(clean) if median(run.widths_mm) < shared_mm]
         if not own:
             return clean, parted
@@ -123,7 +125,7 @@ class FeltSheet:
         measured = self.measured[number]
         if number in self.together or measured.known < HALF:
             return True
-        return measured.width_mm > SHARED * self.widths_mm[number]
+        return measured.width_mm > WIDER * self.widths_mm[number]
 
     def is_broad(self, number: int) -> bool:
         """Whether a stretch is broader than the pen of a clean sheet; of another sheet that is not known."""

@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.tracer.limits import ABOUT_WIDTHS
 
 NEAR_WIDTHS = 0.6  # sides that are nearer to each other are one line
 # of way between them, at the least: a spike of 28 degrees has its sides so near
 ON_WIDTHS = 2.5
-APART_WIDTHS = 3.0  # of way between two stretches
 
 
 def stretches(
@@ -44,7 +44,7 @@ def stretches(
     if not len(found):
         return []
     # 1. places that follow one another, and those beside them
-    apart = round(APART_WIDTHS * width_mm / step_mm)
+    apart = round(ABOUT_WIDTHS * width_mm / step_mm)
     group = np.zeros(count, np.int64)
     group[found] = np.cumsum(np.diff(found, prepend=found[0]) > apart)
     if found[0] + count - found[-1] <= apart:
