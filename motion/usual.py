@@ -14,4 +14,6 @@ RAPID_MM_S = 20.0
 ACCELERATION_MM_S2 = 500.0  # of X and Y
 INCREMENT_MM = 0.001  # in which places are counted
 PLOTTER_MM = 0.025
+COUNT_MM = 0.01  # the step of the Z unit's decades
+SLOWEST_MM_S, FASTEST_MM_S = 0.01, 1000.0  # of a feed
 AT_ONCE = 65536  # samples that are worked on together: 11 s of motion

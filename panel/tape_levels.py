@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 COLUMNS = 800  # stretches: more than a strip has pixels
 NAMES = ("reference", "X", "Y", "Z")
-DECIMALS = 4
+DECIMALS = 4  # 0.1 um, 0.1 ms
 WINDOW_S = 0.002  # 12 cycles of a carrier of 6 kHz
 WEAK = 0.5  # of a track's median level: 6 dB, which tape and recorder do not waver by; by trial
 MOST_DAMAGES = 200  # that are listed, the longest

@@ -37,6 +37,9 @@ CALLED = "the machine"
 Axes = tuple[float, float, float]  # X, Y, Z
 UsualLines = Literal["all", "contours"]
 
+TOLERANCE_MM = 0.01  # of a program from the motion, and of a control at a corner
+DECIMALS = 4  # of a mm: a tenth of a micrometre
+
 
 @dataclass(frozen=True, slots=True)
 class Machine:
@@ -50,7 +53,7 @@ class Machine:
     semicolon: bool = False  # comments after ; and not in ( )
     z: bool = True
     arcs: bool = True
-    decimals: int = 4
+    decimals: int = DECIMALS
     dwell_unit_s: float = 1.0
     longest_line: int = 252
     line_numbers: int = 0  # step from one to the next; 0: none are written
@@ -61,7 +64,7 @@ class Machine:
     rapids_have_feed: bool = False  # whether a rapid bears F
     rapid_mm_s: Axes = (50.0, 50.0, 20.0)
     acceleration_mm_s2: Axes = (500.0, 500.0, 200.0)
-    corner_mm: float = 0.01  # how far the control rounds corners off
+    corner_mm: float = TOLERANCE_MM  # how far the control rounds corners off
     panel_feed_mm_s: float = FEED_MM_S  # where the feed is not in the program
     travel_mm: Axes | None = None  # None: not known
     begin: tuple[str, ...] = ()

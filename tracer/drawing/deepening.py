@@ -25,9 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import percentile
-from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
+from morfax.tracer.drawing.components import INK, Mask, strips
 from morfax.tracer.drawing.contrast import DARKER, LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.noise import measured
+from morfax.tracer.limits import FEW_PX
 
 Darkness = NDArray[np.float32]
 

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.motion.median import ONE_ABOVE
-from morfax.tracer.drawing.components import FEW_PX, FRINGE_PX, Patches, runs_of
+from morfax.tracer.drawing.components import FRINGE_PX, Patches, runs_of
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
     DARKER,
@@ -37,6 +37,7 @@ from morfax.tracer.drawing.memory import make_sure_of_ink
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.paper_noise import paper_noise
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
+from morfax.tracer.limits import FEW_PX
 
 # pixels: A3 at 600 dpi is the first; smaller sheets are kept as a whole, in floats
 LARGE_PX = 1 << 26

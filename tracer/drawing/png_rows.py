@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
-from morfax.tracer.drawing.components import FEW_PX
 from morfax.tracer.drawing.scan import darkest
+from morfax.tracer.limits import FEW_PX
 
 if TYPE_CHECKING:
     from PIL.Image import Image

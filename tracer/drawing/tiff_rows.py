@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import FEW_PX
 from morfax.tracer.drawing.scan import darkest
+from morfax.tracer.limits import FEW_PX
 
 if TYPE_CHECKING:
     from PIL.Image import Image

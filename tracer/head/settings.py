@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from morfax.motion.drive import Drive
-from morfax.motion.usual import ACCELERATION_MM_S2, FEED_MM_S
+from morfax.motion.usual import ACCELERATION_MM_S2, FASTEST_MM_S, FEED_MM_S, SLOWEST_MM_S
 
 OF_DRIVE = "drive_"  # the names of the drives' settings begin so
 
@@ -37,7 +37,7 @@ def _within(usual: float | None, least: float, most: float, what: str) -> Any:
 class Settings:
     """Settings of the head, by default the precise set; a setting that is None follows from the line."""
 
-    speed_mm_s: float = _within(FEED_MM_S, 0.01, 1000, "tracing speed (WC)")
+    speed_mm_s: float = _within(FEED_MM_S, SLOWEST_MM_S, FASTEST_MM_S, "tracing speed (WC)")
     slowed: float = _within(
         0.3, 0.01, 1, "share of the speed while the look-ahead relay holds (SR)"
     )

@@ -40,9 +40,9 @@ from morfax.motion import ramp
 from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.usual import COUNT_MM
 
-COUNT_MM = 0.01  # one pulse of disc 128
-COUNTS_PER_MM = 100
+COUNTS_PER_MM = round(1 / COUNT_MM)
 LARGEST_COUNT = 99_999  # five decades
 ACCELERATION_MM_S2 = 200.0  # of the Z motor: our own figure
 
