@@ -28,6 +28,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.following.start import a_dark_area
 from morfax.tracer.marks.reference import LARGEST_MM
+from morfax.tracer.program.laid.bridges import bridged
 from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.selection import SHORT, Contour, Which
@@ -163,16 +164,21 @@ def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -
         net = net_of(setup, contour)
         lines = net.lines() if net is not None and net.is_clear else []
         if lines and lines[0].ending == "closed":
-            return _Found(loops.mended(lines[0]), [loops.mended(line) for line in lines[1:]])
+            return _as_found(bridged(setup, [loops.mended(line) for line in lines]))
         found = _follow_in_window(setup, contour, is_letter)
         own = or_outline(setup, contour, found.line)
         if own is not None:
             line = loops.mended(own)
             if net is not None and not line.is_lead:
-                return _Found(line, net.besides(line))
+                return _as_found(bridged(setup, [line, *net.besides(line)]))
             return _Found(line, found.others if line is own else None)
         loop = loops.of_patch(stroke.patch, stroke.width_mm)
     return _Found(None if loop is None else loop.line(contour.number))
+
+
+def _as_found(lines: list[Line]) -> _Found:
+    """The lines that a patch is: the first, and the others."""
+    return _Found(lines[0], lines[1:])
 
 
 def _follow_in_window(setup: Setup, contour: Contour, is_letter: bool) -> _Found:

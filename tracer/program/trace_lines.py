@@ -171,7 +171,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     asked, letters_out = _high_enough(setup, asked) if not numbers else (asked, ())
     lines, unclear, strokes = one_of_each(setup, asked, which)
     # 2. the other lines of those patches
-    lines = with_bars(setup, lines)
+    lines = with_bars(setup, lines, [line for some in strokes.values() for line in some])
     joined, left_mm = _joined(setup, asked, lines, strokes)
     patch_of = dict[int, int]()
     if beyond or not numbers:
