@@ -27,7 +27,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.plane import direction, left_of
 from morfax.tracer.ink.both_lines import within_rims
-from morfax.tracer.ink.felt import Ends, feel_along, judged
+from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends, feel_along, judged
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO
 
@@ -113,13 +113,8 @@ def lines_beside(run: Run, pen_mm: float, ends: Ends) -> list[Beside]:
 
 def _add_two(found: list[Beside], part: Shared, run: Run, pen_mm: float) -> None:
     """Add the lines along a part that two share; the last of those found comes in, and the last goes on."""
-    felt, at = (
-        replace(part.felt, view=replace(run.view, width_mm=pen_mm)),
-        np.arange(len(part.felt)),
-    )
-    known = np.isfinite(felt.widths_mm)
-    widths = np.interp(at, at[known], felt.widths_mm[known])
-    left, right = within_rims(felt, widths, pen_mm)
+    felt = replace(part.felt, view=replace(run.view, width_mm=pen_mm))
+    left, right = within_rims(felt, felt.widths_mm, pen_mm)
     strand = {1: left, -1: right}
     before_mm, behind_mm = _ends_mm(run, part, left, pen_mm)
     found[-1].goes_on([strand[part.comes]], [])
@@ -130,39 +125,47 @@ def _add_two(found: list[Beside], part: Shared, run: Run, pen_mm: float) -> None
         found.append(Beside([strand[part.goes_on]], [], (before_mm, None)))
 
 
-def _shared(run: Run, pen_mm: float) -> Iterator[Shared | None]:
+def _shared(stations: Run, pen_mm: float) -> Iterator[Shared | None]:
     """The parts of a stretch that two lines share; None for broad ink that is not known to be that."""
-    known = np.isfinite(run.widths_mm)
-    if known.sum() < LONG * pen_mm / run.view.step_mm:
+    run = _filled(stations, LONG * pen_mm)
+    if run is None:
         return
-    at = np.arange(len(run))
-    widths = np.interp(at, at[known], run.widths_mm[known])
-    few = round(pen_mm / run.view.step_mm)
-    averaged = np.convolve(np.pad(widths, few // 2, mode="edge"), np.ones(few) / few, "same")
-    broad = np.flatnonzero(averaged[few // 2 :][: len(run)] > SHARED * pen_mm)
+    few = max(1, round(pen_mm / run.view.step_mm))
+    padded = np.pad(run.widths_mm, few // 2, mode="edge")
+    averaged = np.convolve(padded, np.ones(few) / few, "same")[few // 2 :][: len(run)]
+    broad = np.flatnonzero(averaged > SHARED * pen_mm)
     for some in np.split(broad, np.flatnonzero(np.diff(broad) > few) + 1):
         if len(some) * run.view.step_mm > LONG * pen_mm:
-            yield _part(run, widths, (int(some[0]), int(some[-1]) + 1), pen_mm)
+            yield _part(run, (int(some[0]), int(some[-1]) + 1), pen_mm)
 
 
-def _part(run: Run, widths: Array, part: tuple[int, int], pen_mm: float) -> Shared | None:
+def _filled(run: Run, least_mm: float) -> Run | None:
+    """A run with widths between those that are known; None if less of it is known."""
+    known = np.isfinite(run.widths_mm)
+    if known.sum() * run.view.step_mm < least_mm:
+        return None
+    at = np.arange(len(run))
+    return replace(run, widths_mm=np.interp(at, at[known], run.widths_mm[known]))
+
+
+def _part(run: Run, part: tuple[int, int], pen_mm: float) -> Shared | None:
     """A broad part of a stretch as two lines; None if it is not that."""
+    widths, step_mm = run.widths_mm, run.view.step_mm
     inside = widths[part[0] : part[1]]
     if median(inside) < SHARED * pen_mm or inside.max() > TWO * pen_mm:
         return None
     # 1. where the ink becomes broader, and narrower, within a width
-    first = _step(widths[: part[1]], part[0], pen_mm, run.view.step_mm)
-    last = _step(
-        widths[::-1][: len(run) - part[0]], len(run) - part[1], pen_mm, run.view.step_mm
-    )
+    first = _step(widths[: part[1]], part[0], pen_mm, step_mm)
+    back = widths[::-1][: len(run) - part[0]]
+    last = _step(back, len(run) - part[1], pen_mm, step_mm)
     if first is None or last is None:
         return None
     # 2. to which side its middle moves there
-    off = round(OWN[0] * pen_mm / run.view.step_mm)
+    off = round(OWN[0] * pen_mm / step_mm)
     guide = run.places_mm[round(first) + off : len(run) - round(last) - off]
-    if len(guide) < 2 * off:
+    felt = _filled(feel_along(run.view, guide), OWN[1] * pen_mm) if len(guide) > 1 else None
+    if felt is None:
         return None
-    felt = feel_along(run.view, guide)
     side = _side(run, round(first), felt, pen_mm)
     far_side = _side(run.turned_round(), round(last), felt.turned_round(), pen_mm)
     if not (side and far_side):
@@ -176,7 +179,9 @@ def _step(widths: Array, at: int, pen_mm: float, step_mm: float) -> float | None
     """
     off, far = _own(at, pen_mm, step_mm)
     before, behind = widths[at - far : at - off], widths[at + off : at + far]
-    if (far - off) * step_mm < LEAST * pen_mm or len(behind) < far - off:
+    if len(before) < max(LEAST * pen_mm / step_mm, FEWEST_STATIONS) or len(behind) < len(
+        before
+    ):
         return None
     low_mm, high_mm = median(before), median(behind)
     if not NARROW * pen_mm < low_mm < BROAD * pen_mm < high_mm:
@@ -196,8 +201,12 @@ def _own(at: int, pen_mm: float, step_mm: float) -> tuple[int, int]:
 
 
 def _side(run: Run, at: int, felt: Run, pen_mm: float) -> int:
-    """To which side the middle of the ink moves at a step, 1 to the left; 0 if it does not by half of it."""
+    """To which side the middle of the ink moves at a step, 1 to the left; 0 if it does not by half of it, or
+    too little of a line comes before it.
+    """
     off, far = _own(at, pen_mm, run.view.step_mm)
+    if far - off < FEWEST_STATIONS or len(felt) < FEWEST_STATIONS:
+        return 0
     before = run.part(at - far, at - off)
     behind = replace(
         felt.part(0, round(LONG * pen_mm / run.view.step_mm)), legs_mm=LONG * pen_mm
@@ -219,7 +228,7 @@ def _ends_mm(run: Run, part: Shared, strand: Run, pen_mm: float) -> tuple[float,
         (part.first, strand.leg_out().turned_round(), part.felt.widths_mm[:near]),
         (part.last, strand.leg_in(), part.felt.widths_mm[-near:]),
     ):
-        apart_mm = float(np.nanmedian(widths)) - pen_mm
+        apart_mm = median(widths) - pen_mm
         paper_mm = apart_mm - radius_mm - PAPER_PX * run.view.pitch_mm
         off_mm = max(radius_mm - 0.5 * apart_mm, paper_mm)
         round_mm = ROUND * math.sqrt(max(radius_mm**2 - off_mm**2, 0.0))

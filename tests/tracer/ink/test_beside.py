@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.beside import lines_beside
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
@@ -88,3 +91,13 @@ def test_a_contour_goes_on_from_a_side_into_one_that_runs_beside_its_end() -> No
     assert [line.ending for line in trace_lines(drawing).lines] == ["closed"]
     longest = max(trace_ink(drawing).lines, key=lambda line: line.length_mm)
     assert longest.length_mm == pytest.approx(length_mm(plate), abs=0.5)  # its corners are cut
+
+
+def test_a_burr_near_the_end_of_a_line_is_no_step() -> None:
+    """Half of a step has come there, and too little of a line before it shows where that leads."""
+    left = ink_left(inked(polyline((5, 20), (50, 20)), seed=1).sheet)
+    (run,) = FeltSheet.of(left.drawing, Settings(), left.ink).felt
+    widths = np.full(len(run), WIDTH_MM)
+    widths[16:-60] = 1.6 * WIDTH_MM
+    widths[7:9] = 1.6 * WIDTH_MM
+    assert lines_beside(replace(run, widths_mm=widths), WIDTH_MM, (True, True)) == []
