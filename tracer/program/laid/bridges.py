@@ -16,7 +16,6 @@ as broad.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import cv2
@@ -25,22 +24,26 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.plane import cross
-from morfax.motion.polyline import length_mm, lengths_mm, nearest_mm
+from morfax.motion.polyline import lengths_mm, nearest_mm
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
-from morfax.tracer.head.leaders import Led
 from morfax.tracer.program.against_ink.bars import OF_WIDTH
 from morfax.tracer.program.against_ink.window import Window
-from morfax.tracer.program.laid.bay_run import Bay, laid
+from morfax.tracer.program.laid.line_parts import (
+    back_along,
+    ink_about,
+    is_plain,
+    part_of,
+    run_on,
+)
 from morfax.tracer.program.laid.narrow_bays import is_clear
 from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, ways_within_rims
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.beside_itself import shortest
-from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
-from morfax.tracer.tangles.seen_ink import LIKE, SeenInk, middles_mm
+from morfax.tracer.tangles.pen import away_from
+from morfax.tracer.tangles.seen_ink import LIKE, middles_mm
 
 # In widths of the line; chosen by trial on keyholes, slit rings and necks:
 # of a line before and after a bar, as many as are needed: the head may have run into it
@@ -48,9 +51,6 @@ LEGS = 1.5, 4.0
 MOUTH = 1.0  # from a bar to the lines that it joins
 LEAST = 0.3  # squared: a smaller bar is a flaw of the ink
 OPEN = 0.2  # between the bar's sides: they are two
-REACH = 2.2  # of the ink about a bar that is looked at
-MOST_PLACES = 4000  # of that
-MOST_ABOUT = 600  # places that show what is near a bar
 LONGEST = 400.0  # of both sides
 
 
@@ -75,7 +75,7 @@ def bridged(setup: Setup, lines: Sequence[Line]) -> list[Line]:
 
 def _first_pair(setup: Setup, lines: list[Line]) -> tuple[Line, Line, Line] | None:
     """Two of the lines that a bar joins, and the one line that they are."""
-    closed = [line for line in lines if _is_plain(line)]
+    closed = [line for line in lines if is_plain(line)]
     if len(closed) < 2:
         return None
     for bar in _bars(setup.sheet.drawing, lines, closed):
@@ -90,12 +90,6 @@ def _first_pair(setup: Setup, lines: list[Line]) -> tuple[Line, Line, Line] | No
             if line is not None:
                 return one, other, line
     return None
-
-
-def _is_plain(line: Line) -> bool:
-    """Whether a line came round, and bears no mark."""
-    is_marked = line.is_lead or line.reference_mm is not None or line.marks or line.guides
-    return line.ending == "closed" and not is_marked and not line.loop_from and not line.on_edge
 
 
 def _bars(drawing: Drawing, lines: Sequence[Line], closed: Sequence[Line]) -> Iterator[Array]:
@@ -146,36 +140,15 @@ def _joined(setup: Setup, pair: tuple[Line, Line], bar: Array, leg_mm: float) ->
     if mouths[0] is None or mouths[1] is None:
         return None
     # 1. the head's ways, each from behind the bar round to before it, with the bar on the same side
-    first = _from_mouth(one, mouths[0], False)
-    second = _from_mouth(other, mouths[1], mouths[0].is_left != mouths[1].is_left)
+    first = part_of(one, mouths[0].last, mouths[0].first)
+    second = part_of(other, mouths[1].last, mouths[1].first)
+    if mouths[0].is_left != mouths[1].is_left:
+        second = back_along(second)
     ways = first.places_mm, second.places_mm
     # 2. the sides of the bar, from the end of each way to a leg of the other
     legs = tuple(1 + int(np.searchsorted(lengths_mm(way), leg_mm)) for way in ways)
     sides = _sides(setup, one.width_mm, ways, legs, bar)
-    if sides is None:
-        return None
-    line = _one_after_the_other(first, second)
-    come_mm, at_second = lengths_mm(line.places_mm), len(ways[0])
-    at_end, round_mm = at_second + len(ways[1]) - 1, float(come_mm[-1])
-    onto_mm = float(come_mm[at_second + legs[1]]), round_mm + float(come_mm[legs[0]])
-    there = Bay(float(come_mm[at_second - 1]), onto_mm[0], sides[0], 0.0)
-    back = Bay(float(come_mm[at_end]), onto_mm[1], sides[1], 0.0)
-    return laid(setup, line, [there, back], round_mm)
-
-
-def _one_after_the_other(first: Line, second: Line) -> Line:
-    """Two lines as one closed line, straight from each to the other."""
-    xy_mm = np.vstack([first.xy_mm, second.xy_mm, first.xy_mm[:1]])
-    leaders = [line.led.of(len(line.xy_mm)) for line in (first, second, first)]
-    return replace(
-        first,
-        xy_mm=xy_mm,
-        led=Led.along(np.concatenate([*leaders[:2], leaders[2][:1]])),
-        number=min(first.number, second.number),
-        ink_mm=max(first.ink_mm, second.ink_mm),
-        length_mm=length_mm(xy_mm),
-        junctions_mm=first.junctions_mm + second.junctions_mm,
-    )
+    return None if sides is None else run_on(setup, (first, second), sides)
 
 
 def _sides(
@@ -204,7 +177,7 @@ def _sides(
     if is_a_pen(setup.sheet, apart_mm + width_mm):
         return None
     # 3. held against the ink
-    ink = _ink(drawing, np.vstack([bar, there.way, back.way]), width_mm)
+    ink = ink_about(drawing, np.vstack([bar, there.way, back.way]), width_mm)
     every_way = [*ways, there.way, back.way]
     away_mm = np.min([away_from(ink.places_mm, way) for way in every_way], axis=0)
     misfit = ink.misfit(ink.best_drawn(away_mm))
@@ -215,23 +188,3 @@ def _middle_half(way: Array) -> Array:
     """The places of a way but for a quarter at either end."""
     quarter = len(way) // 4
     return way[quarter : len(way) - quarter]
-
-
-def _ink(drawing: Drawing, about: Array, width_mm: float) -> SeenInk:
-    """The ink about some places (n, 2) mm."""
-    i, j = Window.about(drawing, about, REACH * width_mm).grid()
-    near = away_from(middles_mm(drawing, i, j), about[:: 1 + len(about) // MOST_ABOUT])
-    within = np.flatnonzero(near < REACH * width_mm)
-    every = 1 + len(within) // MOST_PLACES
-    i, j = i[within[::every]], j[within[::every]]
-    return SeenInk.of(drawing, (i, j), np.full(len(i), NOWHERE_MM), width_mm, every)
-
-
-def _from_mouth(line: Line, mouth: _Mouth, back: bool) -> Line:
-    """A closed line as an open one from behind a mouth round to before it, or the other way round."""
-    count = len(line.xy_mm)
-    first, last = mouth.last * THINNED, mouth.first * THINNED
-    at = np.arange(first, last + 1 + count * (last < first)) % count
-    at = at[::-1] if back else at
-    at = at[: len(at) // THINNED * THINNED]  # whole steps of the thinned places
-    return replace(line, xy_mm=line.xy_mm[at], led=Led.along(line.led.of(count)[at]))

@@ -70,6 +70,10 @@ class RimBay(NamedTuple):
         """The way as stretches (n, 2) mm between sharp corners."""
         return list(self.between_corners)
 
+    def turned_round(self) -> RimBay:
+        """The same from its last place to its first."""
+        return self._replace(between_corners=tuple(s[::-1] for s in self.between_corners[::-1]))
+
 
 def rim_bays(drawing: Drawing, view: View, own: Array, beyond: Array) -> Iterator[RimBay]:
     """Those ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
