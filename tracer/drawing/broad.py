@@ -33,6 +33,9 @@ ACROSS = np.arange(-24, 25) / 16  # of the line's width, to the left
 INK = 0.5  # of the darkest: a place on the path that is paler is not on its ink
 PAPER = 0.2  # of the darkest: there ink has ended, and what is darker again is another line's
 TWO = (1.8, 2.15)  # widths of the pen
+# of the ink: a path with so much more on one side than on the other does not run between two lines, of which
+# the one that it follows leaves 0.45 more on the other's side
+ASIDE = 0.25
 SHORT_WIDTHS = 30.0  # widths of the pen: a shorter stretch alone does not tell its width
 LEAST_SHARE = 0.15  # of the ink is the pen's
 PLACES = 60  # of a line that was not followed
@@ -72,12 +75,14 @@ def width_of(seen: Seen, middles: Array, width_mm: float) -> float:
 
 
 def inks(profiles: Array) -> Array:
-    """The ink of profiles in rows `ACROSS` a path, widths; NaN if it does not end, or the path is off it."""
+    """The ink of profiles in rows `ACROSS` a path, widths; NaN if it does not end, or the path is off it, or
+    within one side of it.
+    """
     middle = len(ACROSS) // 2
-    left, right = profiles[:, middle:], profiles[:, middle::-1]
+    left, right = _beside(profiles[:, middle:]), _beside(profiles[:, middle::-1])
     step = ACROSS[1] - ACROSS[0]
-    own = profiles[:, middle]
-    return step * (_beside(left) + _beside(right) - own)
+    inked = left + right - profiles[:, middle]
+    return step * np.where(np.abs(left - right) < ASIDE * inked, inked, np.nan)
 
 
 def _beside(outward: Array) -> Array:

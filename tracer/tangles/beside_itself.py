@@ -35,11 +35,8 @@ def stretches(
     """From which place of a closed way (n, 2) to which it comes so near to itself after so much way between;
     the last may be over n.
     """
-    count, near_mm = len(way), near_widths * width_mm
-    cell = np.floor((way - way.min(axis=0)) / near_mm).astype(np.int64) + 1
-    partner = np.full(count, -1)
-    heads = np.full(tuple(cell.max(axis=0) + 2), -1)
-    _find_partners(way, cell, near_mm, round(on_widths * width_mm / step_mm), heads, partner)
+    count = len(way)
+    partner = partners(way, near_widths * width_mm, round(on_widths * width_mm / step_mm))
     found = np.flatnonzero(partner >= 0)
     if not len(found):
         return []
@@ -55,6 +52,17 @@ def stretches(
         shortest(found[joined[group[found]] == number], count)
         for number in sorted(set(joined[group[found]].tolist()))
     ]
+
+
+def partners(way: Array, near_mm: float, apart: int) -> NDArray[np.int64]:
+    """For each place of a closed way (n, 2) mm one that is near to it, so many places apart along it or more;
+    -1 where none is.
+    """
+    cell = np.floor((way - way.min(axis=0)) / near_mm).astype(np.int64) + 1
+    partner = np.full(len(way), -1)
+    heads = np.full(tuple(cell.max(axis=0) + 2), -1)
+    _find_partners(way, cell, near_mm, apart, heads, partner)
+    return partner
 
 
 def _joined(

@@ -17,7 +17,7 @@ letter is a line, and is left out by asking for the others by number.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import NamedTuple
 
@@ -226,3 +226,22 @@ def a_letter(contour: Contour) -> LineFault:
         x_mm=float(x),
         y_mm=float(y),
     )
+
+
+def with_least_numbers(lines: list[Line], asked: list[Contour]) -> list[Line]:
+    """The lines, each of several patches by the least of their numbers: which of equal pieces of a line with
+    gaps was followed first is chance.
+    """
+    taken = {line.number for line in lines}
+    numbered = list[Line]()
+    for line in lines:
+        pieces = [
+            contour.number
+            for contour in asked
+            if contour.number < line.number
+            and contour.number not in taken
+            and contour.lies_on(line.places_mm)
+        ]
+        numbered.append(replace(line, number=min(pieces)) if pieces else line)
+        taken.add(numbered[-1].number)
+    return numbered
