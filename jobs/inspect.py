@@ -20,7 +20,7 @@ from morfax.jobs.readings import program_figures
 from morfax.jobs.readings.carriers import CarrierReading, listen
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import TapeFault
-from morfax.recorder.sound.source import BLOCK_FRAMES
+from morfax.motion.usual import AT_ONCE
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
@@ -112,7 +112,7 @@ def _travels(tape: Tape, listener: Listener) -> dict[str, Figures]:
     low = np.full(len(fmt.axes), np.inf)
     high = np.full(len(fmt.axes), -np.inf)
     zero: Array | None = None
-    for phases in discriminate(tape.stored_blocks(BLOCK_FRAMES), discriminator):
+    for phases in discriminate(tape.stored_blocks(AT_ONCE), discriminator):
         zero = phases.cycles[0] if zero is None else zero
         low, high = (
             np.fmin(low, phases.cycles.min(axis=0)),

@@ -16,4 +16,5 @@ INCREMENT_MM = 0.001  # in which places are counted
 PLOTTER_MM = 0.025
 COUNT_MM = 0.01  # the step of the Z unit's decades
 SLOWEST_MM_S, FASTEST_MM_S = 0.01, 1000.0  # of a feed
+THINNED = 30  # one position in 30 shows where a line runs: every 50 um at the head's speed
 AT_ONCE = 65536  # samples that are worked on together: 11 s of motion

@@ -27,6 +27,5 @@ EVERY_MM = 0.05  # between the places that stand for a way where it is held agai
 SOME_PLACES = 40  # of a line, which show where it runs
 MANY = 100  # lines, patches, pieces of a line: of more not each is looked at
 ROUNDS = 6  # times that a fit is made anew from the one before, at the most
-FEW_PX = (
-    1 << 20
-)  # pixels that are worked on at a time, 4 MB of darkness; so many tell a figure of a sheet
+# pixels that are worked on at a time: 4 MB of darkness; so many tell a figure of a sheet
+FEW_PX = 1 << 20

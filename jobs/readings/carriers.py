@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.files import for_soundfile
-from morfax.recorder.sound.source import BLOCK_FRAMES
+from morfax.motion.usual import AT_ONCE
 
 WINDOW_FRAMES = 4096  # 85 ms at 48 kHz: bins of 12 Hz
 SILENT_DB = -80.0  # under this level a track has no carrier whose frequency could be measured
@@ -52,7 +52,7 @@ def listen(
     try:
         with soundfile.SoundFile(for_soundfile(file)) as sound:
             kind = {"kind": f"{sound.format} {sound.subtype}", "tracks": sound.channels}
-            blocks = sound.blocks(BLOCK_FRAMES, dtype="float32", always_2d=True)
+            blocks = sound.blocks(AT_ONCE, dtype="float32", always_2d=True)
             carriers = _carriers(blocks, sound.samplerate, sound.channels)
             duration_s = sound.frames / sound.samplerate
             return {

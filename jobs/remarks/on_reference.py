@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from morfax.motion.by_number import numbered
+from morfax.tracer.limits import AHEAD_RAD
 
 if TYPE_CHECKING:
     from morfax.jobs.settings.settings import TraceSettings
@@ -121,14 +122,14 @@ def _rings_like_a_reference(trace: Trace) -> Iterator[tuple[Line, Place]]:
 
 def _leads_away(line: Line, place_mm: Place) -> bool:
     """Whether an open line begins near a place, at one of its ends, and leads away from it."""
-    from morfax.tracer.following.open_ends import LEAD_MM, LEADS_AWAY
+    from morfax.tracer.following.open_ends import LEAD_MM
     from morfax.tracer.sensing.leg import turn
 
     for way in (line.places_mm, line.places_mm[::-1]):
         inward = way[: LEAD_PLACES + 1]
         x, y = way[0] - np.asarray(place_mm)
         u, v = inward[-1] - inward[0]
-        away = abs(turn(math.atan2(y, x), math.atan2(v, u))) < LEADS_AWAY
+        away = abs(turn(math.atan2(y, x), math.atan2(v, u))) < AHEAD_RAD
         if math.hypot(x, y) < LEAD_MM and away:
             return True
     return False

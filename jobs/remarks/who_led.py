@@ -14,7 +14,7 @@ import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.long_array import one_in
-from morfax.tracer.following.followed import THINNED
+from morfax.motion.usual import THINNED
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array

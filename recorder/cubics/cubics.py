@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO, ROUNDED, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
+from morfax.motion.plane import BEND_RAD
 from morfax.motion.segments import Limits, Segment, Source, as_path, segments
 from morfax.recorder.cubics.file import (
     STEPS_PER_CONSTANT,
@@ -52,7 +53,7 @@ POINT_RATE_HZ = 4000.0  # nearly, of the interpolated points: the servo is as fa
 _NEIGHBOURS = 4  # places whose pieces are tried
 STRETCH = 1.1  # of the motion's own time
 CHECK_EVERY = 64  # intervals from one checked position to the next
-LIMITS = Limits(100.0, 500.0, spacing_mm=0.005, window_mm=0.02, corner_rad=0.2)
+LIMITS = Limits(100.0, 500.0, spacing_mm=0.005, window_mm=0.02, corner_rad=BEND_RAD)
 CORNER_SHARES = (1.0, 0.5, 0.25)  # of that angle
 
 

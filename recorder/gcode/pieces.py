@@ -23,12 +23,11 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.circle import kasa, spread
 from morfax.motion.compiled import njit
-from morfax.motion.plane import SAME_MM, length_between
+from morfax.motion.plane import BEND_RAD, SAME_MM, length_between
 from morfax.motion.polyline import lengths_mm
 
 SPACING_MM = 0.05  # of the places that stand for a path
 WINDOW_MM = 0.2  # to either side of a corner
-CORNER_RAD = 0.2  # turned within the window: less is a bend
 LARGEST_TURN_RAD = 3.5  # 200 degrees, beyond which an arc is cut in two
 
 
@@ -49,7 +48,7 @@ def corners(points_mm: Array) -> NDArray[np.int64]:
     s = lengths_mm(points_mm)
     wide, narrow = (_turn_rad(points_mm, s, reach) for reach in (WINDOW_MM, WINDOW_MM / 4))
     wide, narrow = np.abs(wide), np.abs(narrow)
-    is_sharp = (wide > CORNER_RAD) & (narrow > 0.6 * wide)
+    is_sharp = (wide > BEND_RAD) & (narrow > 0.6 * wide)
     sharp = np.flatnonzero(is_sharp)
     if not len(sharp):
         return sharp

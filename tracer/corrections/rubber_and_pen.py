@@ -31,7 +31,7 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.motion.polyline import evenly
 from morfax.tracer.corrections.on_sheet import Stroke
-from morfax.tracer.limits import FADES, PAPER
+from morfax.tracer.limits import FADES, PAPER, ROUNDS
 
 Darkness = NDArray[np.float32]
 
@@ -44,7 +44,6 @@ FEWEST = 8  # of those profiles: fewer show no line
 STEP_PX = 0.5
 WITHIN = 1.0  # widths: a stroke may begin so far beside the middle of its line
 ALONG = math.radians(50)  # a stroke that leaves its line at more than this has a corner there
-ROUNDS = 4  # darkness and width settle to 1 % where a line is as wide as three softnesses
 CURVE_PX = 0.5  # between places on a stroke's cubic
 
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from morfax.motion.faults import MotionFault
 from morfax.motion.polyline import Nearest
+from morfax.tracer.head.slow_cell import CHECKED
 from morfax.tracer.program.program import Trace
 
 GOUGE_MM = 0.005  # nearer to a line than the radius by more is a gouge: WITHIN_MM and the feed's smoothing
-GOUGES = 10  # one position in ten is looked at: every 17 um at 10 mm/s
 
 
 def refuse_gouges(beside: Trace, near: Nearest, diameter_mm: float) -> None:
@@ -24,7 +24,7 @@ def refuse_gouges(beside: Trace, near: Nearest, diameter_mm: float) -> None:
     for block in beside:
         moves = np.any(np.diff(block.positions_mm[:, :2], axis=0) != 0, axis=1)
         moving = block.positions_mm[:-1][moves]
-        cutting = moving[moving[:, 2] < 0, :2][::GOUGES]
+        cutting = moving[moving[:, 2] < 0, :2][::CHECKED]
         if not len(cutting):
             continue
         away_mm = near.distances_mm(cutting)

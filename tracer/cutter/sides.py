@@ -30,7 +30,7 @@ from morfax.motion.polyline import (
     lengths_mm,
     with_places,
 )
-from morfax.tracer.following.followed import THINNED
+from morfax.motion.usual import THINNED
 
 LOOP_MM = 1.0  # a shorter loop is the head's swivel, and not drawn; by trial
 CELLS = 500  # of the grid, along the longer side of what is looked at

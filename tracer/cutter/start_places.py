@@ -36,12 +36,12 @@ from morfax.tracer.cutter.contour import Beside, heading, nearest_place
 from morfax.tracer.cutter.contouring import AS_FOLLOWED, Contouring, Lead
 from morfax.tracer.cutter.leads import LEAST_MM, SIZES, Scrap, depth_mm, shaped
 from morfax.tracer.cutter.sides import is_counterclockwise
+from morfax.tracer.limits import EVERY_MM
 
 # All limits below were chosen by trial on the test drawings.
 STRAIGHT_MM = 0.03  # a stretch is straight within this
 TRIED = 24  # places of a path that are looked at
 BESIDE_MM = 0.2  # of a corner: shows the heading before and after it
-EVERY_MM = 0.1  # between the places of a contour at which corners are looked for
 # a corner turns by more than half a radian within a millimetre
 CORNERS = segments.Limits(1.0, 1.0, window_mm=1.0, corner_rad=0.5)
 

@@ -26,7 +26,7 @@ from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import at_lengths
 from morfax.tracer.drawing.hollow import FEWEST_PIECES, Seen, rows_of
-from morfax.tracer.limits import WIDER
+from morfax.tracer.limits import SOME_PLACES, WIDER
 
 # All limits below were chosen by trial on pairs of lines, and on line art.
 ACROSS = np.arange(-24, 25) / 16  # of the line's width, to the left
@@ -38,7 +38,6 @@ TWO = (1.8, 2.15)  # widths of the pen
 ASIDE = 0.25
 SHORT_WIDTHS = 30.0  # widths of the pen: a shorter stretch alone does not tell its width
 LEAST_SHARE = 0.15  # of the ink is the pen's
-PLACES = 60  # of a line that was not followed
 ABOUT_WIDTHS = 2.0  # of its middle places so near to each tell its heading
 
 
@@ -63,7 +62,7 @@ def widths_along(seen: Seen, places: Array, width_mm: float, pitch_mm: float) ->
 
 def width_of(seen: Seen, middles: Array, width_mm: float) -> float:
     """The usual width of a line that was not followed, by places (n, 2) mm near its middle, or NaN."""
-    some = middles[:: max(1, len(middles) // PLACES)]
+    some = middles[:: max(1, len(middles) // SOME_PLACES)]
     headings = np.empty(len(some))
     for k, place in enumerate(some):
         near = middles[np.hypot(*(middles - place).T) < ABOUT_WIDTHS * width_mm]

@@ -23,13 +23,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.motion.plane import CORNER_RAD
 
 # All limits below were chosen by trial on drawings scanned at 5 sizes, 7 angles and 3 resolutions.
 ALIKE = 0.015  # lengths within this share are equal
 AS_NEAR = 0.04  # of the ink's reach from its middle: distances within this are equal
 LOPSIDED = 0.02  # of the ink's third moment without signs: less shows no side
 # the way round begins so far before the lopsided side: no line lies on the cut
-BEFORE = math.radians(15)
+BEFORE = CORNER_RAD
 
 
 class Ink(NamedTuple):

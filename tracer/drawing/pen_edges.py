@@ -23,9 +23,8 @@ from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import left_of_headings
 from morfax.motion.polyline import with_places
 
-APART = (
-    1 / 16
-)  # widths between places that stand for a line: 0.2 % of half a width farther than it
+# widths between places that stand for a line: 0.2 % of half a width farther than it
+APART = 1 / 16
 STEPS = np.arange(0.5, 1.0, 0.01)  # widths outward, among which the ink ends
 INKED = 0.495  # widths from a line: more than half of one, less what rounding leaves, is paper
 

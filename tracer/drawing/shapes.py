@@ -34,8 +34,8 @@ from morfax.tracer.drawing.closing import Closed, covers, note, places_of, strea
 from morfax.tracer.drawing.components import FRINGE_PX
 from morfax.tracer.drawing.sharpening import APART_PX, Edge, sharpened
 from morfax.tracer.drawing.spacing import finer, too_near
+from morfax.tracer.limits import ROUNDS
 
-CLOSINGS = 4  # times that edges are looked for: what was closed may leave others too near
 EDGE_PX = 2.0  # of a pen that leaves one line at any angle
 EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close
 SOFT_PX = 0.7  # standard deviation: against the noise of the paper
@@ -82,7 +82,7 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
     share, shade = _shares(grey, pitch_mm)
     # 1. the edges, without slits and bridges that are too thin for the lens
     closed = list[Closed]()
-    for _ in range(CLOSINGS):
+    for _ in range(ROUNDS):
         sharp, softness_px, notes = _edges(share, pitch_mm)
         pairs = too_near(sharp, softness_px)
         if not len(pairs.back):

@@ -22,14 +22,14 @@ from morfax.motion.plane import unit
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.limits import AHEAD_RAD, MANY
 
 # All limits below were chosen by trial on `python -m benchmarks rough`.
 WIDEST_MM = 1.0  # over a wider gap a leg's own bend does not lead any more
 FEWEST = 3  # fewer may be meant
 PIECE_MM = 3.0  # of line, at least
-MOST_PIECES = 60  # a sheet with more is a net, or has lettering
 INWARD_WIDTHS = 4.0  # over which an end shows its direction
-FACING_COS = math.cos(math.radians(30))
+FACING_COS = math.cos(AHEAD_RAD)
 MOST_ENDS = 3  # of a piece, one of them a burr; a piece with more is a net
 STEP_PX = 0.25  # in which the end of the ink is looked for
 SPARE_MM = 0.2  # the head's own uncertainty about both ends
@@ -51,7 +51,7 @@ def gap_to_cross_mm(sheet: Sheet) -> float | None:
 def skips_mm(sheet: Sheet) -> list[float]:
     """The gaps between ends that face each other, mm."""
     pieces = np.flatnonzero((sheet.lengths_mm > PIECE_MM) & ~sheet.are_solid)
-    if not FEWEST <= len(pieces) <= MOST_PIECES:
+    if not FEWEST <= len(pieces) <= MANY:
         return []
     ends = [end for patch in pieces for end in _ends(sheet.stroke(int(patch)), sheet.drawing)]
     found, taken = list[float](), set[int]()

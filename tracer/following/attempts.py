@@ -21,15 +21,15 @@ import numpy as np
 
 from morfax.motion.faults import LineFault
 from morfax.motion.long_array import one_in
-from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import evenly
+from morfax.motion.usual import MOTION_RATE_HZ, THINNED
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following import knots
 from morfax.tracer.following.branches import Branches
 from morfax.tracer.following.direction import Direction, goes, turned_about, turned_to
 from morfax.tracer.following.edge_check import kept_to
 from morfax.tracer.following.enlarger import enlarged, reduced
-from morfax.tracer.following.followed import THINNED, Followed
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.follower import Follower
 from morfax.tracer.following.ways_out import Turns
 from morfax.tracer.head.settings import Settings

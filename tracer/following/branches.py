@@ -25,7 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.long_array import one_in
-from morfax.tracer.following.followed import THINNED
+from morfax.motion.usual import THINNED
 from morfax.tracer.following.knots import copied
 
 if TYPE_CHECKING:

@@ -21,8 +21,6 @@ from morfax.tracer.head.loop import loop_in
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.sensing.view import View
 
-THINNED = 30  # one position in 30 shows where a line runs: every 50 um at 10 mm/s
-
 
 @dataclass(slots=True)
 class Followed:

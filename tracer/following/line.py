@@ -21,14 +21,15 @@ from morfax.motion.arrays import Array, between
 from morfax.motion.faults import LineFault
 from morfax.motion.long_array import one_in
 from morfax.motion.polyline import lengths_mm
+from morfax.motion.usual import THINNED
 from morfax.tracer.corrections.on_sheet import StopAt
-from morfax.tracer.following.followed import THINNED, Followed
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.roughness import roughness_mm
 from morfax.tracer.following.told_stops import with_told
 from morfax.tracer.head.leaders import Led, share_of_cell
 from morfax.tracer.junctions.gaps import Break, breaks
 from morfax.tracer.junctions.guides import GuideLine
-from morfax.tracer.limits import CLEAR_WIDTHS
+from morfax.tracer.limits import AHEAD_RAD, CLEAR_WIDTHS
 from morfax.tracer.marks.marks import Mark, marks_along
 from morfax.tracer.sensing.leg import TURNS_OFF, turn
 from morfax.tracer.sensing.side import Side
@@ -37,7 +38,7 @@ from morfax.tracer.sensing.side import Side
 HEADING = 300  # positions that show the heading at an end: half a mm at 10 mm/s
 NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one, ...
 NEARLY = 0.1  # ... if that is no more than this share of its length, ...
-AHEAD = 0.7  # ... and lies ahead: the cosine of 46 degrees
+AHEAD = math.cos(AHEAD_RAD)  # ... and lies ahead
 TURN_MM = 1.5  # before and after a junction: shows whether the line turns there
 REFERENCE_MM = 3.0  # a mark nearer to a reference point is a stroke of that point
 

@@ -24,6 +24,7 @@ from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.plain_places import local_view
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.junctions.line_ahead import straight_on
+from morfax.tracer.limits import AHEAD_RAD
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, leg_of, turn
@@ -33,7 +34,6 @@ from morfax.tracer.sensing.view import View
 # All limits below were chosen by trial on the test drawings.
 LEAD_MM = 11.0  # at most, from the middle of a reference point to its lead line
 NAMED_MM = 5.0  # a cross or ring nearer to the named reference point is that point, drawn
-LEADS_AWAY = math.radians(45)  # a line that leads away from a reference point, within this
 AT_IT = 0.5  # widths: an end as near to the reference point begins at it, whatever its heading
 LEAD_LEGS = 1.5  # lengths of a leg: a lead line is longer than this
 RING_WIDTHS, RING_PX = 1.5, 6.0  # radius of the ring of cells about an end: the larger
@@ -138,7 +138,7 @@ def from_reference(place_mm: tuple[float, float], ends: list[Stance]) -> list[St
     for end in ends:
         way = end.place_mm - np.asarray(place_mm)
         away = float(np.hypot(*way))
-        ahead = abs(turn(math.atan2(way[1], way[0]), end.heading_rad)) < LEADS_AWAY
+        ahead = abs(turn(math.atan2(way[1], way[0]), end.heading_rad)) < AHEAD_RAD
         if away < LEAD_MM and (ahead or away < AT_IT * end.view.width_mm):
             found.append((away, replace(end, reference_mm=place_mm)))
     return [stance for _, stance in sorted(found, key=lambda each: each[0])]

@@ -23,7 +23,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of, unit
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.following.followed import THINNED, Followed
+from morfax.motion.usual import THINNED
+from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
 from morfax.tracer.limits import MANY
 from morfax.tracer.sensing.edge_scout import CIRCLE_PX

@@ -1,7 +1,6 @@
 """The carriage: the head on its two screws, moved by its kernels, and what it remembers of its way.
 
 Signals: a leg to follow from, or a course (mm, mm/s) in; positions (n, 2) mm at the motion rate out.
-
 It keeps all positions of its screws (`positions_mm`; beyond some metres in a file), and a trail of them.
 
 Source: patent ES 361967, figure 1: lead screws 111 with their motors 17 and 12, and the head that they carry.
@@ -39,9 +38,7 @@ from morfax.tracer.head.tuning import CALIBRATED_ASIDE, tune, tuned_along
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
 
-CHUNK = round(
-    MOTION_RATE_HZ
-)  # samples that the kernel follows before it reports: a second at the motion rate
+CHUNK = round(MOTION_RATE_HZ)  # samples that the kernel follows before it reports: a second
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 HEARD = 0.1  # of what the sweep was set off; grain takes away less than the rest
 _STANDS = "x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "heading_rad"

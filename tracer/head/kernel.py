@@ -43,6 +43,7 @@ from morfax.motion.compiled import njit
 from morfax.tracer.head.screws import move, owed_s
 from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT
 from morfax.tracer.head.swinging import detect, seen, swing, way_of
+from morfax.tracer.limits import AHEAD_RAD
 from morfax.tracer.sensing.moments import NO_PLACES, bend_of, parabola_of, with_place
 
 # Shares of the line's ink; all chosen by trial on the test drawings.
@@ -54,7 +55,7 @@ ALTERED = 0.2  # over a sweep: the line has swollen or faded since the head was 
 BEND_FOLLOWS = 0.1  # share by which the usual bend follows the bend, sweep by sweep
 GUARD_FOLLOWS = 0.5  # share by which a guard cell follows what it sees, sweep by sweep
 HOME_ASIDE = 0.3  # of the lead: home is on the line
-HOME_COSINE = 0.8  # of the angle between the heading and home's: 37 degrees; by trial
+HOME_COSINE = math.cos(AHEAD_RAD)  # of the angle between the heading and home's
 SHORTEST = 0.2  # of the distance to the point: the axis may have come so near to it
 
 

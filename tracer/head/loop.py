@@ -25,14 +25,14 @@ from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings
 from morfax.motion.plane import unit
 from morfax.motion.polyline import lengths_by_blocks
+from morfax.tracer.limits import AHEAD_RAD, NEAR
 
 # Chosen by trial on the test drawings.
 STEP_MM = 0.03  # between the places that are compared
 FRESH_MM = 3.0  # the newest stretch of a way does not count as followed before
-TOGETHER = 0.25  # of the line's width: two ways nearer than this, on about one heading, are one
 ON_IT = 0.05  # of the line's width: two ways nearer than this are the same line, as felt twice
 AT_ALL = 1.0  # of the line's width: a run that stays further away has not come back
-ALIKE = math.cos(math.radians(30))  # cosine between headings that are about one
+ALIKE = math.cos(AHEAD_RAD)  # cosine between headings that are about one
 
 
 def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
@@ -52,7 +52,7 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
         return None
     # 2. a run that is square to its earlier way is cut off where it crosses that
     apart, alike = _apart(places[m::-1], places[j::-1])
-    back = _first_not((apart < TOGETHER * width_mm) & alike)
+    back = _first_not((apart < NEAR * width_mm) & alike)
     if back == 0:
         crossed = _crossed(places, index, j, round(2 * AT_ALL * width_mm / STEP_MM))
         return crossed or (int(index[j]), len(positions) - 1)
@@ -99,10 +99,10 @@ def comes_again(places: Array, step_mm: float, width_mm: float) -> bool:
         return False
     away = np.hypot(*(old - newest[-1]).T)
     j = int(np.argmin(away))
-    if away[j] > TOGETHER * width_mm:
+    if away[j] > NEAR * width_mm:
         return False
     apart, alike = _apart(newest[::-1], old[j::-1])
-    return _first_not((apart < TOGETHER * width_mm) & alike) == len(newest) - 1
+    return _first_not((apart < NEAR * width_mm) & alike) == len(newest) - 1
 
 
 def _first_not(good: NDArray[np.bool_]) -> int:

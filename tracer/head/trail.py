@@ -181,7 +181,7 @@ def place_back(marks, distance_mm):  # type: ignore[no-untyped-def]
 @njit(cache=True, _nrt=False)
 def is_near_itself(marks, width_mm):  # type: ignore[no-untyped-def]
     """Whether an earlier place of the trail is near to the newest: it may run along itself."""
-    places, boxes, beside_mm = marks.places, marks.boxes, 2 * loop.TOGETHER * width_mm
+    places, boxes, beside_mm = marks.places, marks.boxes, 2 * NEAR * width_mm
     x, y = places[marks.marked[0] - 1, 0], places[marks.marked[0] - 1, 1]
     end = marks.marked[0] - 2 * round(loop.FRESH_MM / marks.step_mm)
     k = 0

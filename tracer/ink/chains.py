@@ -27,6 +27,7 @@ from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed, without_
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.swelling import TWO
+from morfax.tracer.limits import ROUNDS
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
 from morfax.tracer.sensing.view import View
@@ -36,7 +37,6 @@ from morfax.tracer.sensing.view import View
 WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
 # of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it
 NARROWER = 0.8
-SOLVED_AGAIN = 5  # times at most, with more lines
 
 
 def solved(sheet: FeltSheet) -> Junctions:
@@ -53,7 +53,7 @@ def solved(sheet: FeltSheet) -> Junctions:
     ]
     doubled = sheet.doubled.throughout(sheet.felt)
     known = dict[Hashable, Crossing]()
-    for _ in range(SOLVED_AGAIN):
+    for _ in range(ROUNDS):
         junctions = Junctions(net_of(sheet, two | bare), sheet.settings, known)
         lines = [line.stretch for line in junctions.net.lines]
         together = dict.fromkeys((doubled & set(lines)) - parted - bare, sheet.doubled.pen_mm)

@@ -22,9 +22,9 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.long_array import one_in
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly
+from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.following.followed import THINNED
 from morfax.tracer.ink.graph import Graph
 from morfax.tracer.ink.hatching import Hatching, hatching
 from morfax.tracer.ink.left_out import Area, InkLeft

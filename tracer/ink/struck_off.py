@@ -29,10 +29,10 @@ from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import unit
 from morfax.motion.polyline import evenly
+from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.following.followed import THINNED
 from morfax.tracer.ink.track import InkStroke
 from morfax.tracer.limits import WIDER
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from morfax.motion.plane import CORNER_RAD
 from morfax.tracer.limits import AHEAD_RAD
 
 # a tick: a short stroke across the line or beside it
@@ -40,12 +41,12 @@ DOT_LEAST_WIDTHS, DOT_LARGEST_WIDTHS = 0.85, 6.0  # its radius
 DOT_FULL = 0.65  # its area over that of its box, at least; a disc has 0.785
 DOT_ROUND = 0.15  # its spokes differ by less than this share
 DOT_EVEN = 0.6  # share of the spokes that are alike, at least: the line covers the others
-DOT_ALONG = math.radians(50)  # the line leaves it within this of its heading
+DOT_ALONG = AHEAD_RAD  # the line leaves it within this of its heading
 BESIDE_DOT = 1.5  # widths, from a dot's edge to where the line is by itself
 
 # a reference point: a cross or a ring
 CROSS_MM = (1.5, 10.0)  # across
-SQUARE = math.sin(math.radians(15))  # its arms are this near to square
+SQUARE = math.sin(CORNER_RAD)  # its arms are this near to square
 INKED = 0.85  # share of an arm's length that is ink, at least
 ALIKE = 0.4  # its arms differ by less than this share
 BOX = 0.7  # the shorter side of its box over the longer, at least

@@ -7,7 +7,6 @@ Source: our own (see `sketch`).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ from morfax.tracer.head.course import ahead_mm
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.limits import TIP_RAD
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, turn
 from morfax.tracer.sensing.probe import stroke_end
@@ -32,7 +32,7 @@ if (
 
 # Chosen by trial on the test drawings.
 LEAST_AHEAD_MM = 0.1  # the head can still come onto a strand's own leg
-BACK_RAD, LONGEST_TIP_MM = math.radians(130), 5.5  # lines that run together to one tip
+LONGEST_TIP_MM = 5.5  # lines that run together to one tip
 
 
 class Tangles:
@@ -146,5 +146,5 @@ def _strands(way: Redrawing) -> Iterator[tuple[int, int, Array]]:
 
 def _runs_back(view: View, incoming: Leg, leg: Leg) -> bool:
     """Whether a leg is that of a line, no mark, that runs together with the incoming one, ahead."""
-    back = abs(turn(incoming.heading_rad, leg.heading_rad)) > BACK_RAD
+    back = abs(turn(incoming.heading_rad, leg.heading_rad)) > TIP_RAD
     return back and stroke_end(view, leg, longest_mm(view)) is None

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import length_mm, lengths_mm
-from morfax.tracer.following.followed import THINNED
+from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head import screws

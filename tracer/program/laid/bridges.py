@@ -39,7 +39,7 @@ from morfax.tracer.program.laid.line_parts import (
     run_on,
 )
 from morfax.tracer.program.laid.narrow_bays import is_clear
-from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, ways_within_rims
+from morfax.tracer.program.laid.rim_bays import OPEN, RimBay, is_a_pen, ways_within_rims
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.beside_itself import shortest
 from morfax.tracer.tangles.pen import away_from
@@ -50,7 +50,6 @@ from morfax.tracer.tangles.seen_ink import LIKE, middles_mm
 LEGS = 1.5, 4.0
 MOUTH = 1.0  # from a bar to the lines that it joins
 LEAST = 0.3  # squared: a smaller bar is a flaw of the ink
-OPEN = 0.2  # between the bar's sides: they are two
 LONGEST = 400.0  # of both sides
 
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm, lengths_mm
+from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import Led
 from morfax.tracer.program.against_ink.window import Window

@@ -28,6 +28,7 @@ from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.limits import MANY
 from morfax.tracer.program.against_ink.bars import bar_at, reaches
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
@@ -37,7 +38,7 @@ from morfax.tracer.program.against_ink.unexplained import (
 )
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
-from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, rim_bays
+from morfax.tracer.program.laid.rim_bays import LEG, RimBay, is_a_pen, rim_bays
 from morfax.tracer.program.laid.rim_loops import broad_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -46,7 +47,6 @@ from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk, middles_mm
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-LEG = 1.5  # of the way before and after a bay show where the line comes from and goes on
 MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
 REACH = 2.2  # of the ink about the way that is looked at
@@ -61,7 +61,6 @@ FURTHER = 0.01  # as much more must be left for each width more of a way that ru
 MOST_LEFT = 0.3
 DOUBTFUL = 0.3  # of the limit above which a way is beside its ink: it may be wrong
 ROUNDS = 3  # a bay may come to light when another is mended
-MOST = 40  # bays of one line that are tried
 
 
 LeftBy = Callable[[Setup, Sequence[Line], float], tuple[Unexplained, ...]]
@@ -151,7 +150,7 @@ class _Bays:
         step_mm = STEP_WIDTHS * line.width_mm
         way = evenly(line.loop_mm, step_mm)
         round_mm = len(way) * step_mm
-        suspects = list(self._suspects(way, step_mm))[:MOST]
+        suspects = list(self._suspects(way, step_mm))[:MANY]
         bays = [bay for each in suspects if (bay := self._bay(way, step_mm, each)) is not None]
         if line.as_told:  # it begins where it is told to
             bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < round_mm]

@@ -27,14 +27,14 @@ from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.ink.rim import felt_rim
+from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE
 from morfax.tracer.program.against_ink.window import Window
-from morfax.tracer.program.laid.rim_loops import AS_WIDE, broad_mm
+from morfax.tracer.program.laid.rim_loops import broad_mm
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.compass import between_corners
 
 # In widths of the pen:
-REACH = 3.0  # about a stretch its rim is looked for
 NEAR = 1.0  # from an end of the stretch to the rim's way
 ASIDE = 0.2  # the same, where both run side by side
 LEG = 1.5  # over so much the way comes to the stretch's ends
@@ -104,7 +104,7 @@ def ways_within_rims(
 
 def _outlines(drawing: Drawing, about: Array, width_mm: float) -> Iterator[Array]:
     """The outlines (n, 2) mm of the ink about some places, with the ink to their left."""
-    window = Window.about(drawing, about, REACH * width_mm)
+    window = Window.about(drawing, about, ABOUT_WIDTHS * width_mm)
     ink = np.asarray(window.of(drawing.darkness), float) > INK
     padded = np.pad(ink.astype(np.uint8), 1)
     found, tree = cv2.findContours(padded, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)

@@ -25,10 +25,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import length_mm
+from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head.carriage import Carriage

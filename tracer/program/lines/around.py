@@ -27,9 +27,8 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.enclosure import NONE
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
+from morfax.tracer.limits import SOME_PLACES
 from morfax.tracer.program.lines.selection import lines_of
-
-LOOKED_AT = 25  # places of a line that show on which patches of ink it runs; by trial
 
 
 class Around(NamedTuple):
@@ -75,7 +74,7 @@ def _in_hull(sheet: Sheet, lost: Line, closed: Sequence[Line]) -> Iterator[int]:
 
 def _patches(sheet: Sheet, line: Line) -> set[int]:
     """The patches of ink along which a line runs."""
-    places = line.loop_mm[:: max(1, len(line.loop_mm) // LOOKED_AT)]
+    places = line.loop_mm[:: max(1, len(line.loop_mm) // SOME_PLACES)]
     return {sheet.patch_at(place) for place in places}
 
 

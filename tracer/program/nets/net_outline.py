@@ -30,10 +30,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.long_array import one_in
 from morfax.motion.polyline import area_mm2, length_mm
+from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
-from morfax.tracer.following.followed import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
 from morfax.tracer.program.setup import Setup
