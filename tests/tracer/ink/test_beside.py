@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ import pytest
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.beside import lines_beside
+from morfax.tracer.ink.beside import Shared, lines_beside
 from morfax.tracer.ink.left_out import ink_left
+from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
@@ -101,3 +103,8 @@ def test_a_burr_near_the_end_of_a_line_is_no_step() -> None:
     widths[16:-60] = 1.6 * WIDTH_MM
     widths[7:9] = 1.6 * WIDTH_MM
     assert lines_beside(replace(run, widths_mm=widths), WIDTH_MM, (True, True)) == []
+
+
+def test_the_lines_of_a_shared_part_are_by_themselves_off_its_steps_outward() -> None:
+    part = Shared(10.4, 20.6, mock.Mock(spec=Run), 1, -1)
+    assert part.cuts(0) == (10, 21) and part.cuts(3) == (7, 24)
