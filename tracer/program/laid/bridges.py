@@ -171,10 +171,10 @@ def _sides(
     there, back = found
     # 2. apart, and of no other pen
     long_mm = there.length_mm + back.length_mm
-    apart_mm = median(away_from(_middle_half(there.way), back.way))
-    if apart_mm < OPEN * width_mm or long_mm > LONGEST * width_mm:
+    apart_mm = away_from(_middle_half(there.way), back.way)
+    if apart_mm.min() < OPEN * width_mm or long_mm > LONGEST * width_mm:
         return None
-    if is_a_pen(setup.sheet, apart_mm + width_mm):
+    if is_a_pen(setup.sheet, median(apart_mm) + width_mm):
         return None
     # 3. held against the ink
     ink = ink_about(drawing, np.vstack([bar, there.way, back.way]), width_mm)
