@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.head.slow_cell import rough_mm
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.junctions.felt_corner import FeltCorner
@@ -31,7 +32,7 @@ ALONG = 16  # places of a leg, which bends little
 
 def hides_corner(view: View, felt: FeltCorner) -> bool:
     """Whether a line that was felt as a round turns more sharply than that."""
-    if is_rough(view, felt):
+    if is_rough(view, felt.seen):
         return False
     # most lines have nothing to be held against the ink
     from morfax.tracer.tangles.likeness import Patch, Pen
@@ -51,6 +52,6 @@ def hides_corner(view: View, felt: FeltCorner) -> bool:
     return near > WORSE_AT_ANGLE * min(usual)
 
 
-def is_rough(view: View, felt: FeltCorner) -> bool:
+def is_rough(view: View, seen: Array) -> bool:
     """Whether a line's edges leave more ink unexplained than a corner does, or it is an edge."""
-    return view.on_edge or rough_mm(felt.seen) > ROUGH_PX * view.parted * view.pitch_mm
+    return view.on_edge or rough_mm(seen) > ROUGH_PX * view.parted * view.pitch_mm

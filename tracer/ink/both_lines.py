@@ -49,10 +49,13 @@ def strands(stations: Run, width_mm: float) -> list[Run]:
     part_of = _without_flares(widths, known, reach, FLARE * reach * stations.view.step_mm)
     if part_of is None:
         return []
-    first, last = part_of
-    part, widths = stations.part(first, last), widths[first:last]
+    return within_rims(stations.part(*part_of), widths[slice(*part_of)], width_mm)
+
+
+def within_rims(part: Run, widths: Array, width_mm: float) -> list[Run]:
+    """The two lines of a width along stations of ink of some widths, mm: half a width within its rims."""
     aside = 0.5 * np.maximum(widths - width_mm, 0.0)
-    aside *= _sides(aside, width_mm, stations.view.step_mm)
+    aside *= _sides(aside, width_mm, part.view.step_mm)
     normals = left_of_headings(part.headings_rad)
     own = replace(part, widths_mm=np.full(len(part), width_mm), is_strand=True)
     return [

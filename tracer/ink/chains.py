@@ -271,6 +271,8 @@ class Junctions:
 
     def end_mm(self, side: Side) -> float:
         """How far beyond its leg's clean end a line ends that has no partner, mm."""
+        if (end_mm := self.net.lines[side.line].ends_mm[side.last]) is not None:
+            return end_mm
         there = self.at(side)
         end_mm = there.crossing.ends_mm.get(there.sides.index(side))
         if end_mm is not None:

@@ -25,7 +25,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.tracer.ink.felt import Ends
 from morfax.tracer.ink.nib import Ink, is_by_heading, seems_two_lines, what_swells
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO, Swelling, pen_of, pen_of_hollow, stands_out
@@ -66,17 +65,14 @@ class Doubled(NamedTuple):
     def of(
         cls,
         felt: Sequence[Run],
-        ends: Sequence[Ends],
+        found: Mapping[int, Swelling],
         patch_of: Mapping[int, int],
         narrowest_mm: float,
     ) -> Doubled:
-        """Find the doubled stretches among those whose patch is given, some of which end the ink; none of a
-        sheet that is not clean, or whose lines are narrower than a width.
+        """Find the doubled stretches among those whose widths are given, and patches; none of a sheet that is
+        not clean, or whose lines are narrower than a width.
         """
-        # 1. how wide the ink is along each stretch, and whether one pen's line or two lines are
-        found = {
-            n: some for n in patch_of if (some := Swelling.of(felt[n], ends[n])) is not None
-        }
+        # 1. whether the ink along each stretch is one pen's line, or two lines
         every = list(found.values())
         pen_mm, beside_mm = pen_of(every), pen_of_hollow(every)
         pen_mm = beside_mm if math.isnan(pen_mm) else pen_mm
@@ -125,7 +121,7 @@ class Doubled(NamedTuple):
 
 
 def _of_the_pen(
-    found: dict[int, Swelling], patch_of: Mapping[int, int], pen_mm: float
+    found: Mapping[int, Swelling], patch_of: Mapping[int, int], pen_mm: float
 ) -> dict[int, Swelling]:
     """The stretches of the patches of which some ink is as narrow as a line of the pen."""
     own = {patch_of[n] for n, some in found.items() if some.known.min() < SHARED * pen_mm}

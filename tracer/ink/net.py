@@ -53,7 +53,8 @@ class FeltLine:
     """A line between two junctions: its clean runs in order, and the numbers of the junctions at its ends.
 
     A ring has the same junction at both, where it was cut open. `length_mm` is that of its ink, and `parted`
-    holds what was felt between one run and the next, (n, 2) mm.
+    holds what was felt between one run and the next, (n, 2) mm. `ends_mm` is how far beyond its runs it ends,
+    where that is known.
     """
 
     runs: list[Run]
@@ -63,6 +64,7 @@ class FeltLine:
     length_mm: float
     stretch: int = -1
     felt_mm: Array = field(default_factory=lambda: np.empty(0))  # the widths along all its ink
+    ends_mm: tuple[float | None, float | None] = (None, None)
 
     @property
     def places_mm(self) -> Array:
@@ -92,12 +94,15 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
     """The net of felt stretches; some are lines of their own in any case."""
     graph, widths = sheet.graph, sheet.widths_mm
     at, net, kept = graph.at_nodes(), Net([]), list[tuple[int, Parted]]()
-    same, inner = _Same(), list[int]()
+    same, inner, beside = _Same(), list[int](), list[int]()
     for n, stretch in enumerate(graph.stretches):
         taken, length_mm = sheet.taken(n), sheet.measured[n].length_mm
         ends = [len(at.get(node, ())) for node in stretch.nodes]
         is_ring = stretch.nodes[0] == RING
         short = length_mm < max(LEAST_MM, SPECK_WIDTHS * widths[n])
+        if n in sheet.beside:
+            beside.append(n)
+            continue
         # 1. specks, and stretches within a junction: they make one of the nodes at their ends
         if not is_ring and ends == [1, 1] and short:
             net.left_mm += length_mm
@@ -112,6 +117,8 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
             kept.append((n, taken.parted))
     # 2. the others are lines
     net.lines += [_line_of(sheet, n, parted, same) for n, parted in kept]
+    for n in beside:
+        _add_beside(net, sheet, n, same)
     free = {node for node, numbers in at.items() if len(numbers) == 1}
     net.free_ends = {node for node in free if not same.has_joined(node)}
     net.inner += [
@@ -125,10 +132,28 @@ def net_of(sheet: FeltSheet, own: set[int]) -> Net:
 
 def _line_of(sheet: FeltSheet, n: int, parted: Parted, same: _Same) -> FeltLine:
     """A stretch, or a strand of one, as a line between the junctions that its ends have become."""
-    nodes = sheet.graph.stretches[n].nodes
-    ends = (-1 - n, -1 - n) if nodes[0] == RING else (same.of(nodes[0]), same.of(nodes[1]))
-    felt_mm = sheet.felt[n].widths_mm
+    ends, felt_mm = _junctions(sheet, n, same), sheet.felt[n].widths_mm
     return FeltLine(*parted, ends, sheet.widths_mm[n], sheet.measured[n].length_mm, n, felt_mm)
+
+
+def _junctions(sheet: FeltSheet, n: int, same: _Same) -> tuple[int, int]:
+    """The junctions that the ends of a stretch have become."""
+    nodes = sheet.graph.stretches[n].nodes
+    return (-1 - n, -1 - n) if nodes[0] == RING else (same.of(nodes[0]), same.of(nodes[1]))
+
+
+def _add_beside(net: Net, sheet: FeltSheet, n: int, same: _Same) -> None:
+    """Add the lines of a stretch in part of which two run beside each other; where one ends no other does."""
+    at, felt_mm = _junctions(sheet, n, same), sheet.felt[n].widths_mm
+    for line in sheet.beside[n]:
+        alone = (
+            -1 - len(sheet.felt) - 2 * len(net.lines)
+        )  # no node has such a number, and no ring
+        first = at[0] if line.ends_mm[0] is None else alone
+        last = at[1] if line.ends_mm[1] is None else alone - 1
+        width_mm, long_mm = line.runs[0].view.width_mm, sum(run.length_mm for run in line.runs)
+        felt = FeltLine(line.runs, line.parted, (first, last), width_mm, long_mm, n, felt_mm)
+        net.lines.append(replace(felt, ends_mm=line.ends_mm))
 
 
 def _is_inner(sheet: FeltSheet, number: int, fewest: int) -> bool:

@@ -29,6 +29,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import ONE_PEN, Window
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.beside import Beside, lines_beside
 from morfax.tracer.ink.doubled import BROADER, LEAST_PX, LEAST_WIDTHS, SHARED, Doubled
 from morfax.tracer.ink.felt import (
     Ends,
@@ -41,6 +42,7 @@ from morfax.tracer.ink.felt import (
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.straight_on import SHORT_WIDTHS, Measured, StraightOn, of_two_lines
+from morfax.tracer.ink.swelling import Swelling, narrow_of
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.photocell import LEVEL
 from morfax.tracer.sensing.view import View
@@ -89,6 +91,8 @@ class FeltSheet:
     settings: Settings
     ends: list[Ends]  # of each stretch, whether the ink ends there
     doubled: Doubled = field(default_factory=Doubled)
+    # the lines of each stretch in part of which two run beside each other
+    beside: dict[int, list[Beside]] = field(default_factory=dict)
     together: set[int] = field(
         default_factory=set
     )  # stretches that have turned out to be two lines
@@ -143,8 +147,13 @@ class FeltSheet:
         ink: Mask,
         letters: Mask | None = None,
         window: Window | None = None,
+        *,
+        are_strokes: bool = False,
     ) -> FeltSheet:
-        """Find and feel the stretches of some ink, of which some is letters, in a window of the sheet."""
+        """Find and feel the stretches of some ink, of which some is letters, in a window of the sheet.
+
+        Strokes end where the pen was lifted beside another line; contours go on into that line.
+        """
         graph = Graph.of(ink, *window[:2]) if window else Graph.of(ink)
         felt = _felt(graph, drawing, settings, window)
         measured, at = [Measured.of(run) for run in felt], graph.at_nodes()
@@ -152,14 +161,24 @@ class FeltSheet:
         widths = _line_widths(straight, measured, settings)
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
         doubled, some = Doubled(), _no_letters(graph, letters)
+        beside = dict[int, list[Beside]]()
         if not settings.line_width_mm and not drawing.grainy:
             patch, pixel_mm = graph.patches(), drawing.pitch_mm * drawing.finer
             narrowest_mm = LEAST_PX[drawing.is_hard] * pixel_mm
-            doubled = Doubled.of(felt, ends, {n: int(patch[n]) for n in some}, narrowest_mm)
+            swell = {n: s for n in some if (s := Swelling.of(felt[n], ends[n])) is not None}
+            patch_of = {n: int(patch[n]) for n in some}
+            doubled = Doubled.of(felt, swell, patch_of, narrowest_mm)
+            pen_mm = narrow_of(list(swell.values()))
+            some_beside = swell if are_strokes else {}
+            beside = {
+                n: lines
+                for n in some_beside
+                if (lines := lines_beside(felt[n], pen_mm, ends[n]))
+            }
         if doubled.is_sure and math.isfinite(doubled.pen_mm):
             for n in set(some).intersection(of_two_lines(straight, measured, doubled.pen_mm)):
                 widths[n] = doubled.pen_mm
-        return cls(graph, felt, measured, widths, settings, ends, doubled)
+        return cls(graph, felt, measured, widths, settings, ends, doubled, beside)
 
 
 def _no_letters(graph: Graph, letters: Mask | None) -> list[int]:

@@ -29,6 +29,7 @@ BESIDE = 1.5  # widths from the ends of a stretch: there others cross it
 NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
 # of the pen's width about it; of the ink, which is as narrow
 SO_NARROW, LEAST_NARROW = 0.05, 0.05
+MUCH_NARROW = 0.3  # of the ink: that is the pen's width, however rough its edges are
 # times as much ink is as narrow as the pen as is a little broader, or more: of 14 nets of one pen 3.9 or more
 ONE_WIDTH = 2.0
 SMOOTH_EDGES = 0.02  # of the pen's width: deviation of a clean line's from its average
@@ -80,11 +81,17 @@ def pen_of(some: Sequence[Swelling]) -> float:
         return math.nan
     lengths = np.array([len(each.known) * each.run.view.step_mm for each in some])
     rough = float(np.average([each.rough for each in some], weights=lengths))
+    return narrow_of(some, LEAST_NARROW) if rough < SMOOTH_EDGES else math.nan
+
+
+def narrow_of(some: Sequence[Swelling], least: float = MUCH_NARROW) -> float:
+    """The narrowest width of the ink, mm, if at least so much of it is about as narrow; else NaN."""
+    if not some:
+        return math.nan
     widths = np.sort(np.concatenate([each.known for each in some]))
     pen_mm = float(widths[round(NARROWEST * (len(widths) - 1))])
     are_narrow = np.abs(widths / pen_mm - 1) < SO_NARROW
-    is_clean = rough < SMOOTH_EDGES and float(np.mean(are_narrow)) > LEAST_NARROW
-    return float(np.median(widths[are_narrow])) if is_clean else math.nan
+    return float(np.median(widths[are_narrow])) if np.mean(are_narrow) > least else math.nan
 
 
 def stands_out(some: Sequence[Swelling], pen_mm: float) -> bool:

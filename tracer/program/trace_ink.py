@@ -68,7 +68,8 @@ def _of_strokes(
 ) -> Trace:
     """Follow every stretch of the ink that is left for strokes."""
     # 1. the lines and their junctions, and the head along each
-    felt = FeltSheet.of(left.drawing, settings, left.ink, _letters(sheet, left))
+    letters = _letters(sheet, left)
+    felt = FeltSheet.of(left.drawing, settings, left.ink, letters, are_strokes=True)
     give_back()
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt), settings, progress)
