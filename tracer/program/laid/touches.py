@@ -32,11 +32,11 @@ from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.line_parts import (
     back_along,
     ink_about,
+    is_clear,
     is_plain,
     part_of,
     run_on,
 )
-from morfax.tracer.program.laid.narrow_bays import is_clear
 from morfax.tracer.program.laid.rim_bays import RimBay, ways_within_rims
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.beside_itself import partners, shortest
