@@ -59,7 +59,7 @@ ENDS = 1  # in a way
 NEARLY_ALL = 0.9  # of a net: a way round so much is its silhouette
 NEW_BY_END = 0.9  # of a way with an end is along no other
 # a way that turns by more than BACK_RAD goes back, but for a tip whose sides are so many times as long as the
-# ink that they share, and along that bend by no more of its angle; those of circles that touch bend by 0.2 of it
+# ink that they share, and along that bend by no more of its angle; of circles that touch by 0.2 of it
 TIP, BENT = 10.0, 0.1
 
 NOT, PAST, CROSSES = 0, 1, 2  # how a line goes straight on where a way leaves it
