@@ -27,10 +27,11 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.plane import direction, left_of
 from morfax.tracer.ink.both_lines import within_rims
-from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends, feel_along, judged
+from morfax.tracer.ink.felt import Ends, feel_along, judged
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO
 from morfax.tracer.limits import WIDER
+from morfax.tracer.sensing.leg import FEWEST_STATIONS
 
 NOTHING = np.empty((0, 2))  # was felt between
 # All limits below were chosen by trial on pairs of lines and on line art.

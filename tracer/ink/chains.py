@@ -22,8 +22,9 @@ from morfax.motion.arrays import Array
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.crossing import Crossing, are_side_by_side
 from morfax.tracer.ink.doubled import BROADER
+from morfax.tracer.ink.felt_lines import end_leg, trimmed, without_waist
 from morfax.tracer.ink.lifted import FARTHEST_WIDTHS
-from morfax.tracer.ink.net import Inner, Net, end_leg, net_of, trimmed, without_waist
+from morfax.tracer.ink.net import Inner, Net, net_of
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.swelling import TWO

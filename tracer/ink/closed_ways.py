@@ -58,6 +58,9 @@ ALONE, CORNER, SMOOTHLY, CROSSING, END, MOST = 0.1, 0.5, 1.0, 1.0, 1.5, 4.0
 ENDS = 1  # in a way
 NEARLY_ALL = 0.9  # of a net: a way round so much is its silhouette
 NEW_BY_END = 0.9  # of a way with an end is along no other
+# a way that turns by more than BACK_RAD goes back, but for a tip whose sides are so many times as long as the
+# ink that they share, and along that bend by no more of its angle; of circles that touch by 0.2 of it
+TIP, BENT = 10.0, 0.1
 
 NOT, PAST, CROSSES = 0, 1, 2  # how a line goes straight on where a way leaves it
 
@@ -245,7 +248,9 @@ class _Search:
         there = self.junctions.at(far)
         one, other = there.leg(far), there.leg(near).turned_round()
         turned = turned_by(one, other)
-        if turned > BACK_RAD or self.onward.are_of_two_pens(far, near):
+        if turned > BACK_RAD and not self._is_tip(far, near, turned):
+            return None
+        if self.onward.are_of_two_pens(far, near):
             return None
         are_alone = sum(side.line not in self.onward.aside for side in there.sides) == 2
         go_on = self.onward.goes_on(far) + self.onward.goes_on(near)
@@ -255,6 +260,17 @@ class _Search:
         if near == there.partner(far):
             return _Onward(CORNER, False, near)
         return self._turned(far, near, go_on, are_alone)
+
+    def _is_tip(self, far: Side, near: Side, turned: float) -> bool:
+        """Whether two lines are so long, and so straight, that they show a sharp tip: of lobes in a ring, and
+        not of hatching in a wall, or of lines that touch.
+        """
+        there, lines = self.junctions.at(far), self.junctions.net.lines
+        legs, tip = [there.leg(far), there.leg(near)], max(math.pi - turned, NOT_ZERO)
+        shared_mm = 0.5 * legs[0].width_mm / math.sin(0.5 * tip)
+        bend = max(abs(leg.bend_per_mm) for leg in legs)
+        is_long = min(lines[side.line].length_mm for side in (far, near)) > TIP * shared_mm
+        return is_long and bend * shared_mm < BENT * tip
 
     def _turned(self, far: Side, near: Side, go_on: int, are_alone: bool) -> _Onward | None:
         """How a way turns at a corner, at which some of its two lines go on elsewhere."""

@@ -18,14 +18,22 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.tracer.ink.nib import Ink, is_by_heading, seems_two_lines, what_swells
+from morfax.tracer.ink.nib import (
+    ENOUGH,
+    Ink,
+    is_by_heading,
+    like_two_lines,
+    may_be_two_lines,
+    what_swells,
+)
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO, Swelling, pen_of, pen_of_hollow, stands_out
 from morfax.tracer.limits import AS_WIDE, WIDER
@@ -66,10 +74,11 @@ class Doubled(NamedTuple):
         felt: Sequence[Run],
         found: Mapping[int, Swelling],
         patch_of: Mapping[int, int],
+        parts: Callable[[int], bool],
         narrowest_mm: float,
     ) -> Doubled:
         """Find the doubled stretches among those whose widths are given, and patches; none of a sheet that is
-        not clean, or whose lines are narrower than a width.
+        not clean, or whose lines are narrower than a width. `parts` says whether one parts at an end.
         """
         # 1. whether the ink along each stretch is one pen's line, or two lines
         every = list(found.values())
@@ -90,16 +99,18 @@ class Doubled(NamedTuple):
         }
         spreads = {n: _spread(found[n].averaged) for n in broad}
         are_several = _are_several_pens(felt, spreads)
-        doubled = {n for n in broad if spreads[n] > (SWELLS if are_several else EVEN)}
+        swell = {n for n in broad if spreads[n] > (SWELLS if are_several else EVEN)}
+        if not beside_mm > 0:
+            swell -= _nibs({n: found[n] for n in swell}, patch_of, parts, pen_mm)
         while not are_several and (
-            more := {n for n in broad.keys() - doubled if _goes_on(felt, n, doubled, pen_mm)}
+            more := {n for n in broad.keys() - swell if _goes_on(felt, n, swell, pen_mm)}
         ):
-            doubled |= more
-        stations = {n: broad[n] for n in sorted(doubled)}
+            swell |= more
+        stations = {n: broad[n] for n in sorted(swell)}
         if ink == Ink.EITHER:
-            told = {n: stations[n] for n in stations if seems_two_lines(found[n], pen_mm)}
+            told = {n: stations[n] for n in stations if like_two_lines(found[n], pen_mm)}
             return cls(pen_mm, told, is_sure=False)
-        return cls(pen_mm, stations, _cut(felt, patch_of, doubled, pen_mm))
+        return cls(pen_mm, stations, _cut(felt, patch_of, swell, pen_mm))
 
     def length_mm(self, felt: Sequence[Run], number: int) -> float:
         """The length of the ink of a stretch that two lines share, mm."""
@@ -125,6 +136,23 @@ def _of_the_pen(
     """The stretches of the patches of which some ink is as narrow as a line of the pen."""
     own = {patch_of[n] for n, some in found.items() if some.known.min() < WIDER * pen_mm}
     return {n: some for n, some in found.items() if patch_of[n] in own}
+
+
+def _nibs(
+    some: Mapping[int, Swelling],
+    patch_of: Mapping[int, int],
+    parts: Callable[[int], bool],
+    pen_mm: float,
+) -> set[int]:
+    """Stretches that swell as one stroke of a nib, on patches where lines do not cross more than once."""
+    crossed = Counter[int]()
+    for n, each in some.items():
+        crossed[patch_of[n]] += len(like_two_lines(each, pen_mm))
+    return {
+        n
+        for n, each in some.items()
+        if crossed[patch_of[n]] < ENOUGH and not may_be_two_lines(each, pen_mm, parts=parts(n))
+    }
 
 
 def _what_is(some: Sequence[Swelling], pen_mm: float) -> Ink:

@@ -58,7 +58,7 @@ def what_swells(some: Sequence[Swelling], thin_mm: float) -> Ink:
     """What the ink of a sheet is that no rigid nib has drawn, and whose thinnest width is given."""
     if _ends_are_blunt(some, thin_mm):
         return Ink.NIB
-    places = sum(len(_like_two_lines(each, thin_mm)) for each in some)
+    places = sum(len(like_two_lines(each, thin_mm)) for each in some)
     if places >= ENOUGH:
         return Ink.TWO_LINES
     return Ink.EITHER if places else Ink.NIB
@@ -91,12 +91,20 @@ def _misfit(sines: Array, means: Array, weights: Array) -> float:
     return float(np.sum((shapes @ fit - means * weights) ** 2))
 
 
-def seems_two_lines(each: Swelling, thin_mm: float) -> bool:
-    """Whether a place along a stretch looks like two lines of the thinnest width."""
-    return bool(_like_two_lines(each, thin_mm))
+def may_be_two_lines(each: Swelling, thin_mm: float, *, parts: bool) -> bool:
+    """Whether ink that swells may be two lines of the thinnest width; `parts`: it parts at an end.
+
+    Two lines part, cross, or end somewhere. Ink that does not and is thin at its ends, or within it as a nib
+    is that swells twice, is one stroke's.
+    """
+    if parts or like_two_lines(each, thin_mm):
+        return True
+    low = np.flatnonzero(each.known < LOW * thin_mm)
+    is_thin_within = bool(len(low)) and low[0] > 0 and low[-1] < len(each.known) - 1
+    return not is_thin_within and any(_broad_ends([each], thin_mm))
 
 
-def _like_two_lines(each: Swelling, thin_mm: float) -> list[int]:
+def like_two_lines(each: Swelling, thin_mm: float) -> list[int]:
     """The stations of a stretch where two lines seem to cross, or one of them to end."""
     crossed = _crossings(each.averaged, thin_mm)
     near = FURTHER * thin_mm / each.run.view.step_mm
@@ -158,6 +166,12 @@ def _steps(averaged: Array, thin_mm: float, step_mm: float) -> list[int]:
 
 def _ends_are_blunt(some: Sequence[Swelling], thin_mm: float) -> bool:
     """Whether the ink ends where it is broad, wherever it ends."""
+    broad = _broad_ends(some, thin_mm)
+    return bool(broad) and all(broad)
+
+
+def _broad_ends(some: Sequence[Swelling], thin_mm: float) -> list[bool]:
+    """Of each end of the ink whether it is broad there."""
     broad = list[bool]()
     for each in some:
         first, last = (round(widths * thin_mm / each.run.view.step_mm) for widths in END)
@@ -169,4 +183,4 @@ def _ends_are_blunt(some: Sequence[Swelling], thin_mm: float) -> bool:
             near = widths[first:last]
             if ends and np.isfinite(near).any():
                 broad.append(float(np.nanmedian(near)) > BLUNT * thin_mm)
-    return bool(broad) and all(broad)
+    return broad

@@ -101,7 +101,7 @@ def off_rims_mm(way: Array, ink: SharedInk, width_mm: float, others: Sequence[Ar
     where none tell.
     """
     stations, come_mm = ink.stations(), lengths_mm(way)
-    if not len(stations) or come_mm[-1] < FADES * width_mm:
+    if not len(stations) or come_mm[-1] < max(FADES * width_mm, 2 * EVERY_MM):
         return 0.0
     some = at_lengths(way, np.arange(0.0, come_mm[-1], EVERY_MM))
     off = _off(some, stations, width_mm, others)

@@ -65,22 +65,30 @@ class StraightOn:
                 found.add(here[0])
         return found
 
+    def parts(self, number: int) -> bool:
+        """Whether two stretches go straight on from an end of a stretch, as two lines do that part there."""
+        return any(len(self._ahead(number, last)) > 1 for last in (False, True))
+
     def _onto(self, number: int, last: bool) -> tuple[int, bool] | None:
         """The stretch straight on from an end of another, and its far end; None if none is straight on.
 
         A ring has no end.
         """
+        ahead = self._ahead(number, last)
+        return max(ahead, key=lambda way: way[0])[1:] if ahead else None
+
+    def _ahead(self, number: int, last: bool) -> list[tuple[float, int, bool]]:
+        """The stretches straight on from an end of another: how straight, which, and its far end."""
         node = self.graph.stretches[number].nodes[last]
-        way = -self._away(number, last)
-        best, most = None, STRAIGHT_COS
+        way, found = -self._away(number, last), list[tuple[float, int, bool]]()
         for other in self.at.get(node, ()):
             for other_last in (False, True):
                 if other == number or self.graph.stretches[other].nodes[other_last] != node:
                     continue
                 straight = float(self._away(other, other_last) @ way)
-                if straight > most:
-                    best, most = (other, not other_last), straight
-        return best
+                if straight > STRAIGHT_COS:
+                    found.append((straight, other, not other_last))
+        return found
 
     def _away(self, number: int, last: bool) -> Array:
         """The direction in which a stretch leaves the node at its end, (x, y)."""

@@ -29,7 +29,8 @@ from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.bars import THICK, bars_along
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.against_ink.window import Window
-from morfax.tracer.program.laid.narrow_bays import explained, is_clear, with_bars
+from morfax.tracer.program.laid.line_parts import is_clear
+from morfax.tracer.program.laid.narrow_bays import explained, with_bars
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.small_rings import pen_mm
 from morfax.tracer.program.one_of_each import one_of_each

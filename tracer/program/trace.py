@@ -28,6 +28,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.best_run import Target, best_of
 from morfax.tracer.program.laid.narrow_bays import explained
 from morfax.tracer.program.laid.small_loops import SmallLoops
+from morfax.tracer.program.laid.touches import touching
 from morfax.tracer.program.lines.marks_read import with_marks_read
 from morfax.tracer.program.lines.selection import NO_OTHERS, others_than
 from morfax.tracer.program.nets.net_outline import OfNet, of_net, round_ring
@@ -54,6 +55,8 @@ def trace(
     found = OfNet(setup) if start_mm is not None else of_net(setup)
     line = _along_net(found) or followed(found.setup, start_mm)
     line = SmallLoops(found.setup.sheet, setup.settings).mended(line)
+    if start_mm is None:
+        line = max(touching(found.setup, [line]), key=lambda each: each.length_mm)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
     lines, left = explained(setup, lines)

@@ -31,7 +31,8 @@ from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.as_contours import as_contours
-from morfax.tracer.program.laid.narrow_bays import beside_mended, is_clear
+from morfax.tracer.program.laid.line_parts import is_clear
+from morfax.tracer.program.laid.narrow_bays import beside_mended
 from morfax.tracer.program.laid.small_loops import Loop, SmallLoops
 from morfax.tracer.program.lines import stroke_order
 from morfax.tracer.program.lines.small_rings import SmallPatch, filled_up

@@ -8,8 +8,9 @@ import pytest
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.aside import has_arrowhead
 from morfax.tracer.ink.chains import Junction, Junctions, Side
+from morfax.tracer.ink.closed_ways import _Search
 from morfax.tracer.ink.crossing import Crossing
-from morfax.tracer.ink.net import Net
+from morfax.tracer.ink.net import FeltLine, Net
 from morfax.tracer.ink.onward import Onward
 from morfax.tracer.sensing.leg import Leg
 
@@ -62,3 +63,25 @@ def test_an_arrowhead_grows_from_its_tip_and_is_at_once_a_line_again(
     pieces_mm: tuple[tuple[float, float, float], ...], is_one: bool
 ) -> None:
     assert has_arrowhead(widths(*pieces_mm), STEP_MM, LINE_MM) == is_one
+
+
+@pytest.mark.parametrize(
+    ("long_mm", "bend_per_mm", "is_tip"),
+    [
+        (25.0, 0.0, True),  # a lobe in a ring
+        (5.0, 0.0, False),  # hatching in a wall
+        (25.0, 0.1, False),  # circles of 10 mm that touch
+    ],
+)
+def test_a_sharp_tip_is_one_of_long_straight_lines(
+    monkeypatch: pytest.MonkeyPatch, long_mm: float, bend_per_mm: float, is_tip: bool
+) -> None:
+    """Lines of 0.4 mm at 20 degrees share 1.15 mm of ink; a tip's are ten times as long."""
+    sides = [Side(n, False) for n in range(2)]
+    legs = [Leg(np.zeros(2), 0.0, bend_per_mm, LINE_MM, np.empty((0, 3))) for _ in sides]
+    there = Junction(sides, False, Crossing(legs, [], Settings()))
+    monkeypatch.setattr(Junctions, "at", lambda *_: there)
+    lines = [FeltLine([], [], (0, 1), LINE_MM, long_mm) for _ in sides]
+    junctions = Junctions(Net(lines), Settings())
+    search = _Search(junctions, Onward(junctions), Onward(junctions))
+    assert search._is_tip(*sides, np.radians(160)) == is_tip

@@ -92,3 +92,17 @@ def test_only_the_stroke_that_may_be_either_is_told() -> None:
     found = trace_ink(together((either, PEN_MM), *pieces, seed=1))
     assert found.ink is not None and found.ink.single
     assert all(y_mm < 70 for _, y_mm, _ in found.ink.single)
+
+
+@pytest.mark.parametrize("swells", [1, 2, 3])
+def test_a_brush_beside_a_thin_line_is_run_once(swells: int) -> None:
+    """The line as thin as the brush's thinnest ink is no reason to take what is broader for two lines."""
+    x = np.linspace(8, 62, 2000)
+    way = np.column_stack([x, 20 + 4 * np.sin(x / 9)])
+    widths = PEN_MM * (1.4 - 0.4 * np.cos(swells * (x - 8) / 54 * 2 * np.pi))
+    pieces = ((way[k : k + 6], float(widths[k])) for k in range(0, len(x) - 5, 5))
+    thin = np.array([(8.0, 40.0), (62.0, 40.0)])
+    found = trace_ink(together((thin, PEN_MM), *pieces, seed=1))
+    # along both rims it would be run twice
+    assert run_mm(found) == pytest.approx(54 + length_mm(way), rel=0.01)
+    assert found.ink is not None and not found.ink.single

@@ -11,7 +11,7 @@ from scipy.ndimage import uniform_filter1d
 from morfax.motion.contour import distance
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.felt import feel_along
-from morfax.tracer.ink.shared_ink import SLACK, SharedInk, _averaged, kept_in_ink
+from morfax.tracer.ink.shared_ink import SLACK, SharedInk, _averaged, kept_in_ink, off_rims_mm
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
@@ -33,6 +33,14 @@ def test_a_way_is_bent_to_its_own_rim_as_a_whole(side: int) -> None:
     # no place of it is further from its rim than the slack, so that none was moved by itself
     assert np.abs(way[:, 1] - own).max() < SLACK * WIDTH_MM + 50 * UM
     assert np.abs(kept[:, 1] - own).max() < 20 * UM  # half a pixel's noise at a rim
+
+
+def test_of_a_way_of_one_place_no_rim_tells() -> None:
+    """Ink that thins out to nothing has no width by which the way would be long."""
+    line = polyline((5, 10), (35, 10))
+    felt = feel_along(View(photocell.behind_aperture(inked(line), 0.1), WIDTH_MM), line)
+    way = polyline((20, 10), (20.04, 10))
+    assert off_rims_mm(way, SharedInk([felt]), 0.01, []) == 0.0
 
 
 ACROSS = np.linspace(-12.0, 12.0, 400)

@@ -34,11 +34,11 @@ from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.laid.line_parts import (
     back_along,
     ink_about,
+    is_clear,
     is_plain,
     part_of,
     run_on,
 )
-from morfax.tracer.program.laid.narrow_bays import is_clear
 from morfax.tracer.program.laid.rim_bays import OPEN, RimBay, is_a_pen, ways_within_rims
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.beside_itself import shortest
@@ -170,10 +170,10 @@ def _sides(
     there, back = found
     # 2. apart, and of no other pen
     long_mm = there.length_mm + back.length_mm
-    apart_mm = median(away_from(_middle_half(there.way), back.way))
-    if apart_mm < OPEN * width_mm or long_mm > LONGEST * width_mm:
+    apart_mm = away_from(_middle_half(there.way), back.way)
+    if apart_mm.min() < OPEN * width_mm or long_mm > LONGEST * width_mm:
         return None
-    if is_a_pen(setup.sheet, apart_mm + width_mm):
+    if is_a_pen(setup.sheet, median(apart_mm) + width_mm):
         return None
     # 3. held against the ink
     ink = ink_about(drawing, np.vstack([bar, there.way, back.way]), width_mm)

@@ -36,6 +36,14 @@ def is_plain(line: Line) -> bool:
     return line.ending == "closed" and not is_marked and not line.loop_from and not line.on_edge
 
 
+def is_clear(drawing: Drawing) -> bool:
+    """Whether a drawing is of lines that show where a pen was: on large pixels each step of them looks like
+    a corner.
+    """
+    is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
+    return is_fine and not drawing.grainy and not drawing.edges_mm
+
+
 def part_of(line: Line, first: int, last: int) -> Line:
     """The part of a closed line from one of its thinned places to another, perhaps over its beginning."""
     count = len(line.xy_mm)

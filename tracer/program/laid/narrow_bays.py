@@ -25,7 +25,6 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, nearest_mm
-from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.limits import MANY
@@ -38,7 +37,8 @@ from morfax.tracer.program.against_ink.unexplained import (
 )
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
-from morfax.tracer.program.laid.rim_bays import LEG, RimBay, is_a_pen, rim_bays
+from morfax.tracer.program.laid.line_parts import is_clear
+from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, rim_bays
 from morfax.tracer.program.laid.rim_loops import broad_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -47,6 +47,9 @@ from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk, middles_mm
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
+# of the way before and after a bay show where the line comes from and goes on; the rim of one aslant is its
+# own further off
+LEGS = 1.5, 4.0
 MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
 REACH = 2.2  # of the ink about the way that is looked at
@@ -97,14 +100,6 @@ def with_bars(setup: Setup, lines: Sequence[Line], others: Sequence[Line] = ()) 
     return _once_mended(setup, lines, left, others)
 
 
-def is_clear(drawing: Drawing) -> bool:
-    """Whether a drawing is of lines that show where a pen was: on large pixels each step of them looks like
-    a corner.
-    """
-    is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
-    return is_fine and not drawing.grainy and not drawing.edges_mm
-
-
 def _mended(
     setup: Setup, lines: Sequence[Line], left_by: LeftBy
 ) -> tuple[list[Line], tuple[Unexplained, ...]]:
@@ -129,6 +124,15 @@ def _once_mended(
         return list(lines)
     every = [*lines, *others]
     return [_Bays(setup, line, every, left).mended() for line in lines]
+
+
+class Stretch(NamedTuple):
+    """A stretch of a way from one of its places to another, as places (n, 2) mm, and the ink about it."""
+
+    first: int
+    last: int
+    own: Array
+    ink: SeenInk
 
 
 @dataclass(frozen=True)
@@ -194,57 +198,60 @@ class _Bays:
             yield Suspect(first, last, bar)
 
     def _bay(self, way: Array, step_mm: float, suspect: Suspect) -> Bay | None:
-        """The bay that a stretch of the way is, if a rule explains its ink better than the way does."""
-        # 1. the stretch with clean line on either side, and the ink about it
-        width_mm, leg = self.line.width_mm, round(LEG / STEP_WIDTHS)
+        """The bay that a stretch of the way is, if a rule explains its ink better than the way does, or else
+        the way within the rim of that.
+        """
+        leg = round(LEGS[0] / STEP_WIDTHS)
+        seen = self._seen(way, step_mm, suspect, leg)
+        if seen is None:
+            return None
+        rules = list[Rule]()
+        if not len(suspect.beyond_mm):
+            rules += folding_rule.along(seen.own, seen.ink.half_mm)
+        if suspect.is_beside_itself or len(suspect.beyond_mm):
+            legs = np.vstack([seen.own[: leg + 1], seen.own[-leg - 1 :]])
+            rules += folding_rule.round_bar(seen.ink, legs)
+        rule = self._explained(seen.ink, rules)
+        gain = self._gain(seen, rule, suspect) if rule is not None else None
+        if rule is not None and gain is not None:
+            return Bay(seen.first * step_mm, seen.last * step_mm, rule, gain)
+        if not suspect.is_beside_itself and not len(suspect.beyond_mm):
+            return None
+        tried = (self._seen(way, step_mm, suspect, round(leg / STEP_WIDTHS)) for leg in LEGS)
+        bays = (self._rim_bay(each, step_mm, suspect) for each in tried if each is not None)
+        return next((bay for bay in bays if bay is not None), None)
+
+    def _seen(self, way: Array, step_mm: float, suspect: Suspect, leg: int) -> Stretch | None:
+        """The stretch of the way that may be a bay, with legs, and the ink about it; None if it is too long,
+        or the ink goes on.
+        """
         first, last = suspect.first - leg, suspect.last + leg
         long = last - first
-        if long > OF_LOOP * len(way) or long * step_mm > LONGEST * width_mm:
+        if long > OF_LOOP * len(way) or long * step_mm > LONGEST * self.line.width_mm:
             return None
         own = way[np.arange(first, last + 1) % len(way)]
         rest = way[np.arange(last, first + len(way) + 1) % len(way)]
         about = np.vstack([own, suspect.beyond_mm])
         ink = self._ink(about, rest)
-        if self._goes_on(ink, about):
-            return None
-        # 2. the best rule along the way, or round a bar of ink; else the way within the rim of that
-        rules = list[Rule]()
-        if not len(suspect.beyond_mm):
-            rules += folding_rule.along(own, ink.half_mm)
-        if suspect.is_beside_itself or len(suspect.beyond_mm):
-            legs = np.vstack([own[: leg + 1], own[-leg - 1 :]])
-            rules += folding_rule.round_bar(ink, legs)
-        rule = self._explained(ink, rules)
-        gain = self._gain(ink, own, rule, suspect) if rule is not None else None
-        if rule is not None and gain is not None:
-            return Bay(first * step_mm, last * step_mm, rule, gain)
-        return self._rim_bay(ink, own, suspect, (first * step_mm, last * step_mm))
+        return None if self._goes_on(ink, about) else Stretch(first, last, own, ink)
 
-    def _rim_bay(
-        self, ink: SeenInk, own: Array, suspect: Suspect, ends_mm: tuple[float, float]
-    ) -> Bay | None:
-        """The bay between two places along the way that lies within the rim of the ink, if that explains the
-        ink better than the way does.
-        """
-        if not suspect.is_beside_itself and not len(suspect.beyond_mm):
-            return None
-        setup, best = self.setup, None
+    def _rim_bay(self, seen: Stretch, step_mm: float, suspect: Suspect) -> Bay | None:
+        """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
+        setup, ink, best = self.setup, seen.ink, None
         view = view_of(setup.sheet, setup.settings.aperture_mm, self.line.width_mm)
-        for rim_bay in rim_bays(setup.sheet.drawing, view, own, suspect.beyond_mm):
+        for rim_bay in rim_bays(setup.sheet.drawing, view, seen.own, suspect.beyond_mm):
             drawn = ink.drawn_along(rim_bay.way, rim_bay.half_mm)
             rule = rim_bay._replace(misfit=ink.misfit(drawn))
-            gain = self._gain(ink, own, rule, suspect)
+            gain = self._gain(seen, rule, suspect)
             if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rule.way)):
                 continue
             if gain is not None and (best is None or gain > best.gain):
-                best = Bay(*ends_mm, rule, gain)
+                best = Bay(seen.first * step_mm, seen.last * step_mm, rule, gain)
         return best
 
-    def _gain(
-        self, ink: SeenInk, own: Array, rule: Rule | RimBay, suspect: Suspect
-    ) -> float | None:
-        """How much better a rule explains the ink than the way (n, 2) mm; None if it does not, or badly."""
-        width_mm = self.line.width_mm
+    def _gain(self, seen: Stretch, rule: Rule | RimBay, suspect: Suspect) -> float | None:
+        """How much better a rule explains the ink than the way does; None if it does not, or badly."""
+        width_mm, own, ink = self.line.width_mm, seen.own, seen.ink
         widths = rule.length_mm / width_mm
         drawn_by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
         own_misfit = ink.misfit(drawn_by_own)
