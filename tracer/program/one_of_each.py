@@ -25,7 +25,6 @@ from morfax.motion.faults import LineFault
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.following.start import a_dark_area
 from morfax.tracer.marks.reference import LARGEST_MM
 from morfax.tracer.program.laid.bridges import bridged
@@ -33,9 +32,9 @@ from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.laid.touches import touching
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.selection import SHORT, Contour, Which
-from morfax.tracer.program.nets.net_lines import net_of, or_outline
-from morfax.tracer.program.nets.net_outline import ABOUT_WIDTHS, may_solve
-from morfax.tracer.program.nets.open_ink import is_of_several, is_open, strokes_of
+from morfax.tracer.program.nets.net_lines import lines_of_ring, net_of, or_outline
+from morfax.tracer.program.nets.net_outline import ABOUT_WIDTHS, goes_round, may_solve
+from morfax.tracer.program.nets.open_ink import can_stand, is_open, strokes_of, strokes_told
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed, followed_from_an_end
 
@@ -143,11 +142,16 @@ def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -
         return _Found(_lost(contour, a_dark_area(setup.sheet, stroke)))
     loop = loops.slot(stroke.patch)
     if loop is None:
-        net = net_of(setup, contour)
+        about = _about(setup, contour)
+        net = net_of(about, contour)
         lines = net.lines() if net is not None and net.is_clear else []
-        if lines and lines[0].ending == "closed":
+        if not lines and not is_letter:
+            lines = lines_of_ring(about, contour)
+        elif lines and lines[0].ending != "closed":
+            lines = []
+        if lines:
             return _as_found(setup, [loops.mended(line) for line in lines])
-        found = _follow_in_window(setup, contour, is_letter)
+        found = _follow_in_window(setup, about, contour, is_letter)
         own = or_outline(setup, contour, found.line)
         if own is not None:
             line = loops.mended(own)
@@ -166,21 +170,28 @@ def _as_found(setup: Setup, lines: list[Line]) -> _Found:
     return _Found(lines[0], lines[1:])
 
 
-def _follow_in_window(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
+def _about(setup: Setup, contour: Contour) -> Setup:
+    """The set-up with cells that see no more of a large sheet than what is about a patch."""
+    settings, stroke = setup.settings, contour.stroke
+    looks_mm = settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * stroke.width_mm
+    near = setup.sheet.about(stroke.patch, _off_mm(contour) + looks_mm)
+    return setup if near is setup.sheet else replace(setup, sheet=near)
+
+
+def _off_mm(contour: Contour) -> float:
+    """How far off a patch the head may come without seeing the edge of the window about it, mm."""
+    return ABOUT_MM if len(contour.stroke.ends_mm()) else ENDLESS_ABOUT_MM
+
+
+def _follow_in_window(setup: Setup, about: Setup, contour: Contour, is_letter: bool) -> _Found:
     """Follow a patch with cells that see no more of a large sheet than what is about it; with all of it if
     the head came so far off the patch that it may have looked beyond that.
     """
-    sheet, settings = setup.sheet, setup.settings
-    patch, width_mm = contour.stroke.patch, contour.stroke.width_mm
-    off_mm = ABOUT_MM if len(contour.stroke.ends_mm()) else ENDLESS_ABOUT_MM
-    looks_mm = settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * width_mm
-    near = sheet.about(patch, off_mm + looks_mm)
-    if near is sheet:
-        return _follow(setup, contour, is_letter)
-    about = replace(setup, sheet=near)
     line, _ = found = _follow(about, contour, is_letter)
+    if about is setup:
+        return found
     is_found = line is not None and line.ending != "lost" and _keeps_to(contour, line)
-    is_seen = is_found or about.runs.kept_to(*_box_mm(contour, off_mm))
+    is_seen = is_found or about.runs.kept_to(*_box_mm(contour, _off_mm(contour)))
     is_lead = line is not None and line.reference_mm is not None
     return found if is_seen and not is_lead else _follow(setup, contour, is_letter)
 
@@ -202,18 +213,19 @@ def _box_mm(contour: Contour, around_mm: float) -> tuple[Array, Array]:
 
 def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
     """Follow a line of a patch from an open end, or from the plainest place; none if the head can nowhere be
-    put down on a small patch. Of what is likely a letter, and where several strokes meet of which none comes
-    round, the strokes (see `open_ink`).
+    put down on a small patch. Of what is likely a letter, and of open ink on its own that is small or of
+    several strokes, the strokes (see `open_ink`).
 
     If the line from an end goes along less than half of the ink, a line from a plain place goes before it
     where that closes and is longer.
     """
-    are_several = is_of_several(setup, contour.stroke)
-    is_told = (is_letter or are_several) and _can_stand(setup, contour)
-    strokes = _strokes(setup, contour) if is_told else None
-    if strokes is not None and _is_told(strokes, are_several):
-        return strokes
-    from_end = followed_from_an_end(setup, contour.stroke, contour.number)
+    strokes = strokes_told(setup, contour, is_letter)
+    if strokes is not None:
+        return _Found(strokes[0], strokes[1:])
+    stroke, is_small = contour.stroke, contour.reach_mm < selection.LETTER_MM
+    if is_small and goes_round(setup.sheet, stroke.patch, 1) and not can_stand(setup, contour):
+        return _Found(None)  # the head would take another line nearby for it
+    from_end = followed_from_an_end(setup, stroke, contour.number)
     if from_end is not None:
         goes_far = from_end.length_mm > SHORT * from_end.ink_mm
         if from_end.ending != "joined" or goes_far:
@@ -224,7 +236,7 @@ def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
             return about
         is_better = about.line.ending == "closed" and about.line.length_mm > from_end.length_mm
         return about if is_better else _Found(from_end)
-    if from_end is not None or contour.reach_mm < selection.LETTER_MM:
+    if from_end is not None or is_small:
         return _Found(from_end)
     return _Found(_lost(contour, about))
 
@@ -233,25 +245,6 @@ def _lost(contour: Contour, fault: LineFault) -> Line:
     """The line of a patch that was never begun."""
     place_mm = np.array(contour.starts_mm()[:1])
     return Line(place_mm, "lost", contour.stroke.width_mm, 0.0, fault, contour.number)
-
-
-def _can_stand(setup: Setup, contour: Contour) -> bool:
-    """Whether the head can be put down somewhere on a patch."""
-    settings, stroke = setup.settings, contour.stroke
-    width_mm = settings.line_width_mm or stroke.width_mm
-    view = view_of(setup.sheet, settings.aperture_mm, width_mm)
-    stances = (stance_near(view, stroke, start_mm) for start_mm in contour.starts_mm())
-    return any(stance is not None for stance in stances)
-
-
-def _is_told(strokes: _Found, are_several: bool) -> bool:
-    """Whether strokes are what was drawn: ends that face each other may be a gap that the head crosses, and
-    of a letter that is no more than a stroke the longest is most of the ink.
-    """
-    line = strokes.line
-    if line is None or line.gap_mm is not None:
-        return False
-    return are_several or line.length_mm > SHORT * line.ink_mm
 
 
 def _strokes(setup: Setup, contour: Contour) -> _Found | None:

@@ -91,6 +91,8 @@ def test_a_patch_is_followed_on_all_of_a_sheet_only_if_the_head_came_far_off_it(
         return one_of_each._Found(Line(places, ending, 0.5, came_mm))
 
     monkeypatch.setattr(one_of_each, "_follow", follow)
-    one_of_each._follow_in_window(Setup(sheet), contour, False)
+    setup = Setup(sheet)
+    about = one_of_each._about(setup, contour)
+    one_of_each._follow_in_window(setup, about, contour, False)
     assert len(windows) == times and windows[0] is not None
     assert times == 1 or windows[-1] is None

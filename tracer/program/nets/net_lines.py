@@ -24,6 +24,7 @@ import numpy as np
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import ends_of
+from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.program.lines.selection import (
     LETTER_MM,
     NEW,
@@ -33,15 +34,18 @@ from morfax.tracer.program.lines.selection import (
     least_mm,
 )
 from morfax.tracer.program.nets.net_outline import (
+    CLOSES,
     NEARLY_ALL,
     are_nets,
     chain_mm,
+    goes_round,
     junctions_of,
     line_along,
     may_solve,
     outline_of,
     touches_itself,
 )
+from morfax.tracer.program.nets.open_ink import can_stand, strokes_of
 from morfax.tracer.program.setup import Setup
 
 if TYPE_CHECKING:
@@ -50,13 +54,37 @@ if TYPE_CHECKING:
 
 def net_of(setup: Setup, contour: Contour) -> NetLines | None:
     """The net that a patch is, if lines cross or touch on it, none of which comes from a reference point."""
+    patch = contour.stroke.patch
+    if not may_solve(setup) or not are_nets(setup.sheet)[patch] or _is_lead(setup, contour):
+        return None
+    return NetLines(setup, patch, contour.number)
+
+
+def lines_of_ring(setup: Setup, contour: Contour) -> list[Line]:
+    """The lines of a patch that goes round one area and on which lines meet, by its junctions: closed ones,
+    or of a small patch strokes. None if these do not show what was drawn, or come from a reference point.
+    """
     stroke = contour.stroke
-    if not may_solve(setup) or not are_nets(setup.sheet)[stroke.patch]:
-        return None
-    ends = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
-    if any(stance.reference_mm is not None for stance, _ in ends):
-        return None
-    return NetLines(setup, stroke.patch, contour.number)
+    if not may_solve(setup) or not goes_round(setup.sheet, stroke.patch, 1):
+        return []
+    if not len(stroke.ends_mm()) or _is_lead(setup, contour):
+        return []
+    net = NetLines(setup, stroke.patch, contour.number)
+    if not (net.forks and net.is_clear):
+        return []
+    lines = net.round_about()
+    if lines and net.ends_in_marks:
+        return []  # the head reads them
+    if lines or contour.reach_mm >= LETTER_MM or not can_stand(setup, contour):
+        return lines
+    return strokes_of(setup, stroke.patch, contour.number)
+
+
+def _is_lead(setup: Setup, contour: Contour) -> bool:
+    """Whether a line of a patch comes from a reference point."""
+    sheet, operator = setup.sheet, setup.operator
+    ends = ends_of(sheet, contour.stroke, setup.settings, operator.reference_mm)
+    return any(stance.reference_mm is not None for stance, _ in ends)
 
 
 class NetLines:
@@ -80,6 +108,32 @@ class NetLines:
         return closed_mm > NEARLY_ALL * sum(
             line.length_mm for line in self._junctions.net.lines
         )
+
+    @property
+    def ends_in_marks(self) -> bool:
+        """Whether all lines that end are as short as marks across a line, or there is none."""
+        net, view = self._junctions.net, self._junctions.net.lines[0].runs[0].view
+        ends = [line for line in net.lines if not net.free_ends.isdisjoint(line.junctions)]
+        return all(line.length_mm < longest_mm(view) for line in ends)
+
+    def round_about(self) -> list[Line]:
+        """All lines, the longest closed one first, however short that is; none if it leaves out much of a
+        stroke that does not come round.
+        """
+        from morfax.tracer.ink.closed_ways import closed_ways
+
+        junctions = self._junctions
+        strokes_mm = (chain_mm(chain, junctions) for chain in junctions.chains())
+        least_mm = CLOSES * max(strokes_mm, default=0.0)
+        ways = [w for w in closed_ways(junctions, set(), NEW) if w.length_mm > least_mm]
+        if not ways:
+            return []
+        return self.lines() or [self._run(max(ways, key=lambda way: way.length_mm).chain)]
+
+    @property
+    def forks(self) -> bool:
+        """Whether lines meet: it is no single line with sharp bends."""
+        return any(len(there.sides) > 2 for there in self._junctions.by_number.values())
 
     def lines(self) -> list[Line]:
         """All lines, the longest closed one first."""

@@ -204,9 +204,9 @@ def _loops(sheet: Sheet) -> NDArray[np.int64]:
     return sheet.patches.enclosure.loops(least_px)
 
 
-def goes_round_none(sheet: Sheet, patch: int) -> bool:
-    """Whether a patch goes round no area, and is no filled shape."""
-    return not sheet.are_solid[patch] and _loops(sheet)[patch] == 0
+def goes_round(sheet: Sheet, patch: int, areas: int) -> bool:
+    """Whether a patch goes round so many areas, and is no filled shape."""
+    return not sheet.are_solid[patch] and _loops(sheet)[patch] == areas
 
 
 def may_solve(setup: Setup) -> bool:

@@ -15,41 +15,81 @@ that ends at a gap is not taken for open.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.open_ends import stances_at
-from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.following.start import ENDS, ends_of
+from morfax.tracer.junctions.line_ahead import straight_on
+from morfax.tracer.program.lines.selection import LETTER_MM, SHORT, Contour
 from morfax.tracer.program.nets.net_outline import (
     chain_mm,
-    goes_round_none,
+    goes_round,
     junctions_of,
     line_along,
     may_solve,
 )
 from morfax.tracer.program.setup import Setup
 
+if TYPE_CHECKING:
+    from morfax.tracer.ink.chains import Junctions
+
 ENDS_OF_ONE = 2  # of a single stroke: where there are more, strokes meet
 
 
 def is_open(setup: Setup, stroke: Stroke) -> bool:
     """Whether no line of a patch comes round: it goes round no area, and none of its ends is at a gap."""
-    if not may_solve(setup) or not goes_round_none(setup.sheet, stroke.patch):
+    if not may_solve(setup) or not goes_round(setup.sheet, stroke.patch, 0):
         return False
     return _is_apart(setup, stroke, _ends(setup, stroke, setup.settings.gap_mm))
 
 
-def is_of_several(setup: Setup, stroke: Stroke) -> bool:
-    """Whether a patch is open and several strokes meet in it, none of which comes from a reference point."""
-    if not may_solve(setup) or not goes_round_none(setup.sheet, stroke.patch):
-        return False
-    ends = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
-    is_lead = any(stance.reference_mm is not None for stance, _ in ends)
-    if len(ends) <= ENDS_OF_ONE or is_lead:
-        return False
-    count = len(ends) if len(ends) < ENDS else _ends(setup, stroke, setup.settings.gap_mm)
-    return _is_apart(setup, stroke, count)
+def strokes_told(setup: Setup, contour: Contour, is_letter: bool) -> list[Line] | None:
+    """The strokes of a patch, the longest first, if they are what was drawn: of a letter, of open ink of
+    several strokes, and of small open ink that the head leaves across no gap.
+    """
+    stroke, is_small = contour.stroke, contour.reach_mm < LETTER_MM
+    ends = _ends_of_open(setup, stroke)
+    are_several = ends is not None and ends > ENDS_OF_ONE and _is_apart(setup, stroke, ends)
+    may_tell = is_letter or are_several or (is_small and ends is not None)
+    if not may_tell or not can_stand(setup, contour):
+        return None
+    strokes = strokes_of(setup, stroke.patch, contour.number)
+    if not strokes or strokes[0].gap_mm is not None:  # its ends face each other
+        return None
+    junctions = junctions_of(setup, stroke.patch)
+    if are_several:
+        return strokes
+    if not is_letter and leads_on(junctions, setup.settings.gap_mm):
+        return None
+    are_more = len(strokes) > 1 or len(junctions.chains()) > 1
+    return strokes if are_more or strokes[0].length_mm > SHORT * strokes[0].ink_mm else None
+
+
+def can_stand(setup: Setup, contour: Contour) -> bool:
+    """Whether the head can be put down somewhere on a patch."""
+    settings, stroke = setup.settings, contour.stroke
+    width_mm = settings.line_width_mm or stroke.width_mm
+    view = view_of(setup.sheet, settings.aperture_mm, width_mm)
+    stances = (stance_near(view, stroke, start_mm) for start_mm in contour.starts_mm())
+    return any(stance is not None for stance in stances)
+
+
+def leads_on(junctions: Junctions, gap_mm: float) -> bool:
+    """Whether the head goes on across a gap from any end of a patch."""
+    from morfax.tracer.ink.net import end_leg
+
+    net = junctions.net
+    for line in net.lines:
+        for last in (False, True):
+            if line.junctions[last] not in net.free_ends:
+                continue
+            view = line.runs[-1 if last else 0].view
+            if straight_on(view, end_leg(line, last), gap_mm) is not None:
+                return True
+    return False
 
 
 def strokes_of(setup: Setup, patch: int, number: int) -> list[Line]:
@@ -65,6 +105,16 @@ def strokes_of(setup: Setup, patch: int, number: int) -> list[Line]:
         for n, chain in enumerate(chains)
         if n == 0 or chain.closed or is_free(chain, junctions)
     ]
+
+
+def _ends_of_open(setup: Setup, stroke: Stroke) -> int | None:
+    """How many ends open ink has; None if it goes round an area, or a line comes from a reference point."""
+    if not may_solve(setup) or not goes_round(setup.sheet, stroke.patch, 0):
+        return None
+    ends = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
+    if any(stance.reference_mm is not None for stance, _ in ends):
+        return None
+    return len(ends) if len(ends) < ENDS else _ends(setup, stroke, setup.settings.gap_mm)
 
 
 def _is_apart(setup: Setup, stroke: Stroke, ends: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -72,6 +73,39 @@ def test_hatching_that_goes_on_from_a_side_of_a_square_takes_no_partner_from_it(
 def test_circles_that_overlap_are_cut_as_the_pen_drew_them() -> None:
     circles = [arc((16 + 10 * k, 20 + 4 * (k % 2)), 8) for k in range(4)]
     assert are(cut(*circles), *circles)
+
+
+@pytest.mark.usefixtures("no_trials")
+def test_a_ring_to_which_a_lead_line_comes_is_closed() -> None:
+    """One area, and one end of the ink; the lead line is told as left out."""
+    ring, lead = arc((16, 20), 8), polyline((24, 20), (40, 26))
+    trace = trace_lines(inked(ring, lead, seed=3))
+    assert are(trace.lines, ring)
+    assert trace.left_out_mm == pytest.approx(math.hypot(16, 6), rel=0.1)
+
+
+@pytest.mark.usefixtures("no_trials")
+def test_of_a_small_ring_that_is_part_of_a_stroke_the_stroke_is_run() -> None:
+    """A six: its loop is less than nine tenths of the stroke, whose end runs into it."""
+    round_rad = np.linspace(np.pi, 2.5 * np.pi, 100)
+    bowl = 3.0 * np.column_stack([np.cos(round_rad), np.sin(round_rad)]) + 16.0
+    six = np.vstack([polyline((13, 24), (13, 16.2)), bowl, [[13.0, 18.5]]])
+    (line,) = cut(six)
+    assert line.ending == "ended" and line.length_mm > 0.9 * shapely.LineString(six).length
+
+
+def test_the_head_follows_a_plain_ring_with_sharp_bends_itself(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No lines meet on it: one run is enough, and takes its corners as they are."""
+    runs, run = list[object](), Attempts.run
+
+    def counted(self: Attempts, *asked: object) -> object:
+        runs.append(asked)
+        return run(self, *asked)
+
+    monkeypatch.setattr(Attempts, "run", counted)
+    assert are(cut(SQUARE), SQUARE) and len(runs) == 1
 
 
 @pytest.mark.parametrize("apart_mm", [16.3, 16.0, 15.7])

@@ -11,7 +11,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.program import one_of_each
 from morfax.tracer.program.lines import selection
-from morfax.tracer.program.nets.open_ink import is_of_several
+from morfax.tracer.program.nets.open_ink import strokes_told
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import arc, inked, polyline
@@ -35,7 +35,31 @@ def test_a_line_that_comes_round_or_is_one_stroke_is_followed_as_ever() -> None:
     for drawing in (inked(arc((16, 16), 10), BRANCHES[0]), inked(TRUNK)):
         setup = Setup(Sheet.of(drawing))
         (contour,), _ = selection.plan(setup.sheet, "contours")
-        assert not is_of_several(setup, contour.stroke)
+        assert strokes_told(setup, contour, is_letter=False) is None
+
+
+HOOK = polyline((10, 10), (14, 18), (18, 10))  # small: it reaches over 8 mm
+
+
+def test_a_small_stroke_on_its_own_is_run_without_trials(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(Attempts, "run", None)
+    (line,) = trace_lines(inked(HOOK, seed=2)).lines
+    assert line.ending == "ended"
+    assert line.length_mm == pytest.approx(2 * math.hypot(4, 8), abs=0.3)  # ends and the corner
+
+
+@pytest.mark.parametrize("gap_mm, leads_on", [(0.3, True), (1.5, False)])
+def test_a_small_stroke_whose_end_is_at_a_gap_is_not(gap_mm: float, leads_on: bool) -> None:
+    """The head crosses half a millimetre; the pen's round ends make a gap narrower by its width."""
+    width_mm = 0.5
+    begin = 18 + gap_mm + width_mm
+    dashes = polyline((8, 10), (18, 10)), polyline((begin, 10), (begin + 20, 10))
+    setup = Setup(Sheet.of(inked(*dashes, width_mm=width_mm, seed=2)))
+    contours, _ = selection.plan(setup.sheet, "contours")
+    dash = min(contours, key=lambda contour: contour.reach_mm)
+    assert (strokes_told(setup, dash, is_letter=False) is None) == leads_on
 
 
 def test_a_ring_with_a_gap_is_closed_though_it_stands_among_letters() -> None:
