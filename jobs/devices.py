@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.media.live import USUAL_RATE_HZ, USUAL_TRACKS, Outlet
+from morfax.jobs.media.live import USUAL_TRACKS, Outlet
+from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -60,7 +61,7 @@ class DevicesJob:
     meters: str | None = None  # the device whose levels are shown
     lasts_s: float = 30.0
     tracks: int = USUAL_TRACKS
-    reference_hz: float = 6000.0
+    reference_hz: float = REFERENCE_HZ
     show: Show | None = None  # hears every reading
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> DevicesResult:
@@ -116,7 +117,7 @@ class DevicesJob:
 
         name = str(self.meters)
         device = found(name, tracks=self.tracks, is_input=True)
-        rate_hz = rate_for(device, USUAL_RATE_HZ, tracks=self.tracks, is_input=True)
+        rate_hz = rate_for(device, SAMPLE_RATE_HZ, tracks=self.tracks, is_input=True)
         source = DeviceSource(device, rate_hz, self.tracks)
         kept: list[Frames] = []
         # a tone of our own is waited for

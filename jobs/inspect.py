@@ -17,9 +17,10 @@ from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machine.playing import ByHand
 from morfax.jobs.media import files as medium
 from morfax.jobs.readings import program_figures
-from morfax.jobs.readings.carriers import BLOCK_FRAMES, CarrierReading, listen
+from morfax.jobs.readings.carriers import CarrierReading, listen
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import TapeFault
+from morfax.recorder.sound.source import BLOCK_FRAMES
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array

@@ -16,6 +16,7 @@ from morfax.jobs.media.live import PIPE, Outlet
 from morfax.jobs.settings.zero import Zero, of_path_mm
 from morfax.jobs.settings.zero import figures as zero_figures
 from morfax.jobs.wrong_use import WrongUse, settings_checked
+from morfax.motion.usual import FEED_MM_S, MOTION_RATE_HZ, REFERENCE_HZ
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from morfax.recorder.tape.recording import LiveRecording
     from morfax.tracer.operator.operator import Panel
 
-FEED_MM_S = 10.0  # of a path without times, as motion.pathfile has it
-REFERENCE_HZ = 6000.0  # as recorder.tape.format has it
-MOTION_RATE_HZ = 6000.0  # as motion.motion has it
 LIVE_TAPE = FilePath("live.wav")  # no file: it says that what goes out is a tape
 
 

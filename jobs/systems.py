@@ -27,6 +27,7 @@ from morfax.jobs.settings import correction_settings, flattening
 from morfax.jobs.settings.settings import DrawingFile, TraceSettings
 from morfax.jobs.tracing.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import Fault
 from morfax.motion.plane import SAME_MM
 
@@ -209,7 +210,7 @@ def held(path: Path, speed_mm_s: float) -> Figures:
     works = places_mm[:, 2] <= IN_WORK_BELOW_MM
     way_mm = way_mm[works[1:] & works[:-1]]
     holds = np.abs(way_mm / (HELD_OVER_S * speed_mm_s) - 1) <= HELD_SHARE
-    share = float(way_mm[holds].sum() / max(way_mm.sum(), 1e-12))
+    share = float(way_mm[holds].sum() / max(way_mm.sum(), NOT_ZERO))
     return {
         "mean_speed_mm_s": float(way_mm.mean() / HELD_OVER_S) if len(way_mm) else None,
         "speed_held_share": share,

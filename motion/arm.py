@@ -17,11 +17,11 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import BEND_RAD
 from morfax.motion.polyline import APART_MM, UM, closed_up, with_places
 
 PLAIN = 0.05 * UM  # a line is known by places between which it is straight within this
 DEEP_MM = 0.05  # nearer than the radius by this: no crossing there can count
-SLIGHT = math.radians(10)  # a turn towards the tool by less has no loop, ...
 KINK_MM = 0.1 * UM  # ... if the way comes no nearer to the line than this; by trial
 BACK = math.radians(179)  # a line that turns by more comes back along itself: round its tip
 
@@ -74,7 +74,7 @@ def _swing(vertex: Array, arm: Array, turn: float, beside_mm: float, radius_mm: 
     """Places of the arm's end while it turns at a vertex; the line is straight for `beside_mm` beside it."""
     # how far the meeting of the two ways is beyond the straight pieces
     beyond_mm = max(0.0, radius_mm * math.tan(max(turn, 0.0) / 2) - beside_mm)
-    towards_slightly = 0 <= turn < SLIGHT and beyond_mm * turn < KINK_MM
+    towards_slightly = 0 <= turn < BEND_RAD and beyond_mm * turn < KINK_MM
     if towards_slightly or -sagitta_rad(radius_mm) < turn < 0:
         middle = _turned(arm, np.array([turn / 2]))
         return np.asarray(vertex + middle / math.cos(turn / 2))

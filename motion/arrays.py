@@ -9,6 +9,7 @@ from morfax.motion.compiled import njit
 
 Array = NDArray[np.float64]
 NOT_ZERO = 1e-12  # what divides is this at least: a length, a share, a time
+ROUNDED = 1e-9  # share of a figure, or of a step, that rounding adds at the most
 
 
 def bounds(rows: NDArray[np.floating]) -> tuple[Array, Array]:

@@ -22,6 +22,8 @@ from __future__ import annotations
 
 from typing import Any
 
+SHOWN = 40  # characters of a wrong line or value: a fault is one line
+
 
 class Fault(Exception):
     """Root of the tree; `exit_code` is what the command line ends with."""

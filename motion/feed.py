@@ -4,7 +4,7 @@ the motion rate.
 Signals: a polyline (n, 2) mm, a feed in mm/s and one acceleration in mm/s² in; positions (m, 2) mm at the
 motion rate out.
 
-    v <= feed      v² · bend <= a/3      v · dv/ds <= 0.7 a      v = 0 at a corner (`SHARP`)
+    v <= feed      v² · bend <= a/3      v · dv/ds <= 0.7 a      v = 0 at a corner (`BEND_RAD`)
 
 A way is made of straight pieces, so at each of its places the velocity would jump by v · turn. The positions
 are averaged over `SMOOTHED_S`: in that time the jump is made at a third of the acceleration; the way moves
@@ -19,18 +19,16 @@ import math
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.plane import NOTHING_MM
+from morfax.motion.plane import BEND_RAD, NOTHING_MM
 from morfax.motion.polyline import at_lengths, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
-SHARP = math.radians(10)  # a sharper turn is a corner: the tool stops there
 # shares of the acceleration: along the way; in its bend, and again in its turns from piece to piece
 ALONG, ACROSS = 0.7, 1 / 3
 SMOOTHED_S = 0.002
 BEND_WITHIN_MM = 0.1  # the bend at a place is that within this to either side; by trial
-LEAST_BEND = 1e-9  # 1/mm, and rad of a turn: so that nothing is divided by zero
 STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest
 
 
@@ -77,16 +75,16 @@ def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: 
     turns = np.r_[math.pi, turns, math.pi]
     # 2. the bend about each place: the larger of those before and after it
     s = np.r_[0.0, np.cumsum(steps)]
-    turned = np.r_[0.0, np.cumsum(np.where(turns > SHARP, 0.0, turns))]
+    turned = np.r_[0.0, np.cumsum(np.where(turns > BEND_RAD, 0.0, turns))]
     low = np.searchsorted(s, s - BEND_WITHIN_MM)
     high = np.searchsorted(s, s + BEND_WITHIN_MM, side="right")
     turned_about = np.maximum(turned[high] - turned[:-1], turned[1:] - turned[low])
     bend = turned_about / np.minimum(BEND_WITHIN_MM, s[-1])
     # 3. the speeds that they allow
     across_mm_s2 = ACROSS * acceleration_mm_s2
-    by_bend = np.sqrt(across_mm_s2 / np.maximum(bend, LEAST_BEND))
-    by_turn = across_mm_s2 * SMOOTHED_S / np.maximum(turns, LEAST_BEND)
-    return np.where(turns > SHARP, 0.0, np.minimum(feed_mm_s, np.minimum(by_bend, by_turn)))
+    by_bend = np.sqrt(across_mm_s2 / np.maximum(bend, NOT_ZERO))
+    by_turn = across_mm_s2 * SMOOTHED_S / np.maximum(turns, NOT_ZERO)
+    return np.where(turns > BEND_RAD, 0.0, np.minimum(feed_mm_s, np.minimum(by_bend, by_turn)))
 
 
 def _averaged(positions_mm: Array, rate_hz: float) -> Array:

@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.motion import Path
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly, lengths_mm
@@ -68,7 +68,7 @@ def _contour(line_mm: Array, long_mm: float) -> tuple[float, float]:
     places = np.vstack([evenly(line_mm, EVERY_MM), line_mm[-1:]])
     count = int(HALF * len(places))
     # most places have no other near: to find how far the nearest is would take ten times as long
-    near_mm = (MEET_MM + TIES_MM) * (1 + 1e-9)
+    near_mm = (MEET_MM + TIES_MM) * (1 + ROUNDED)
     gaps, other = Neighbours(places[-count:]).nearest(places[:count], within=near_mm)
     if gaps.min() > MEET_MM:
         return 0.0, long_mm

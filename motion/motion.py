@@ -17,15 +17,16 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.usual import AT_ONCE
+from morfax.motion.usual import MOTION_RATE_HZ as MOTION_RATE_HZ
 
 AXES: tuple[str, ...] = ("x", "y", "z")
 # what a fourth and later axis may be called; all in mm of their own screws
 FURTHER_AXES = tuple("abcuvw")
-MOTION_RATE_HZ = 6000.0  # 48 kHz / 8
 # the tool is in the work at and below the surface; the margin is for a servo's rest error
 IN_WORK_BELOW_MM = 0.05
 THINNING_TOLERANCE_MM = 2e-4
-BLOCK_SAMPLES = 65536  # 11 s at 6 kHz
+BLOCK_SAMPLES = AT_ONCE
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,9 +21,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from morfax.motion.arm import PLAIN, SLIGHT, sagitta_rad, swung
+from morfax.motion.arm import PLAIN, sagitta_rad, swung
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.plane import BEND_RAD
 from morfax.motion.polyline import (
     APART_MM,
     Nearest,
@@ -143,7 +144,7 @@ def _begun(points: Array, start_mm: Array) -> Array:
         ways = np.diff(closed_up(points), axis=0)
         headings = np.arctan2(ways[:, 1], ways[:, 0])
         turns = np.abs(np.angle(np.exp(1j * np.diff(np.r_[0, headings]))))
-        sharp = np.flatnonzero(turns > SLIGHT)
+        sharp = np.flatnonzero(turns > BEND_RAD)
         gaps = np.diff(np.r_[sharp, sharp[:1] + len(points)])
         first = int(sharp[np.argmax(gaps)] + gaps.max() // 2) % len(points) if len(sharp) else 0
     return closed_up(np.roll(points, -first, axis=0))

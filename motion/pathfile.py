@@ -37,9 +37,9 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.motion import AXES, IN_WORK_BELOW_MM, Path
 from morfax.motion.pathtable import LONGEST_S, PathTable, read_table
+from morfax.motion.usual import FEED_MM_S as FEED_MM_S
 
 CLEARANCE_MM = 2.0  # where the tool stands when it is up, docs/design.md
-FEED_MM_S = 10.0  # the head's own speed
 _ROWS_AT_ONCE = 4096  # that are written
 
 

@@ -16,6 +16,8 @@ from morfax.motion.compiled import njit
 NOTHING_MM = 1e-9  # rounding leaves so much of a length that is none, ...
 NOTHING_MM2 = NOTHING_MM**2  # ... and this of its square
 SAME_MM = 1e-6  # places as near as a nanometre are one
+CORNER_RAD = math.radians(20)  # a way that turns by more has a corner there ...
+BEND_RAD = CORNER_RAD / 2  # ... and one that turns by less is a bend
 
 
 def direction(heading_rad: float) -> Array:

@@ -36,10 +36,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.compiled import njit
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.plane import NOTHING_MM
+from morfax.motion.usual import ACCELERATION_MM_S2, INCREMENT_MM
 
 UP, CONSTANT, DOWN = 1, 0, -1
 _LARGEST_COUNT = 1 << 40  # 1000 km in increments of 1 um: the counter is a 64-bit integer
@@ -52,8 +53,8 @@ Counts = NDArray[np.int64]
 class Ramp:
     """Settings: the one acceleration along the path, and the increment of the position transducers."""
 
-    acceleration_mm_s2: float = 500.0
-    increment_mm: float = 0.001
+    acceleration_mm_s2: float = ACCELERATION_MM_S2
+    increment_mm: float = INCREMENT_MM
 
     def __post_init__(self) -> None:
         for name, value in (
@@ -166,9 +167,9 @@ def _speeds(
     """
     exactly = feeds[0] ** 2 / (2 * acceleration_mm_s2 * mm_per_count)
     if exactly < increments:
-        acceleration_mm_s2 *= exactly / max(1, math.ceil(exactly * (1 - 1e-12)))
+        acceleration_mm_s2 *= exactly / max(1, math.ceil(exactly * (1 - ROUNDED)))
     squares = [
-        feed**2 / (2 * acceleration_mm_s2 * mm_per_count) * (1 + 1e-12) for feed in feeds
+        feed**2 / (2 * acceleration_mm_s2 * mm_per_count) * (1 + ROUNDED) for feed in feeds
     ]
     return [
         max(1, math.floor(min(square, increments))) for square in squares
@@ -184,7 +185,7 @@ def _sample(profile: Profile, acceleration_s2: float, rate_hz: float) -> Array:
     # a piece's mean speed is the mean of the speeds at its ends, both exact
     took_s = halves / (speed[:-1] + speed[1:])
     begins_s = _summed(took_s)
-    t_s = np.arange(math.ceil(begins_s[-1] * rate_hz - 1e-9) + 1) / rate_hz
+    t_s = np.arange(math.ceil(begins_s[-1] * rate_hz - ROUNDED) + 1) / rate_hz
     piece = np.clip(np.searchsorted(begins_s, t_s, "right") - 1, 0, len(modes) - 1)
     since_s = np.minimum(t_s - begins_s[piece], took_s[piece])
     begins = _summed(halves)[piece] / 2

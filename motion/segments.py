@@ -204,5 +204,5 @@ def _at(points_mm: Array, along_mm: Array, at_mm: Array) -> Array:
 def _angle_rad(a: Array, b: Array) -> Array:
     """Angle between two directions, row by row."""
     lengths = np.sqrt((a**2).sum(axis=1) * (b**2).sum(axis=1))
-    cosine = np.einsum("ij,ij->i", a, b) / np.maximum(lengths, 1e-30)
+    cosine = np.einsum("ij,ij->i", a, b) / np.maximum(lengths, NOT_ZERO)
     return np.arccos(np.clip(cosine, -1.0, 1.0))

@@ -19,16 +19,16 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any, NoReturn, TypeVar
 
-from morfax.motion.faults import CardFault, FileFault
+from morfax.motion.faults import SHOWN, CardFault, FileFault
 from morfax.motion.files import check_regular
 from morfax.motion.toml_lines import Path, lines_of, too_deep
 from morfax.motion.units import parse_speed_mm_s, parse_time_s
+from morfax.motion.usual import SLOWEST_MM_S
 
-SLOWEST_MM_S, FASTEST_MM_S = 0.01, 100.0  # of the feeds, see Questions
+FASTEST_MM_S = 100.0  # of the feeds, see Questions
 LONGEST_DWELL_S = 600.0  # our own figure
 LARGEST_BYTES = 1_000_000  # of a file; a card of a hundred stops has 10 000
 DEEPEST = 8  # parts of a key, and brackets in one another; the deepest field of ours has 5
-_LONGEST_SHOWN = 40  # characters: a fault is one line
 _AT = re.compile(r"\(at line (\d+), column (\d+)\)")
 
 T = TypeVar("T")
@@ -191,4 +191,4 @@ def _shown(value: object) -> str:
         shown = json.dumps(value, ensure_ascii=False, default=str)
     except ValueError:  # a number of thousands of digits
         shown = "a number too long"
-    return shown if len(shown) <= _LONGEST_SHOWN else f"{shown[:_LONGEST_SHOWN]}…"
+    return shown if len(shown) <= SHOWN else f"{shown[:SHOWN]}…"

@@ -15,6 +15,7 @@ import re
 
 LONGEST_MM = 1e6  # a kilometre: a longer length is a slip of the pen
 MM_PER_INCH = 25.4  # exact since the international yard and pound agreement, 1959
+POINTS_PER_INCH = 72.0  # of letters and of pages
 
 _LENGTH_MM = {
     "mm": 1.0,

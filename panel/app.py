@@ -16,6 +16,7 @@ import asyncio
 import contextlib
 import json
 from collections.abc import AsyncIterator
+from http import HTTPStatus
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,7 @@ from starlette.websockets import WebSocketDisconnect
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
 from morfax.panel import actions, own_files, state, uploads
+from morfax.panel.head_path import FRAME_S
 
 if TYPE_CHECKING:
     from starlette.requests import Request
@@ -35,7 +37,6 @@ if TYPE_CHECKING:
 
     from morfax.panel.bench import Bench
 
-FRAME_S = 1 / 30  # between two frames to a page
 LARGEST_ACTION = 100_000  # bytes
 TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -103,17 +104,21 @@ class _Pages:
         async for piece in request.stream():
             body += piece
             if len(body) > LARGEST_ACTION:
-                return _refused("the action is too long", 413)
+                return _refused("the action is too long", HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
         try:
             action = json.loads(body)
             if not isinstance(action, dict):
                 raise ValueError
         except (ValueError, RecursionError):
-            return _refused("that is no action", 400)
+            return _refused("that is no action", HTTPStatus.BAD_REQUEST)
         try:
             actions.do(self._bench, action)
         except (WrongUse, Fault) as refused:
-            return _refused(" ".join(str(refused).split()), 409, self._bench.history.revision)
+            return _refused(
+                " ".join(str(refused).split()),
+                HTTPStatus.CONFLICT,
+                self._bench.history.revision,
+            )
         return JSONResponse({"revision": self._bench.history.revision})
 
     async def upload(self, request: Request) -> Response:
@@ -126,7 +131,7 @@ class _Pages:
                 folder, request.path_params["name"], request.stream(), size
             )
         except Fault as refused:
-            return _refused(str(refused), 409)
+            return _refused(str(refused), HTTPStatus.CONFLICT)
         self._bench.sources[file.name] = file
         self._bench.changed()
         return JSONResponse({"drawing": file.name})
@@ -147,7 +152,7 @@ class _Pages:
                 bench.folder, at["name"], content, option, bench.command_line
             )
         except (WrongUse, Fault) as refused:
-            return _refused(" ".join(str(refused).split()), 409)
+            return _refused(" ".join(str(refused).split()), HTTPStatus.CONFLICT)
         bench.own[file.name] = file
         bench.changed()
         return JSONResponse({"option": option, "name": file.name})

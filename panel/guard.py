@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import hmac
 from collections.abc import Iterable
+from http import HTTPStatus
 from typing import TYPE_CHECKING
 from urllib.parse import parse_qs
 
@@ -57,7 +58,7 @@ class Guard:
             await _refuse(why, scope, receive, send)
             return
         if self._brings_token(scope):
-            response = RedirectResponse("/", 303)
+            response = RedirectResponse("/", HTTPStatus.SEE_OTHER)
             response.set_cookie(
                 self._cookie, self._token, httponly=True, samesite="strict", path="/"
             )
@@ -106,4 +107,6 @@ async def _refuse(why: str, scope: Scope, receive: Receive, send: Send) -> None:
     if scope["type"] == "websocket":
         await send({"type": "websocket.close", "code": REFUSED, "reason": why})
         return
-    await PlainTextResponse(f"{why}\n", 403)(scope, receive, _with_headers(send))
+    await PlainTextResponse(f"{why}\n", HTTPStatus.FORBIDDEN)(
+        scope, receive, _with_headers(send)
+    )

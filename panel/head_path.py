@@ -13,6 +13,7 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
+FRAME_S = 1 / 30  # between two frames to a page
 AT_ONCE = 5_000  # places to a frame: 60 kB of text
 MOST = 400_000
 PER_MM = 1000  # a place is kept in whole um, 4 bytes each way: an hour takes 3 MB

@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import CardFault, Fault
 from morfax.motion.files import written_beside
+from morfax.motion.toml_fields import LARGEST_BYTES
 from morfax.panel import commands
 from morfax.panel.uploads import LONGEST_NAME, harmless_text, unused
 
 if TYPE_CHECKING:
     from morfax.panel.commands import CommandLine, Options
 
-MOST_BYTES = 1_000_000  # as much as a file of corrections may have
+MOST_BYTES = LARGEST_BYTES
 SUFFIX = ".toml"
 CALLED = {
     "--card": "card",

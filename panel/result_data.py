@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.panel.tape_levels import levels
+from morfax.panel.tape_levels import DECIMALS, levels
 
 if TYPE_CHECKING:
     from morfax.jobs.run import RunResult
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 MOST = 40_000  # rows of a curve on the page: a browser draws these within a frame
 # places of the largest error that are listed, and how far apart they are
 WORST, APART_MM = 6, 3.0
-DECIMALS = 4  # 0.1 um, 0.1 ms
 
 
 def of_run(result: RunResult) -> dict[str, Any]:

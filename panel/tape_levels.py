@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import Fault
 from morfax.motion.files import for_soundfile
 
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 COLUMNS = 800  # stretches: more than a strip has pixels
 NAMES = ("reference", "X", "Y", "Z")
-DECIMALS = 4
+DECIMALS = 4  # 0.1 um, 0.1 ms
 WINDOW_S = 0.002  # 12 cycles of a carrier of 6 kHz
 WEAK = 0.5  # of a track's median level: 6 dB, which tape and recorder do not waver by; by trial
 MOST_DAMAGES = 200  # that are listed, the longest
@@ -71,7 +72,7 @@ def damages(level: Array, tracks: list[str]) -> list[dict[str, Any]]:
         usual = float(np.median(own))
         weak = np.r_[False, own < WEAK * usual, False].astype(np.int8)
         for a, b in np.flatnonzero(np.diff(weak)).reshape(-1, 2):
-            least = float(own[a:b].min()) / max(usual, 1e-9)
+            least = float(own[a:b].min()) / max(usual, NOT_ZERO)
             found.append(
                 {
                     "track": name,

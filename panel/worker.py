@@ -25,6 +25,7 @@ from morfax.jobs import kernels
 from morfax.jobs.damaged_kernels import compile_damaged_again
 from morfax.jobs.listener import Advance
 from morfax.panel import pipe
+from morfax.panel.head_path import FRAME_S
 from morfax.panel.kept_knots import KeptKnots
 from morfax.panel.lookout import Lookout
 
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from morfax.tracer.following.knots import Memory
 
 KNOTS = ".knots"  # the folder of the knots on disk, in the panel's
-FRAME_S = 1 / 30  # between two frames of the head
 NO_MEMORY = "not enough memory; scan the drawing at a lower resolution, or cut out the part to be traced"
 
 

@@ -19,12 +19,11 @@ import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path as FilePath
 
-from morfax.motion.faults import FileFault, ProgramFault
+from morfax.motion.faults import SHOWN, FileFault, ProgramFault
 from morfax.motion.files import written_beside
 
 AGAIN = "record it again"
 _END = "end"
-_SHOWN = 40  # characters of a wrong line in a message
 
 
 def demand(good: bool, name: str, value: object, allowed: str) -> None:
@@ -69,7 +68,7 @@ class Lines:
         line = next(iter(self), "")
         words = line.split()
         if not words or words[0] != name:
-            raise self.fault(f"{line[:_SHOWN]!r} instead of {name}")
+            raise self.fault(f"{line[:SHOWN]!r} instead of {name}")
         return words[1:]
 
     def numbers(self, name: str) -> tuple[float, ...]:
@@ -78,7 +77,7 @@ class Lines:
         try:
             return tuple(float(word) for word in words)
         except ValueError:
-            got = " ".join([name, *words])[:_SHOWN]
+            got = " ".join([name, *words])[:SHOWN]
             raise self.fault(f"{got!r} is no number") from None
 
     def fault(self, what: str) -> ProgramFault:
@@ -131,7 +130,7 @@ class Lines:
             return
         stated = f"{_END} crc32 {self._total:08x}"
         if words[:2] != stated.split()[:2] or len(words) != 3:
-            raise self.fault(f"{line[:_SHOWN]!r} must be '{_END} crc32' and eight digits")
+            raise self.fault(f"{line[:SHOWN]!r} must be '{_END} crc32' and eight digits")
         if line != stated:
             raise ProgramFault(
                 f"{self.file}: a character is wrong somewhere: the check sum is {words[2][:16]}, "

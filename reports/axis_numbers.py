@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 
+from morfax.motion.arrays import ROUNDED
+
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 MOST = 9  # steps of an axis, however long
-CLOSE = 1e-9  # of a step: rounding
 MINUS = "\N{MINUS SIGN}"
 
 
@@ -23,11 +24,11 @@ def numbers(first: float, last: float, most_steps: int) -> list[tuple[float, str
     """Values from the first to the last, and how each is written."""
     least = (last - first) / most_steps
     power = math.floor(math.log10(least))
-    times = next(step for step in STEPS if step * 10.0**power >= least * (1 - CLOSE))
+    times = next(step for step in STEPS if step * 10.0**power >= least * (1 - ROUNDED))
     step = times * 10.0**power
     decimals = max(0, -power + (times == 2.5) - (times == 10.0))
-    begin = math.ceil(first / step - CLOSE)
-    end = math.floor(last / step + CLOSE)
+    begin = math.ceil(first / step - ROUNDED)
+    end = math.floor(last / step + ROUNDED)
     values = [number * step for number in range(begin, end + 1)]
     return [(value, _written(value, decimals)) for value in values]
 

@@ -16,15 +16,16 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.units import POINTS_PER_INCH
 from morfax.reports import lettering
-from morfax.reports.canvas import DPI, PT_PER_IN
+from morfax.reports.canvas import DPI
 from morfax.reports.looks import SEE_THROUGH
 from morfax.reports.page import Box, Page
 from morfax.reports.pixels import Pixels, blend, dashes, polylines, seen, strokes_of
 from morfax.reports.plate import Area, Colours, Ground, Line, Plate, Spot, fitted, shades
 
 FINER = 2
-PX_PER_PT = FINER * DPI / PT_PER_IN
+PX_PER_PT = FINER * DPI / POINTS_PER_INCH
 TICK_PT = 3.5  # length of a tick, matplotlib's
 SPOT_PX = 1.0 * PX_PER_PT  # edge of a spot, matplotlib's
 EDGE_GREY = "#cccccc"  # of a legend

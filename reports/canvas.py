@@ -28,7 +28,6 @@ PANEL_IN = 1.8  # height of a curve over time or way
 NUMBERS_IN = 1.4  # room for a title, and for the numbers along the axes
 FLATTEST, TALLEST = 0.2, 1.4  # height to width of what is drawn
 DPI = 130
-PT_PER_IN = 72
 LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
 REFERENCE = "#555555"
 # from no darkness to all: "Greys" of matplotlib

@@ -23,9 +23,10 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from morfax.motion.files import printable
+from morfax.motion.units import POINTS_PER_INCH
 from morfax.reports import looks
 from morfax.reports.axis_numbers import numbers, steps_in
-from morfax.reports.canvas import DPI, PT_PER_IN
+from morfax.reports.canvas import DPI
 from morfax.reports.page import Box, Page
 from morfax.reports.plate import (
     BLACK,
@@ -38,7 +39,7 @@ from morfax.reports.plate import (
     free_corner,
 )
 
-PX_PER_PT = DPI / PT_PER_IN
+PX_PER_PT = DPI / POINTS_PER_INCH
 NUMBER_PT, NAME_PT, TITLE_PT = 7.0, 4.0, 6.0  # from axes: to numbers; on to names; to a title
 RING_PAD = 0.2  # round words in a ring, in times of their size
 # of a legend, in times of its letters' size: to the axes, round all, between rows, a sample, on to its words
@@ -63,7 +64,7 @@ def ticks(plate: Plate, box: Box) -> list[tuple[float, bool]]:
 
 def scale_numbers(scale: Colours, box: Box) -> list[tuple[float, str]]:
     """Shares of a scale of colours at which numbers stand, and these."""
-    steps = steps_in(box.width_in * PT_PER_IN, looks.TITLE_PT, upright=False)
+    steps = steps_in(box.width_in * POINTS_PER_INCH, looks.TITLE_PT, upright=False)
     return [(value / scale.largest, text) for value, text in numbers(0.0, scale.largest, steps)]
 
 
@@ -217,7 +218,7 @@ def _numbered(plate: Plate, box: Box) -> list[tuple[float, bool, str]]:
     found = list[tuple[float, bool, str]]()
     sides = ((view[:2], box.width_in, False), (view[2:], box.height_in, True))
     for (first, last), long_in, is_upright in sides:
-        room = steps_in(long_in * PT_PER_IN, plate.numbers_pt, upright=is_upright)
+        room = steps_in(long_in * POINTS_PER_INCH, plate.numbers_pt, upright=is_upright)
         steps = min(room, plate.most_numbers or room)
         for value, text in numbers(first, last, steps):
             found.append(((value - first) / (last - first), is_upright, text))

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.motion.files import written_beside
-from morfax.motion.units import MM_PER_INCH
+from morfax.motion.units import MM_PER_INCH, POINTS_PER_INCH
 from morfax.reports.canvas import new_figure
 from morfax.tracer.flatten import layout as marked
 from morfax.tracer.flatten.layout import Box, Layout
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 BLACK = "#000000"
 CYAN = "#cdf3fc"  # hardly dark in green and blue light, in which a sheet with marks is read
 GRID_LINE_MM = 0.15
-POINTS_PER_MM = 72 / MM_PER_INCH
+POINTS_PER_MM = POINTS_PER_INCH / MM_PER_INCH
 WORDS_PT = 6.0
 PNG_DPI = 600.0
 TOLD = (

@@ -18,11 +18,11 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
+from morfax.motion.units import POINTS_PER_INCH
 from morfax.reports import corrected, labels, leaders, left_out
 from morfax.reports.canvas import (
     COMPRESSION,
     DPI,
-    PT_PER_IN,
     REFERENCE,
     UM_PER_MM,
     grey,
@@ -105,7 +105,9 @@ def draw(picture: Picture, file: FilePath) -> None:
             Spot(at, "+", SPOT_PT, BLACK, order=ON_SPOTS),
             Words(at, str(number), NAME_PT, offset_pt=BESIDE_PT),
         )
-    labels.spread(main, page.main.width_in * PT_PER_IN, page.main.height_in * PT_PER_IN)
+    labels.spread(
+        main, page.main.width_in * POINTS_PER_INCH, page.main.height_in * POINTS_PER_INCH
+    )
     if file.suffix.lower() == PIXELS:
         from morfax.reports import bitmap
 
@@ -136,6 +138,16 @@ def _with_margin(view: View) -> View:
     return left, left + (right - left) / (1 - MARGIN_RIGHT), low, high
 
 
+def shortened(title: str, letters: int) -> str:
+    """A title in so many letters: of a long one a part of the drawing's name, with which it begins, is left
+    out, and not what the colours mean.
+    """
+    if len(title) <= letters:
+        return title
+    first = letters // 4
+    return f"{title[:first]}…{title[first + 1 - letters :]}"
+
+
 def _whole(picture: Picture, view: View, page: Page) -> tuple[Plate, Colours | None]:
     """The whole contour with its marks, and what its colours mean."""
     letters = round(page.main.width_in * LETTERS_PER_IN)
@@ -144,7 +156,7 @@ def _whole(picture: Picture, view: View, page: Page) -> tuple[Plate, Colours | N
         title += (
             f"; the {MOST_NUMBERED} longest of {len(picture.numbers_mm)} lines have numbers"
         )
-    plate = Plate(view, title if len(title) <= letters else f"{title[: letters - 1]}…")
+    plate = Plate(view, shortened(title, letters))
     _ground(plate, picture)
     scale = _contour(plate, picture)
     if picture.led is not None:

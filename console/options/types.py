@@ -18,6 +18,7 @@ from morfax.motion.units import (
     parse_speed_mm_s,
     parse_time_s,
 )
+from morfax.motion.usual import COUNT_MM
 
 ZEROS = ("sheet", "reference", "lower-left", "centre")
 # a shorter lead is none; a longer one is a slip of the pen
@@ -207,7 +208,6 @@ def _decades(least_counts: int) -> Callable[[str], float]:
 
     def parse(text: str) -> float:
         from morfax.tracer.operator.zunit import (
-            COUNT_MM,
             COUNTS_PER_MM,
             LARGEST_COUNT,
             counts_of,

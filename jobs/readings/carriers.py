@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.files import for_soundfile
+from morfax.recorder.sound.source import BLOCK_FRAMES
 
 WINDOW_FRAMES = 4096  # 85 ms at 48 kHz: bins of 12 Hz
-BLOCK_FRAMES = 16 * WINDOW_FRAMES
 SILENT_DB = -80.0  # under this level a track has no carrier whose frequency could be measured
 
 
@@ -83,7 +83,7 @@ def _carriers(
             -1, WINDOW_FRAMES, tracks
         )
         if len(windows):
-            level_db = 10 * np.log10(2 * (windows.astype(float) ** 2).mean(axis=1) + 1e-30)
+            level_db = 10 * np.log10(2 * (windows.astype(float) ** 2).mean(axis=1) + NOT_ZERO)
             levels.append(level_db)
             frequencies.append(
                 np.where(level_db > SILENT_DB, _peak_hz(windows, rate_hz), np.nan)
@@ -94,7 +94,9 @@ def _carriers(
 
 def _peak_hz(windows: NDArray[np.float32], rate_hz: float) -> Array:
     """Frequency of the highest peak of each window (windows, frames, tracks), Hz."""
-    spectrum = np.abs(np.fft.rfft(windows * np.hanning(WINDOW_FRAMES)[:, None], axis=1)) + 1e-30
+    spectrum = (
+        np.abs(np.fft.rfft(windows * np.hanning(WINDOW_FRAMES)[:, None], axis=1)) + NOT_ZERO
+    )
     peak = spectrum[:, 1:-1].argmax(axis=1)[:, None] + 1
     left, middle, right = (
         np.log(np.take_along_axis(spectrum, peak + step, axis=1))[:, 0] for step in (-1, 0, 1)

@@ -7,7 +7,6 @@ places that a picture marks.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -76,17 +75,13 @@ class BroadLines(OnLines):
         wants_dpi = coarse.finer_dpi(pitch_mm * drawing.finer, FINER)
         return cls(tuple(found), pen_mm, wants_dpi)
 
-    def remarks(self) -> Iterator[str]:
-        """That lines may be two, of which the path follows neither."""
-        if not self.of_lines:
-            return
-        number, worst = self.of_lines[0]
-        (x, y), more = worst.place_mm, and_so(len(self.of_lines) - 1, "is", "are")
+    def _of(self, line: str, worst: Broad, at: str, others: int) -> str:
+        """That a line may be two, of which the path follows neither."""
         off_mm = 0.5 * (worst.width_mm - self.pen_mm)
-        yield (
-            f"line {number} is {worst.width_mm:.2g} mm wide along {worst.length_mm:.0f} mm, about "
-            f"{x:.1f},{y:.1f} mm{more}, twice as wide as the sheet's pen draws ({self.pen_mm:.2g} mm): if "
-            "two lines run side by side there, the path runs between them, "
+        return (
+            f"{line} is {worst.width_mm:.2g} mm wide along {worst.length_mm:.0f} mm, about "
+            f"{at}{and_so(others, 'is', 'are')}, twice as wide as the sheet's pen "
+            f"draws ({self.pen_mm:.2g} mm): if two lines run side by side there, the path runs between them, "
             f"{off_mm:.2g} mm or more off; scan at {self.wants_dpi} dpi, or draw them further apart; if a "
             "broader pen has drawn it, the path is right"
         )

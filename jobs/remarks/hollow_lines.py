@@ -6,7 +6,6 @@ places that a picture marks.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -56,15 +55,11 @@ class HollowLines(OnLines):
             wants_dpi = max(wants_dpi, coarse.wanted_dpi(scanned_mm))
         return cls(tuple(found), wants_dpi)
 
-    def remarks(self) -> Iterator[str]:
-        """That lines may be two, of which the path follows neither."""
-        if not self.of_lines:
-            return
-        number, worst = self.of_lines[0]
-        (x, y), more = worst.place_mm, and_so(len(self.of_lines) - 1, "is", "are")
-        yield (
-            f"line {number} is paler in its middle than at its sides along {worst.length_mm:.0f} mm, about "
-            f"{x:.1f},{y:.1f} mm{more}: if two lines {worst.apart_mm:.2g} mm apart are drawn there, the path "
-            f"runs between them; scan at {self.wants_dpi} dpi or more to part them; if the pen has left the "
-            "middle paler, the path is right"
+    def _of(self, line: str, worst: Hollow, at: str, others: int) -> str:
+        """That a line may be two, of which the path follows neither."""
+        return (
+            f"{line} is paler in its middle than at its sides along {worst.length_mm:.0f} mm, about "
+            f"{at}{and_so(others, 'is', 'are')}: if two lines {worst.apart_mm:.2g} mm apart are drawn there, "
+            f"the path runs between them; scan at {self.wants_dpi} dpi or more to part them; if the pen has "
+            "left the middle paler, the path is right"
         )

@@ -6,7 +6,6 @@ places that a picture marks.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -51,14 +50,10 @@ class NarrowGaps(OnLines):
         wants_dpi = coarse.finer_dpi(scanned_mm, PARTED)
         return cls(tuple(found), NARROW_PX * scanned_mm, wants_dpi)
 
-    def remarks(self) -> Iterator[str]:
-        """That lines may go over from one line to another."""
-        if not self.of_lines:
-            return
-        number, gap = self.of_lines[0]
-        (x, y), more = gap.place_mm, and_so(len(self.of_lines) - 1, "does", "do")
-        yield (
-            f"line {number} runs over the paper between two lines at {x:.1f},{y:.1f} mm{more}: that is at "
-            f"most two pixels ({self.wide_mm:.2g} mm) wide along {gap.length_mm:.0f} mm, and the path may go "
-            f"over from one line to the other; scan at {self.wants_dpi} dpi or more to part the two lines"
+    def _of(self, line: str, worst: NarrowGap, at: str, others: int) -> str:
+        """That a path may go over from one line to another."""
+        return (
+            f"{line} runs over the paper between two lines at {at}{and_so(others, 'does', 'do')}: that is at "
+            f"most two pixels ({self.wide_mm:.2g} mm) wide along {worst.length_mm:.0f} mm, and the path may "
+            f"go over from one line to the other; scan at {self.wants_dpi} dpi or more to part the two lines"
         )

@@ -6,6 +6,7 @@ marks.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
@@ -30,6 +31,19 @@ class OnLines:
     rows: ClassVar[tuple[tuple[str, str], ...]]
 
     of_lines: tuple[tuple[int, Found], ...] = ()
+
+    def remarks(self) -> Iterator[str]:
+        """What is to be said of the worst; nothing where nothing was found."""
+        if self.of_lines:
+            number, worst = self.of_lines[0]
+            x, y = worst.place_mm
+            yield self._of(
+                f"line {number}", worst, f"{x:.1f},{y:.1f} mm", len(self.of_lines) - 1
+            )
+
+    def _of(self, line: str, worst: Any, at: str, others: int) -> str:
+        """The remark of the worst, on a line and at a place, and of how many others."""
+        raise NotImplementedError
 
     def figures(self) -> dict[str, Any]:
         """The figures of each place."""

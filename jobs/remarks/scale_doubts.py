@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 # mm; ISO 128-2 has lines of 0.13 to 2 mm, and a scan may give them somewhat thinner
 THINNEST_MM, BROADEST_MM = 0.1, 2.0
 # of a line's width: below it the head sees fewer than one pixel between the edges
-FEWEST_PX = 3.0
 ALIKE = 0.007  # share by which the ratio of a format's sides is met: 2 mm on 297; by trial
 # share by which both sides are off: a scanner's margin, or a wrong scale; by trial
 SAME, NEAR = 0.012, 0.1
@@ -45,13 +44,13 @@ def _of_line_width(width_mm: float) -> Iterator[str]:
 
 def _of_pixels(width_mm: float, pitch_mm: float) -> Iterator[str]:
     """A line that is too few pixels wide."""
-    if width_mm < FEWEST_PX * pitch_mm:
+    if width_mm < coarse.FEWEST_PX * pitch_mm:
         wide_px = width_mm / pitch_mm
         # a line of one pixel looks as if it had two
-        dpi = coarse.finer_dpi(pitch_mm, 2 * FEWEST_PX / wide_px)
+        dpi = coarse.finer_dpi(pitch_mm, 2 * coarse.FEWEST_PX / wide_px)
         told_px = math.floor(10 * wide_px) / 10  # what is too few never reads as enough
         yield (
-            f"the lines are {told_px:.1f} pixels wide, and the head wants {FEWEST_PX:g}: scan at "
+            f"the lines are {told_px:.1f} pixels wide, and the head wants {coarse.FEWEST_PX:g}: scan at "
             f"{dpi} dpi"
         )
 

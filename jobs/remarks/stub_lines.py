@@ -6,7 +6,6 @@ marks.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -40,15 +39,11 @@ class StubLines(OnLines):
         found = [(line.number, stub) for line in lines for stub in stubs(line)]
         return cls(tuple(sorted(found, key=lambda row: -row[1].out_mm)))
 
-    def remarks(self) -> Iterator[str]:
+    def _of(self, line: str, worst: Stub, at: str, others: int) -> str:
         """That a line goes out along a stub, which may be no part of it."""
-        if not self.of_lines:
-            return
-        number, stub = self.of_lines[0]
-        (x, y), others = stub.place_mm, len(self.of_lines) - 1
         more = f", and so at {others} more place{'s' if others > 1 else ''}" if others else ""
-        yield (
-            f"line {number} goes out {stub.out_mm:.1f} mm at {x:.1f},{y:.1f} mm along a short stub and comes "
+        return (
+            f"{line} goes out {worst.out_mm:.1f} mm at {at} along a short stub and comes "
             f"back{more}: if that is a tick or a burr, rub it out, on the sheet or by `morfax correct "
             "--rub`; if ticks stop the machine, give --marks on"
         )

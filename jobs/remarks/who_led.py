@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.long_array import one_in
+from morfax.tracer.following.followed import THINNED
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
 LEAST_CELL_SHARE = 0.6
 # the `LEADERS` as a reader of the figures understands them
 IN_WORDS = ("its_own_cell", "places_felt_ahead", "memory_of_corners", "redrawn_tangles")
-THINNED = 30  # one position in 30 is drawn: every 50 um at 10 mm/s
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +66,7 @@ class WhoLed:
     def cell_on_lines_share(self) -> float:
         """The share that it led outside of corners, junctions and tangles."""
         cell_mm, stations_mm = self.lengths_mm[:2]
-        return cell_mm / max(cell_mm + stations_mm, 1e-9)
+        return cell_mm / max(cell_mm + stations_mm, NOT_ZERO)
 
     def figures(self) -> dict[str, Any]:
         """The share of each leader, and of the cell outside of corners, junctions and tangles."""

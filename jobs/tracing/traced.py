@@ -16,6 +16,7 @@ from morfax.jobs.settings import zero
 from morfax.jobs.settings.zero import ZeroOnSheet
 from morfax.jobs.tracing import trace_figures
 from morfax.motion.faults import MotionFault
+from morfax.motion.usual import PLOTTER_MM
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 Place = tuple[float, float]
 MARKED = 30  # of the places that the head left out, the longest are marked in the picture
 PALE_MARKED = 10  # of the pale lines: a plan has many
-REACHED_MM = 0.0125  # half a step of a plotter: so far below 0 a place is written as 0
+REACHED_MM = PLOTTER_MM / 2  # half a step of a plotter: so far below 0 a place is written as 0
 SHEET = ZeroOnSheet("sheet")
 NOT_TWO, NO_STUBS = TwoLines(), StubLines()
 

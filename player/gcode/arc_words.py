@@ -13,8 +13,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from morfax.motion.arrays import NOT_ZERO
+
 TURN = 2 * math.pi
-SAME_RAD = 1e-12  # a smaller turn to the same place is a whole one
 
 Place = tuple[float, float, float]
 Centre = tuple[float, float]
@@ -80,7 +81,7 @@ class ArcWords:
         first = math.atan2(begin[1] - centre[1], begin[0] - centre[0])
         last = math.atan2(end[1] - centre[1], end[0] - centre[0])
         turned = self.sense * (last - first) % TURN
-        whole = begin[:2] == end[:2] or (turned < SAME_RAD and not given)
+        whole = begin[:2] == end[:2] or (turned < NOT_ZERO and not given)
         return centre, self.sense * (TURN if whole else turned)
 
     def _by_radius(self, begin: Place, end: Place) -> Centre:

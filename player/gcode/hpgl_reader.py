@@ -25,6 +25,7 @@ import numpy as np
 
 from morfax.motion.faults import ProgramFault
 from morfax.motion.plane import NOTHING_MM
+from morfax.motion.usual import PLOTTER_MM
 from morfax.player.gcode.gcode_text import text_of
 from morfax.player.gcode.moves import LINE, RAPID, Move, Program
 from morfax.recorder.drawings.curve_chords import FLAT_MM, bulged
@@ -40,7 +41,6 @@ _ESCAPES = re.compile(r"\x1b(?:\.[@-Z()](?:[-\d;]*:)?|[^A-Za-z@]*[A-Za-z@])")
 _PASSED = ("IN", "SP", "FS", "DF", "LT", "PT", "PW", "AS")
 _PLACES, _ARCS = ("PU", "PD", "PA", "PR"), ("AA", "AR")
 _READ = "IN SP VS FS PU PD PA PR AA AR CI IP SC"
-PLOTTER_MM = 0.025  # the unit of IP, and of all places without SC
 SQUARE = 1e-6  # share by which units in X and Y may differ: what whole numbers of IP leave
 
 

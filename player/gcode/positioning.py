@@ -32,6 +32,7 @@ from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.drive import SOUND
 from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
+from morfax.motion.usual import RAPID_MM_S
 from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
 from morfax.player.gcode.pulses import STANDSTILL_S
@@ -50,7 +51,7 @@ class PositionControl:
     """Settings of the control."""
 
     servo: PositionServo = field(default_factory=lambda: PositionServo(GAIN_PER_S))
-    rapid_mm_s: float = 20.0
+    rapid_mm_s: float = RAPID_MM_S
 
     @property
     def limit(self) -> FollowingLimit:

@@ -43,6 +43,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
+from morfax.motion.usual import INCREMENT_MM
 
 PULSES_PER_COUNT = 2  # 0.0005 in and 0.001 in
 QUANTA_PER_PULSE = 2  # multiplier 111
@@ -58,7 +59,7 @@ Pulses = NDArray[np.int8]
 class PulseServo:
     """Settings of the pulse servos; HISTORIC has the patent's own."""
 
-    pulse_mm: float = 0.001
+    pulse_mm: float = INCREMENT_MM
     register_bits: int = 24
     icr_bits: int = 8
     lag_stages: int = 10

@@ -40,6 +40,7 @@ from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.drive import SOUND
 from morfax.motion.faults import FollowingFault, ProgramFault
 from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
+from morfax.motion.usual import AT_ONCE, RAPID_MM_S
 from morfax.player.gcode.feed_control import feed_number, override_number
 from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
@@ -50,7 +51,6 @@ from morfax.player.monitor.monitor import Supervised
 
 LARGEST_ARC = math.radians(170)  # below the half turn that the residue loops take
 STANDSTILL_S = 0.25  # before the first move and behind the last: the lag runs off
-_DWELL_AT_ONCE = 65536  # recirculations
 
 Counts = NDArray[np.int64]
 Pulses = NDArray[np.int8]
@@ -63,7 +63,7 @@ class PulseControl:
     servo: PulseServo = field(default_factory=PulseServo)
     recirculations_hz: float = 8 * MOTION_RATE_HZ
     servo_constant: int = 480
-    rapid_mm_s: float = 20.0
+    rapid_mm_s: float = RAPID_MM_S
     override: float = 1.0
     true_norm: bool = False
     limit_pulses: int = 4  # that a sound drive may be off beside its lag
@@ -205,8 +205,8 @@ class PulsePlayback(Supervised):
         """No pulses for a time, in whole samples."""
         left = round(seconds * MOTION_RATE_HZ) * self._sampled
         while left > 0:
-            yield np.zeros((min(left, _DWELL_AT_ONCE), len(AXES)), np.int8)
-            left -= _DWELL_AT_ONCE
+            yield np.zeros((min(left, AT_ONCE), len(AXES)), np.int8)
+            left -= AT_ONCE
 
     def _job(
         self, move: Move

@@ -37,6 +37,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
+from morfax.motion.usual import AT_ONCE
 from morfax.player.gcode.feed_control import (
     BLOCKED,
     EIGHTH,
@@ -54,7 +55,6 @@ AXES = 3
 LINE, CLOCKWISE, COUNTER_CLOCKWISE = 0, -1, 1
 # the state's registers
 _POSITION, _RESIDUE, _RATIO, _COUNTER, _RECIRCULATION, _FED, _SIZE = 0, 3, 6, 7, 8, 9, 10
-AT_ONCE = 65536  # recirculations
 
 Counts = NDArray[np.int64]
 Pulses = NDArray[np.int8]

@@ -26,14 +26,16 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 
+LAG_S, TOLERANCE_MM = 0.06, 0.1  # of the position servos
+
 
 @dataclass(frozen=True, slots=True)
 class FollowingLimit:
     """The limit: points (mm/s, mm) from 0 mm/s on, slope beyond them in s, tolerance, settling, hold."""
 
     points: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
-    beyond_s: float = 0.06
-    tolerance_mm: float = 0.1
+    beyond_s: float = LAG_S
+    tolerance_mm: float = TOLERANCE_MM
     settle_s: float = 0.0
     hold_s: float = 0.0
 
@@ -57,7 +59,7 @@ class FollowingLimit:
 
     @classmethod
     def linear(
-        cls, lag_s: float = 0.06, tolerance_mm: float = 0.1, settle_s: float = 0.0
+        cls, lag_s: float = LAG_S, tolerance_mm: float = TOLERANCE_MM, settle_s: float = 0.0
     ) -> FollowingLimit:
         """The limit of a servo with a constant lag."""
         return cls(((0.0, 0.0),), lag_s, tolerance_mm, settle_s)

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import FollowingFault
 from morfax.player.monitor.chart import Chart
@@ -34,7 +34,7 @@ from morfax.player.monitor.following_limit import FollowingLimit, allowed_mm, pa
 # columns of the state of an axis; PART: of the table, that the speed was in last
 DEMAND, SPEED, COUNTED, FAULTY, LARGEST, SHARE, PART = range(7)
 STRETCH_ROWS = 64  # that are watched axis by axis, as long as none is faulty
-NEARLY = 1 - 1e-9  # of the largest share: beyond it the exact one is made; rounding is 1e-15
+NEARLY = 1 - ROUNDED  # of the largest share: beyond it the exact one is made; rounding is 1e-15
 
 
 class Watching(NamedTuple):

@@ -43,11 +43,12 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.usual import ACCELERATION_MM_S2, INCREMENT_MM
 
 POSITION, MOVING, TOLD = range(3)  # columns of the state of an axis: mm, mm/s, mm
 COUNTER, RISEN, MODE = range(3)  # of the counter's registers, shared by all axes
 UP, CONSTANT, DOWN, ARRIVED = 1, 0, -1, 2
-AT_ONCE = 6000  # rows of a move: a second
+AT_ONCE = round(MOTION_RATE_HZ)  # rows of a move: a second
 CREEP_INCREMENTS = 0.25  # of which the least speed of a move is
 # before its end an arc is run straight: 0.05 mm, 0.06 um beside a radius of 5 mm
 STRAIGHT_INCREMENTS = 50
@@ -60,8 +61,8 @@ class PositionServo:
     """Settings of a position servo."""
 
     gain_per_s: float = 1000 / 60
-    increment_mm: float = 0.001
-    acceleration_mm_s2: float = 500.0  # of the ramps up and down
+    increment_mm: float = INCREMENT_MM
+    acceleration_mm_s2: float = ACCELERATION_MM_S2  # of the ramps up and down
     drive: Drive = field(default_factory=Drive)
 
     @property

@@ -34,7 +34,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.compiled import njit
 from morfax.motion.faults import ProgramFault
@@ -230,7 +230,7 @@ def tick_table() -> NDArray[np.int64]:
 def _check_motor(name: str, fmt: StepFormat, motor: Motor) -> None:
     """Raise ProgramFault for an oscillator or rates beyond the motor."""
     asked = fmt.acceleration_steps_s2
-    if asked > motor.acceleration_steps_s2 * (1 + 1e-9):
+    if asked > motor.acceleration_steps_s2 * (1 + ROUNDED):
         raise ProgramFault(
             f"{name}: its oscillator of {fmt.oscillator_hz:g} Hz and rates of {fmt.rates} ask for "
             f"changes of {asked:g} "

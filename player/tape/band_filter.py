@@ -14,8 +14,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import NOT_ZERO
+
 STOP_BAND_BETA = 8.0  # Kaiser: stop band 80 dB down
-SMALLEST_TAP = 1e-12  # below it products are denormal numbers, which cost a factor of twelve
 
 Float32s = NDArray[np.float32]
 Float64s = NDArray[np.float64]
@@ -45,7 +46,7 @@ def _low_pass(
 
 def _taps(values: Float64s) -> Float32s:
     """The taps that are not negligible."""
-    return np.where(np.abs(values) < SMALLEST_TAP, 0.0, values).astype(np.float32)
+    return np.where(np.abs(values) < NOT_ZERO, 0.0, values).astype(np.float32)
 
 
 def branches(

@@ -43,8 +43,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from morfax.motion.arrays import Array
-from morfax.player.tape.motion_edges import LEAST_ACCELERATION, upper_edge
+from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.player.tape.motion_edges import upper_edge
 from morfax.player.tape.standstill import ALLOWED_CYCLES
 
 COUNT_MARGIN = 0.1  # cycles, for noise
@@ -138,7 +138,7 @@ def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
 def turned(before: Side, after: Side, rows: int, acceleration: float) -> Bridge | None:
     """The same gap, if the acceleration changes once within it; None where the sides do not say so."""
     first, last, gained = 2 * before.bend, 2 * after.bend, after.speed - before.speed
-    if abs(first - last) < LEAST_ACCELERATION:
+    if abs(first - last) < NOT_ZERO:
         return None
     turn = (gained - last * rows) / (first - last)
     if not -TURNED_ROWS <= turn <= rows + TURNED_ROWS:

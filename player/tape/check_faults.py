@@ -14,8 +14,8 @@ from typing import NamedTuple
 from morfax.motion.faults import DropoutFault, LockFault, TapeFault
 from morfax.player.tape.bridges import Gap
 from morfax.player.tape.counts import Off
-from morfax.player.tape.lost_ways import COUNT_CYCLES
 from morfax.player.tape.standstill import track_name
+from morfax.recorder.tape.format import SURE_CYCLES
 
 Names = Sequence[str]  # of the axes
 
@@ -118,7 +118,7 @@ def miscounted(axis: str, off: Off, time_s: float, place_mm: float) -> LockFault
     """The fault of a count that differs from what the track says."""
     why = (
         "cycles were lost shortly before; copy the tape again, or mend it (morfax mend)"
-        if abs(off.cycles) > COUNT_CYCLES
+        if abs(off.cycles) > SURE_CYCLES
         else "its phase was turned on shortly before, as a filter or an echo does; copy the tape again"
     )
     return LockFault(

@@ -22,11 +22,11 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.player.tape.lost_ways import COUNT_CYCLES
+from morfax.motion.median import OUTLIERS
 from morfax.recorder.tape.check_frame import CheckFrame
+from morfax.recorder.tape.format import SURE_CYCLES
 
 LEAST_NOISE_CYCLES, MOST_NOISE_CYCLES = 0.008, 0.02
-DEVIATIONS = 3.0
 INSTANT_S = 15e-6
 
 Told = dict[int, CheckFrame]  # by axis
@@ -72,10 +72,10 @@ class Counts:
     def tell(self, axis: int, said: CheckFrame, error_cycles: float) -> None:
         """Take what an axis tells in it; `error_cycles`: the standard error of a delay that it tells."""
         start, middle = self._waiting[-2:]
-        noise = min(MOST_NOISE_CYCLES, LEAST_NOISE_CYCLES + DEVIATIONS * error_cycles)
+        noise = min(MOST_NOISE_CYCLES, LEAST_NOISE_CYCLES + OUTLIERS * error_cycles)
         limit = said.grain_cycles / 2 + noise + INSTANT_S * said.speed
         start.told[axis] = said
-        start.limit_cycles[axis] = limit if self._is_timed else COUNT_CYCLES
+        start.limit_cycles[axis] = limit if self._is_timed else SURE_CYCLES
         if said.middle_cycles is not None and self._is_timed:
             middle.told[axis], middle.limit_cycles[axis] = said, limit
 

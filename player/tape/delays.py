@@ -29,16 +29,15 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import OUTLIERS
 from morfax.player.tape.phases import Phases
 
 WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2
 # standard errors of the difference of seven and three: beyond, the delay bends within seven
-BENT_ERRORS = 3.0
 NEAR = (1 / 3 - 1 / WINDOW) ** 0.5  # standard error of the difference, for one told delay of 1
 DEAD_ZONE_S = 0.5e-6  # noise of 26 dB tells 0.4; half a us is 0.003 cycle
 KEPT = 40  # delays: more than rows are held for
-DOUBT_ERRORS = 3.0  # standard errors: one line in 370
 HELD_ERRORS = 2  # of frames: seven delays come from two
 SPEED_S = 0.002  # to either side, over which a speed is told
 
@@ -119,7 +118,7 @@ class Delay:
         middle = float(rows.mean())
         spread = float(((rows - middle) ** 2).sum())
         return (
-            DOUBT_ERRORS
+            OUTLIERS
             * max(self._errors_s)
             * math.sqrt(1 / WINDOW + (row - middle) ** 2 / spread)
         )
@@ -151,7 +150,7 @@ class Delay:
             return mean_s
         if at - first == HALF:
             near_s = sum(told[HALF - 1 : HALF + 2]) / 3
-            is_bent = abs(near_s - mean_s) > BENT_ERRORS * NEAR * max(self._errors_s)
+            is_bent = abs(near_s - mean_s) > OUTLIERS * NEAR * max(self._errors_s)
             return near_s if is_bent else mean_s
         middle = float(np.mean(self._rows[first : first + WINDOW]))
         return float(mean_s + self._slope(first) * (self._rows[at] - middle))

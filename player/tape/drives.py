@@ -28,8 +28,8 @@ from morfax.player.monitor.following_limit import FollowingLimit, learn_table
 from morfax.player.tape.comparator import compared, track_edges
 from morfax.player.tape.phase_lock import BACK_S, PhaseLock, place
 from morfax.player.tape.sector_wheel import SectorWheel, Wheels, edges_since, last_edge
+from morfax.recorder.tape.format import SURE_CYCLES
 
-TOLERANCE_CYCLES = 0.25  # of following: noise of the phase, and what a dropout leaves unknown
 TRIED_SPEEDS = 16  # points of the table of following errors, up to the top speed
 ADJUSTING_MM_S = 10.0  # how fast the machine creeps while the phase changer is turned
 # 25 periods of the usual loop, after which a turned phase changer is at rest
@@ -183,7 +183,7 @@ def following_limit(settings: PhaseLock, mm_per_cycle: float, rate_hz: float) ->
     points = [(speed, min(error_mm, range_mm)) for speed, error_mm in learnt] + [
         (float(speeds[-1]), range_mm)
     ]
-    return FollowingLimit.table(points, TOLERANCE_CYCLES * mm_per_cycle, hold_s=hold_s)
+    return FollowingLimit.table(points, SURE_CYCLES * mm_per_cycle, hold_s=hold_s)
 
 
 @njit(cache=True, nogil=True, _nrt=False)

@@ -15,8 +15,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.player.tape.bridges import COUNT_MARGIN, Bridge
-from morfax.player.tape.track_order import END_CYCLES
-from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.format import SURE_CYCLES, TapeFormat
 
 MANY = 2  # sets of numbers that fulfil the end: more need not be counted
 
@@ -30,7 +29,7 @@ def lost_cycles(
     told: dict[Place, int] = {}
     for axis, cycles in enumerate(missing.tolist()):
         gaps = [gap for gap in sorted(doubtful) if gap[1] == axis]
-        if abs(cycles - round(cycles)) > END_CYCLES:
+        if abs(cycles - round(cycles)) > SURE_CYCLES:
             raise not_whole(axis, cycles, fmt)
         sets = _sets([_candidates(doubtful[gap]) for gap in gaps], round(cycles))
         if len(sets) != 1:
@@ -97,7 +96,7 @@ def not_whole(axis: int, cycles: float, fmt: TapeFormat) -> LockFault:
     """The fault of an end that is off by more than whole cycles."""
     return LockFault(
         f"{fmt.axes[axis].upper()} ends {cycles:+.2f} cycles off, which is no whole number within "
-        f"{END_CYCLES:g}: more than "
+        f"{SURE_CYCLES:g}: more than "
         f"cycles was lost, or it is cut short; get another copy",
         axis=fmt.axes[axis],
         time_s=0.0,

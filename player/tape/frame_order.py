@@ -22,6 +22,7 @@ import math
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
 from morfax.player.tape.frame_report import FrameReport
+from morfax.player.tape.symbols import PARTS
 from morfax.recorder.tape.check_frame import NUMBERS, CheckFrame
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
@@ -33,7 +34,6 @@ LARGEST_STEP_S = 16e-6  # of a delay in two parts of a frame, 0.24 s: 50 us/s of
 MOST_MISSING = 4  # frames in a row of one track: 1 s of dropout reaches into four
 # RMS, 7 us at most: 0.04 cycle; 26 dB of noise tell up to 1
 LARGEST_SWING_S = 4e-6
-STEP_PARTS = 4  # of a frame, whose delays are held against the next
 
 
 class FrameOrder:
@@ -68,7 +68,7 @@ class FrameOrder:
             found = found or self._too_late(track, report)
             told = report.delay_s[track]
             if math.isfinite(sum(told)):
-                self._told[track] = told[-STEP_PARTS:]
+                self._told[track] = told[-PARTS:]
         return found
 
     def _unreadable(self, track: int, report: FrameReport) -> Fault | None:

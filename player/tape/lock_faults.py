@@ -12,8 +12,7 @@ from typing import NamedTuple
 from morfax.motion.faults import LockFault
 from morfax.player.tape.sector_wheel import THRESHOLD
 from morfax.player.tape.setting import Setting
-from morfax.player.tape.track_order import END_CYCLES
-from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.format import SURE_CYCLES, TapeFormat
 
 
 class Stood(NamedTuple):
@@ -47,7 +46,7 @@ def out_of_range(stood: Stood, setting: Setting) -> LockFault:
 
 def ended_elsewhere(stood: Stood, fmt: TapeFormat) -> LockFault:
     """The fault of an axis that stands elsewhere than at the end that the tape states."""
-    error_mm, allowed_mm = stood.error_cycles * fmt.mm_per_cycle, END_CYCLES * fmt.mm_per_cycle
+    error_mm, allowed_mm = stood.error_cycles * fmt.mm_per_cycle, SURE_CYCLES * fmt.mm_per_cycle
     return LockFault(
         f"{stood.axis.upper()} ends at {stood.position_mm:.3f} mm, {error_mm:+.3f} mm from the end that the "
         f"tape states; allowed ±{allowed_mm:g} mm; cycles were lost, or it is cut short: get another",

@@ -26,8 +26,8 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.player.tape.bridges import Bound, Gap
 from morfax.player.tape.phases import Phases
+from morfax.recorder.tape.format import SURE_CYCLES
 
-COUNT_CYCLES = 0.25  # as the end is checked
 # of a symbol: half of the window through which a symbol is seen is a quarter, and what the filter before it
 # reaches further; one of 1 000 dropouts of 50 ms was weak a third of a symbol beside its gap
 BESIDE = 0.4
@@ -80,9 +80,9 @@ class LostWays:
         """The gap that lost its way before a count at a row; None where the count vouches for all."""
         before = [gap for gap in self._open[axis] if gap.last <= row]
         doubtful = [gap for gap in before if not gap.certain]
-        if abs(off_cycles) > COUNT_CYCLES and not doubtful:
+        if abs(off_cycles) > SURE_CYCLES and not doubtful:
             doubtful = before
-        if not doubtful or abs(off_cycles - round(off_cycles)) > COUNT_CYCLES:
+        if not doubtful or abs(off_cycles - round(off_cycles)) > SURE_CYCLES:
             return None
         return doubtful[0].upto(doubtful[-1]) if len(doubtful) > 1 else doubtful[0]
 

@@ -40,12 +40,11 @@ from morfax.player.tape.end_count import Place, lost_cycles, not_whole
 from morfax.player.tape.lost_ways import Laid
 from morfax.player.tape.playback import TapePlayback, play
 from morfax.player.tape.reader import TapeReader
-from morfax.player.tape.track_order import END_CYCLES
-from morfax.recorder.tape.format import TapeFormat
+from morfax.player.tape.standstill import STANDSTILL_S
+from morfax.recorder.tape.format import SURE_CYCLES, TapeFormat
 from morfax.recorder.tape.recording import Progress, Recording, record
 from morfax.recorder.tape.stated import TapeEntries
 
-END_S = 0.05  # of the standstill at the end, over which the place is averaged
 KEPT_DWELL = 0.1  # of the standstills: the tape may have run this much fast, and gets new ones
 
 
@@ -163,7 +162,7 @@ def _no_end(file: object) -> TapeFault:
 
 def _end_mm(playback: TapePlayback) -> Array:
     """The stated end of the tape, mm."""
-    rows = max(round(END_S * playback.format.motion_rate_hz), 1)
+    rows = max(round(STANDSTILL_S * playback.format.motion_rate_hz), 1)
     last = np.zeros((0, len(playback.format.axes)))
     for _, places_mm in _read(playback):
         last = np.concatenate([last, places_mm])[-rows:]
@@ -184,5 +183,5 @@ def _motion(playback: TapePlayback) -> Iterator[Motion]:
     if fmt.end_mm is not None:
         missing = (np.array(fmt.end_mm) - ends_mm) * fmt.cycles_per_mm
         axis = int(np.argmax(np.abs(missing)))
-        if abs(missing[axis]) > END_CYCLES:
+        if abs(missing[axis]) > SURE_CYCLES:
             raise not_whole(axis, float(missing[axis]), fmt)

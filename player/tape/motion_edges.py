@@ -27,9 +27,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 
-LEAST_ACCELERATION = 1e-12  # cycles/row²: of an axis at rest; keeps it from dividing by zero
 # 1.5 ms at 6 kHz, odd: the band filter spans eight, so that fewer tell a speed no better
 END_ROWS = 9
 # of six standard deviations of a row: rows within a filter's span are noisy together
@@ -42,7 +41,7 @@ def upper_edge(ends: Array, rows: int, acceleration: float, speed: float) -> Arr
     # at least what the two ends ask for as they were measured, with their noise
     swerve = p1 - p0 - rows * (v0 + v1) / 2
     asked = abs(v1 - v0) / rows + 4 * abs(swerve) / rows**2
-    most = max(acceleration, asked, LEAST_ACCELERATION)
+    most = max(acceleration, asked, NOT_ZERO)
     t = np.arange(1, rows)
     left = rows - t
     # 1. the fastest that it may be going, and how high it is then: from the left, and back from the right
@@ -50,7 +49,7 @@ def upper_edge(ends: Array, rows: int, acceleration: float, speed: float) -> Arr
     top0 = p0 + v0 * t + most * t**2 / 2
     top1 = p1 - v1 * left + most * left**2 / 2
     # 2. the speed at which both are as high
-    apart = np.maximum(s0 - s1, LEAST_ACCELERATION)
+    apart = np.maximum(s0 - s1, NOT_ZERO)
     s = (s0**2 - s1**2 - 4 * most * (top0 - top1)) / (2 * apart)
     s = np.clip(s, np.minimum(s0, s1), np.maximum(s0, s1))
     from_left = top0 - (s - s0) ** 2 / (4 * most)

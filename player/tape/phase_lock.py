@@ -55,7 +55,7 @@ STEPS_PER_PERIOD = 20.0  # of the natural frequency, at a low motion rate
 FEWEST_STEPS = 10.0  # per natural period
 
 # A DC motor of 3 000/min on a screw of 5 mm.
-ELECTRIC = Drive(lag_s=0.001, acceleration_mm_s2=5000.0, top_speed_mm_s=250.0)
+ELECTRIC = Drive(top_speed_mm_s=250.0)
 # A motor of 20 cm³/rev on the same screw: 9 MPa over it are 29 N m, on 4 g m² of screw and table 7 200
 # rad/s². A servo valve of 40 l/min turns it 2 000/min, and is itself a lag of some ms (W. J. Thayer, Transfer
 # Functions for Moog Servovalves, 1958).

@@ -39,9 +39,10 @@ from morfax.player.tape.phase_lock import PhaseLock
 from morfax.player.tape.reader import Read, TapeReader
 from morfax.player.tape.sector_wheel import SectorWheel
 from morfax.player.tape.setting import Setting, check_resumption
-from morfax.player.tape.track_order import END_CYCLES, found_order
+from morfax.player.tape.track_order import found_order
 from morfax.recorder.sound.pipe import PipeSource, Samples
 from morfax.recorder.sound.source import FileSource, Source
+from morfax.recorder.tape.format import SURE_CYCLES
 from morfax.recorder.tape.stated import TapeEntries
 from morfax.recorder.tape.tape import Tape, TapeFormat
 
@@ -267,7 +268,7 @@ class TapePlayback(Supervised):
         self.end_error_mm = self.end_mm - np.array(fmt.end_mm) - self._zero_mm
         axis = int(np.argmax(np.abs(self.end_error_mm)))
         error_mm = float(self.end_error_mm[axis])
-        if abs(error_mm) * fmt.cycles_per_mm > END_CYCLES:
+        if abs(error_mm) * fmt.cycles_per_mm > SURE_CYCLES:
             time_s = self._rows / fmt.motion_rate_hz
             raise ended_elsewhere(self._stood(axis, time_s, error_mm), fmt)
 

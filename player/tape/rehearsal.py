@@ -27,11 +27,10 @@ from morfax.motion.motion import Motion
 from morfax.player.tape.drives import Drives, Reference
 from morfax.player.tape.phase_lock import PhaseLock
 from morfax.player.tape.predictor import count_turns, predictor_gains
-from morfax.player.tape.standstill import SURPRISE_CYCLES
+from morfax.player.tape.standstill import STANDSTILL_S
 from morfax.player.tape.watch import SHAKE_CYCLES, SHAKE_STRIDE, shake_rows
-from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.format import SURE_CYCLES, TapeFormat
 
-STANDS_S = 0.05  # behind the end, so that a sudden stop there is seen
 WINDOWS = 4  # of shaking, a quarter of one from each to the next
 WITHIN_ROWS = 16  # of the motion: a jump surprises most within these
 
@@ -72,7 +71,9 @@ class Rehearsal:
             yield block
             self._run(np.asarray(block.positions_mm, np.float64))
         self._run(
-            np.repeat(self._before[-1:], round(STANDS_S * self._format.motion_rate_hz), axis=0)
+            np.repeat(
+                self._before[-1:], round(STANDSTILL_S * self._format.motion_rate_hz), axis=0
+            )
         )
 
     def _run(self, positions_mm: Array) -> None:
@@ -91,7 +92,7 @@ class Rehearsal:
 
     def _refuse_jumps(self, positions_mm: Array, surprise: NDArray[np.float32]) -> None:
         """Raise MotionFault where an axis changes its speed at once by more than can be counted."""
-        jumps = ~(np.abs(surprise) < SURPRISE_CYCLES)
+        jumps = ~(np.abs(surprise) < SURE_CYCLES)
         if not jumps.any():
             return
         row, axis = (int(i) for i in np.argwhere(jumps)[0])
@@ -155,7 +156,7 @@ class Rehearsal:
         fmt, ramp = self._format, 1e-3 * np.arange(200.0)[None]  # cycles a row
         surprise = np.empty((ramp.shape[1], 1), np.float32)
         count_turns(ramp, self._gains, np.zeros((1, 3)), np.empty(surprise.shape), surprise)
-        by_cycles = SURPRISE_CYCLES / float(np.abs(surprise).max()) * 1e-3
+        by_cycles = SURE_CYCLES / float(np.abs(surprise).max()) * 1e-3
         return by_cycles * fmt.mm_per_cycle * fmt.motion_rate_hz
 
     def _fault(

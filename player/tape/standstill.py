@@ -27,15 +27,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER
-from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.format import SURE_CYCLES, TapeFormat
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS
 
 # the patent has no figure; 300 rows at 6 kHz average noise of 40 dB to 6e-5 cycle
 STANDSTILL_S = 0.05
-STANDSTILL_CYCLES = 0.25  # phase that moves more than this within the 50 ms moves on purpose
 SILENT_LEVEL = 1e-3  # -60 dB of full scale
 # of a track's power; 20 dB of noise leave 0.99, clipping to a square 0.81, white noise has 0.2
 CARRIER_SHARE = 0.9
@@ -56,7 +56,6 @@ UNSTEADY_CYCLES = 0.009
 CALM_CYCLES = 0.0035
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
 # half of the half cycle at which a phase would be counted as another turn
-SURPRISE_CYCLES = 0.25
 FEWEST_FRAMES = 8  # of which a spectrum has a peak between two other lines
 SPECTRUM_FRAMES = 16384  # 0.34 s at 48 kHz: lines of 2.9 Hz
 
@@ -78,9 +77,9 @@ class Bearings:
     ) -> Uncertain | None:
         """The first row that no motion explains, and its fault; the screws stood at `positions_mm`."""
         sizes = np.abs(phases.surprise)
-        if sizes.max(initial=0.0) < SURPRISE_CYCLES:
+        if sizes.max(initial=0.0) < SURE_CYCLES:
             return None
-        jumped = ~(sizes < SURPRISE_CYCLES)
+        jumped = ~(sizes < SURE_CYCLES)
         row = int(np.argmax(jumped.any(axis=1)))
         time_s, axis = (phases.first_row + row) / rate_hz, int(np.argmax(jumped[row]))
         surprise = float(phases.surprise[row, axis])
@@ -91,7 +90,7 @@ class Bearings:
         return LockFault(
             f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at "
             f"{time_s:.3f} s, position "
-            f"{position_mm:.3f} mm; {SURPRISE_CYCLES:g} is allowed; look for a splice, dropout or "
+            f"{position_mm:.3f} mm; {SURE_CYCLES:g} is allowed; look for a splice, dropout or "
             "sudden stop there",
             axis=self.names[axis],
             time_s=time_s,
@@ -149,7 +148,7 @@ def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> 
     if stated < least:
         return 0
     # one that starts in the last of these rows is known by those behind them
-    moved = (np.abs(cycles[: stated + least] - zero) > STANDSTILL_CYCLES).any(axis=1)
+    moved = (np.abs(cycles[: stated + least] - zero) > SURE_CYCLES).any(axis=1)
     # longer than a dropout
     steps = np.flatnonzero(np.convolve(moved, np.ones(least), "valid") == least)
     # an axis may have crept before it was seen
@@ -160,7 +159,7 @@ def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
     """Raise TapeFault for a tape that states a standstill and starts under way."""
     moved = np.ptp(cycles, axis=0)
     axis = int(np.argmax(moved))
-    if moved[axis] >= STANDSTILL_CYCLES:
+    if moved[axis] >= SURE_CYCLES:
         raise TapeFault(
             f"the tape starts while {names[axis].upper()} moves, and states a standstill: its start "
             "is missing, so where "
@@ -213,7 +212,7 @@ def strongest_hz(samples: Float32s, sample_rate_hz: float) -> float:
         return 0.0
     spectrum = np.abs(np.fft.rfft((samples - samples.mean()) * np.hanning(len(samples))))
     peak = min(max(int(np.argmax(spectrum)), 1), len(spectrum) - 2)
-    left, middle, right = np.log(spectrum[peak - 1 : peak + 2] + 1e-30)
+    left, middle, right = np.log(spectrum[peak - 1 : peak + 2] + NOT_ZERO)
     bend = left - 2 * middle + right
     shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
     return float((peak + shift) * sample_rate_hz / len(samples))
@@ -231,7 +230,7 @@ def decibels(level: float) -> str:
 
 def _zero(cycles: Float64s) -> Float64s:
     """Phase at standstill, cycles; for an axis that moves already, the phase of its first row."""
-    stands = np.ptp(cycles, axis=0) < STANDSTILL_CYCLES
+    stands = np.ptp(cycles, axis=0) < SURE_CYCLES
     return np.where(stands, cycles.mean(axis=0), cycles[0])
 
 

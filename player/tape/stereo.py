@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
+from morfax.motion.usual import REFERENCE_HZ
 from morfax.player.tape.check_reader import CheckReader
 from morfax.player.tape.standstill import REFERENCE_BAND, strongest_hz
 from morfax.recorder.sound.programme import programme_within
@@ -62,7 +63,7 @@ class StereoSource:
 
     container = "two files"
 
-    def __init__(self, one: Source, other: Source, reference_hz: float = 6000.0) -> None:
+    def __init__(self, one: Source, other: Source, reference_hz: float = REFERENCE_HZ) -> None:
         self._one, self._other = one, other
         try:
             halves = [_half(source, reference_hz) for source in (one, other)]

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.player.tape.subcarrier import Complexes, Subcarrier
 from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, SYNC_SYMBOLS, Bits
@@ -64,7 +64,7 @@ def likeness(seen: Complexes) -> tuple[Complexes, Array]:
     for symbol, sign in enumerate(SYNC.tolist()):
         alike += sign * seen[4 * symbol : 4 * symbol + starts]
         power += strength[4 * symbol : 4 * symbol + starts]
-    return alike, np.abs(alike) ** 2 / np.maximum(power * SYNC_SYMBOLS, 1e-30)
+    return alike, np.abs(alike) ** 2 / np.maximum(power * SYNC_SYMBOLS, NOT_ZERO)
 
 
 def read_symbols(points: Subcarrier, begins: float) -> Gates:

@@ -22,10 +22,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.player.tape.delays import Delay
-from morfax.player.tape.lost_ways import COUNT_CYCLES
 from morfax.player.tape.standstill import ALLOWED_CYCLES
 from morfax.player.tape.told_bounds import ToldBounds
-from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.format import SURE_CYCLES, TapeFormat
 
 TAIL_CYCLES = 0.03
 MEAN_S = 0.025  # over which places are averaged
@@ -46,7 +45,7 @@ def tail_of(
     mean_rows = round(MEAN_S * fmt.motion_rate_hz)
     settled = max(int(delay.settled_row), first_row)
     if bounds.rests(settled, last):
-        off = apart(way[settled - first_row :], mean_rows) - COUNT_CYCLES
+        off = apart(way[settled - first_row :], mean_rows) - SURE_CYCLES
         return Tail(settled, max(off, 0.0) / fmt.reference_hz)
     told = max(int(delay.told_row), first_row)
     rest, bound = way[told - first_row :], bounds.between(told, last)

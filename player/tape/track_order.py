@@ -25,12 +25,12 @@ from morfax.player.tape.check_reader import CheckReader, read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, discriminate
 from morfax.player.tape.standstill import strongest_hz, take_bearings
 from morfax.player.tape.steadiest import Steadiest
+from morfax.recorder.tape.format import SURE_CYCLES
 from morfax.recorder.tape.tape import Tape, full_scale
 
 # of a tape that stands for so long nothing is known beforehand; the watch goes on
 SEARCHED_S = 20.0
 # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
-END_CYCLES = 0.25
 MOST_AXES = 6  # whose orders are gone through
 
 
@@ -94,7 +94,7 @@ def _by_the_end(tape: Tape, reference: int, fault: TapeFault) -> tuple[int, ...]
     fitting = [
         order
         for order in permutations(range(len(others)))
-        if (np.abs(ended[list(order)] - wanted) < END_CYCLES).all()
+        if (np.abs(ended[list(order)] - wanted) < SURE_CYCLES).all()
     ]
     if len(fitting) != 1:
         raise fault

@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, ROUNDED, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.segments import Limits, Segment, Source, as_path, segments
@@ -212,7 +212,7 @@ def _samples(
 def _leg_samples(leg: Segment, interval_s: float, counts_per_mm: float) -> Words:
     """Samples of one leg, from rest to rest in a whole number of intervals."""
     times = leg.times_s
-    intervals = max(1, int(np.ceil(times[-1] / interval_s - 1e-9)))
+    intervals = max(1, int(np.ceil(times[-1] / interval_s - ROUNDED)))
     values, slopes = _spline(times / times[-1] * intervals, leg.places_mm, intervals)
     return np.stack([_counts(values, counts_per_mm), _counts(slopes, counts_per_mm)], axis=-1)
 
@@ -234,7 +234,7 @@ def _spline(at: Array, places: Array, intervals: int) -> tuple[Array, Array]:
         wanted = inner.T @ (places - basis[:, rest] @ coefficients[rest])
         normal = (inner.T @ inner).tocsc()
         # an interval may hold no place
-        normal.setdiag(normal.diagonal() + 1e-9 * max(1.0, normal.diagonal().max()))
+        normal.setdiag(normal.diagonal() + ROUNDED * max(1.0, normal.diagonal().max()))
         coefficients[2:-2] = spsolve(normal, wanted).reshape(-1, places.shape[1])
     spline = BSpline(knots, coefficients, 3)
     ends = np.arange(intervals + 1.0)
@@ -261,7 +261,7 @@ def _nearest_mm(places: Array, run_mm: Array) -> Array:
     for piece in (*(near.T - 1), *near.T):
         first = np.clip(piece, 0, len(places) - 2)
         along = places[first + 1] - places[first]
-        squared = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
+        squared = np.maximum(np.einsum("ij,ij->i", along, along), NOT_ZERO)
         share = np.clip(np.einsum("ij,ij->i", run_mm - places[first], along) / squared, 0, 1)
         best = np.minimum(
             best, np.sqrt(((run_mm - places[first] - share[:, None] * along) ** 2).sum(axis=1))

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from morfax.motion.usual import PLOTTER_MM
 from morfax.recorder.drawings.curve_chords import bulged
 from morfax.recorder.drawings.cut_lines import CutLine, Place
 
-WITHIN_MM = 0.0125  # half of HP-GL's plotter unit
+WITHIN_MM = PLOTTER_MM / 2
 
 
 def chords(line: CutLine, within_mm: float = WITHIN_MM) -> list[Place]:

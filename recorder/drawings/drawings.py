@@ -24,7 +24,7 @@ from morfax.motion.segments import Source
 from morfax.recorder.drawings.chords import box
 from morfax.recorder.drawings.cut_lines import CutLine, Piece, Place, cut_lines_of, radius_mm
 from morfax.recorder.drawings.drawn_units import ZERO
-from morfax.recorder.gcode.blocks import TOLERANCE_MM
+from morfax.recorder.gcode.machine import TOLERANCE_MM
 from morfax.recorder.gcode.plan import Writing
 from morfax.recorder.gcode.program_text import digits
 from morfax.recorder.report import Written

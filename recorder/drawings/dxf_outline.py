@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.recorder.drawings.curve_chords import FLAT_MM, bulged
 from morfax.recorder.drawings.drawn_units import NO_UNIT, unit_mm
@@ -217,7 +217,7 @@ def _with_bulges(corners: Array, closed: bool, off: float) -> Array:
     for (*begin, bulge), (*end, _) in pairwise(around):
         if begin == end:
             continue
-        is_arc = abs(bulge) > 1e-12  # flatter than a millionth of 1 um in 1 m
+        is_arc = abs(bulge) > NOT_ZERO  # flatter than a millionth of 1 um in 1 m
         turned_rad = 4 * math.atan(bulge)
         parts.append(
             bulged(np.array(begin), np.array(end), turned_rad, off)

@@ -25,6 +25,7 @@ from pathlib import Path as FilePath
 from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
+from morfax.motion.usual import PLOTTER_MM
 from morfax.recorder.drawings.chords import box, chords
 from morfax.recorder.drawings.cut_lines import CutLine, cut_lines_of
 from morfax.recorder.drawings.drawings import TOLERANCE_MM, DrawingReport
@@ -35,7 +36,7 @@ from morfax.recorder.gcode.running_time import running_time_s
 from morfax.recorder.gcode.tooling import without_z
 
 # HP-GL's plotter units are numbers of 16 bit; those of HP-GL/2 are longer
-LARGEST_MM = 32767 * 0.025
+LARGEST_MM = 32767 * PLOTTER_MM
 
 
 def record_hpgl(

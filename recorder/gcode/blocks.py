@@ -29,7 +29,7 @@ from typing import Any
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
 from morfax.recorder.gcode.check_sum import summed
-from morfax.recorder.gcode.machine import DEFAULT, Machine, machine
+from morfax.recorder.gcode.machine import DEFAULT, TOLERANCE_MM, Machine, machine
 from morfax.recorder.gcode.made import Made
 from morfax.recorder.gcode.plan import Feeds, Writing, plan
 from morfax.recorder.gcode.program_head import head
@@ -37,8 +37,6 @@ from morfax.recorder.gcode.program_text import program_text
 from morfax.recorder.gcode.running_time import running_time_s
 from morfax.recorder.gcode.tooling import without_z
 from morfax.recorder.report import Written
-
-TOLERANCE_MM = 0.01
 
 
 @dataclass(frozen=True, slots=True)

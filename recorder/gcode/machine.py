@@ -17,6 +17,7 @@ from pathlib import Path as FilePath
 from typing import Any, Literal
 
 from morfax.motion.toml_fields import Field, opened, parsed
+from morfax.motion.usual import FEED_MM_S, PLOTTER_MM
 from morfax.recorder.gcode.machine_fields import (
     FIELDS,
     LINES,
@@ -36,6 +37,9 @@ CALLED = "the machine"
 Axes = tuple[float, float, float]  # X, Y, Z
 UsualLines = Literal["all", "contours"]
 
+TOLERANCE_MM = 0.01  # of a program from the motion, and of a control at a corner
+DECIMALS = 4  # of a mm: a tenth of a micrometre
+
 
 @dataclass(frozen=True, slots=True)
 class Machine:
@@ -45,11 +49,11 @@ class Machine:
     what: str
     suffix: str = ".ngc"
     is_hpgl: bool = False  # whether its programs are HP-GL; all others are RS-274
-    step_mm: float = 0.025  # HP-GL's plotter unit
+    step_mm: float = PLOTTER_MM
     semicolon: bool = False  # comments after ; and not in ( )
     z: bool = True
     arcs: bool = True
-    decimals: int = 4
+    decimals: int = DECIMALS
     dwell_unit_s: float = 1.0
     longest_line: int = 252
     line_numbers: int = 0  # step from one to the next; 0: none are written
@@ -60,8 +64,8 @@ class Machine:
     rapids_have_feed: bool = False  # whether a rapid bears F
     rapid_mm_s: Axes = (50.0, 50.0, 20.0)
     acceleration_mm_s2: Axes = (500.0, 500.0, 200.0)
-    corner_mm: float = 0.01  # how far the control rounds corners off
-    panel_feed_mm_s: float = 10.0  # where the feed is not in the program
+    corner_mm: float = TOLERANCE_MM  # how far the control rounds corners off
+    panel_feed_mm_s: float = FEED_MM_S  # where the feed is not in the program
     travel_mm: Axes | None = None  # None: not known
     begin: tuple[str, ...] = ()
     end: tuple[str, ...] = ("M2",)

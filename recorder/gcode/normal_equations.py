@@ -71,14 +71,15 @@ def normal(table, seen, breaks, columns, closed):  # type: ignore[no-untyped-def
     slope = np.empty(10)
     column = np.empty(10, np.int64)
     # 1. each distance depends on the five numbers of its own segment only
-    rows, last = np.empty((6, 5)), -1
+    figures = table.shape[1]
+    rows, last = np.empty((figures + 1, figures)), -1
     for i in range(len(places)):
         if owner[i] != last:
             last = owner[i]
             _rows_moved(table[last], rows)
         off = _off(rows[5], places[i, 0], places[i, 1])
         residual = weights[i] * off
-        for k in range(5):
+        for k in range(figures):
             away = _off(rows[k], places[i, 0], places[i, 1])
             slope[k] = weights[i] * (away - off) / STEP
         cost += residual * residual
@@ -104,13 +105,13 @@ def normal(table, seen, breaks, columns, closed):  # type: ignore[no-untyped-def
 @njit(cache=True)
 def _rows_moved(own, rows):  # type: ignore[no-untyped-def]
     """The row of a segment as it stands, the last of six, and with each of its five numbers moved a step."""
-    moved = np.empty(5)
-    for k in range(6):
+    moved = np.empty_like(own)
+    for k in range(len(rows)):
         moved[:] = own
-        if k < 5:
+        if k < len(own):
             moved[k] += STEP
         one = _row(moved[0], moved[1], moved[2], moved[3], moved[4])
-        for m in range(5):
+        for m in range(len(one)):
             rows[k, m] = one[m]
 
 
@@ -127,7 +128,7 @@ def _break_slopes(own, sign, slope):  # type: ignore[no-untyped-def]
     slope[2] = sign * dy / square
     slope[3] = -sign * dx / square
     slope[4] = -1.0
-    for k in range(5):
+    for k in range(len(own)):
         slope[k] /= BREAK_RAD
 
 

@@ -20,7 +20,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.circle import kasa, spread
 from morfax.motion.compiled import njit
 from morfax.motion.plane import SAME_MM, length_between
@@ -170,7 +170,7 @@ def curvature_per_mm(places: Array) -> float:
         least_mm = float(np.hypot(*side)) / 10
         return math.copysign(1 / max(kasa(places)[2], least_mm), across)
     weight = u * u - chord * u + v * v
-    return 2 * float(v @ weight) / max(float(weight @ weight), 1e-30)
+    return 2 * float(v @ weight) / max(float(weight @ weight), NOT_ZERO)
 
 
 def heading_rad(places: Array) -> float:

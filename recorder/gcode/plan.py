@@ -25,7 +25,9 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.segments import Source, as_path
+from morfax.motion.usual import COUNT_MM
 from morfax.recorder.gcode.arcs import fit
+from morfax.recorder.gcode.machine import DECIMALS, TOLERANCE_MM
 from morfax.recorder.gcode.program_text import Block
 from morfax.recorder.gcode.spline import LineOrArc
 from morfax.recorder.gcode.stretches import Stretch, stretches
@@ -33,7 +35,6 @@ from morfax.recorder.gcode.stretches import Stretch, stretches
 # of an arc: its centre has to lie within the travel of the machine, +-2 m; a flatter one becomes lines
 _LARGEST_RADIUS_MM = 1000.0
 FLAT_SHARE = 0.05  # of the tolerance, kept for the chords of such an arc
-COUNT_MM = 0.01  # the step of the Z unit's decades
 # of the tolerance, at most 2 um: a depth as near to a whole count is written as that count
 COUNT_SHARE = 0.25
 # three times what thinning takes off the place where one move of Z ends and one begins
@@ -64,8 +65,8 @@ class Writing:
     only.
     """
 
-    tolerance_mm: float = 0.01
-    decimals: int = 4
+    tolerance_mm: float = TOLERANCE_MM
+    decimals: int = DECIMALS
     arcs: bool = True
 
     @property

@@ -5,7 +5,7 @@ comments at its head, and the figures in them: size in mm, length in mm, time in
 
 An inner bend is one that turns towards the inside of what stays: the tool's round shape must fit into it. Of
 a closed line that is the outside of a part, it turns the other way than the line as a whole; of a hole, the
-same way. Two blocks that meet at more than `SHARP_RAD` make a sharp inner corner, which no round tool cuts.
+same way. Two blocks that meet at more than `CORNER_RAD` make a sharp inner corner, which no round tool cuts.
 
 Source: our own. Questions: the radii are those of the written path; with a cutter beside the line they are
 smaller by the cutter's radius than those of the part.
@@ -22,6 +22,7 @@ import numpy as np
 
 from morfax.motion.motion import IN_WORK_BELOW_MM
 from morfax.motion.nesting import nested
+from morfax.motion.plane import CORNER_RAD
 from morfax.motion.polyline import area_mm2
 from morfax.recorder.gcode.arc_places import (
     Place,
@@ -39,7 +40,6 @@ from morfax.recorder.gcode.program_text import CUTS, RAPID, WORDS, Block, digits
 HEAD_LINES = 10  # among which a program says for which machine it is, and where the zero is
 SAME_MM = 0.02  # of two sizes that are told in hundredths
 ZERO_LINE = re.compile(r"^[(;] ?zero at (-?[\d.]+),(-?[\d.]+) mm of the sheet")
-SHARP_RAD = math.radians(20)  # between two blocks of a bend it is less; chosen by trial
 
 Place2 = tuple[float, float]
 
@@ -199,7 +199,7 @@ def _bends_mm(line: list[Block], sense: int) -> list[float]:
         arrives = _heading_rad(before.place_mm, block, 1)
         leaves = _heading_rad(block.place_mm, after, 0)
         turn = math.remainder(leaves - arrives, math.tau)
-        if sense * turn > SHARP_RAD:
+        if sense * turn > CORNER_RAD:
             found.append(0.0)
     return found
 

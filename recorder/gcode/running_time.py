@@ -25,7 +25,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.recorder.gcode.arc_places import Place, length_mm, step_at, turned_rad
 from morfax.recorder.gcode.machine import Axes, Machine
 from morfax.recorder.gcode.program_text import ARCS, DWELL, RAPID, WORDS, Block
@@ -151,7 +151,7 @@ def _corner_mm_s(before: _Leg, after: _Leg, corner_mm: float) -> float:
     sin_half = math.sqrt(
         max(0.0, (1 + cos_turn) / 2)
     )  # of the angle between the two legs, halved
-    if sin_half >= 1 - 1e-9:
+    if sin_half >= 1 - ROUNDED:
         return math.inf
     radius_mm = corner_mm * sin_half / (1 - sin_half)
     most_mm_s2 = min(before.acceleration_mm_s2, after.acceleration_mm_s2)

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from morfax.motion.arrays import ROUNDED
 from morfax.motion.compiled import njit
 from morfax.recorder.gcode.normal_equations import BREAK_RAD, normal, offs, solved
 
@@ -43,7 +44,7 @@ def settle(joints, halves, seen, columns, closed):  # type: ignore[no-untyped-de
         if not now < cost:
             joints[:], halves[:] = before_joints, before_halves
             return
-        damping = max(damping / 5, 1e-9)
+        damping = max(damping / 5, ROUNDED)
         if cost - now < 1e-3 * cost:
             return
 

@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.motion import IN_WORK_BELOW_MM, THINNING_TOLERANCE_MM, Path
+from morfax.motion.usual import FASTEST_MM_S, SLOWEST_MM_S
 
 DWELL_S = 0.25  # half as long again as the longest swivel of the head
 LEVEL = 0.02  # Z that changes less than this share of the way across stands
@@ -40,7 +41,6 @@ STAND = 0.25  # of the speed before and after it: a slower place parts two moves
 HALF = 0.5  # of the length: its median speed is the feed of a stretch
 # of an upright move, which has hardly left its ramp up when the ramp down begins
 UPRIGHT_SHARE = 0.9
-SLOWEST_MM_S, FASTEST_MM_S = 0.01, 1000.0
 
 Kind = Literal["plane", "slope", "upright"]
 

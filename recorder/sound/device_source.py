@@ -21,12 +21,12 @@ import numpy as np
 from morfax.motion.faults import DeviceFault
 from morfax.recorder.sound import device as portaudio
 from morfax.recorder.sound.device import Device
+from morfax.recorder.sound.device_sink import PIECE_FRAMES
 from morfax.recorder.sound.programme import between_silences
 from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, Stored
 
 LONGEST_BEHIND_S = 300.0  # of sound from a device that nobody has taken: 230 MB of four tracks
 IN_LATENCY_S = 0.2  # of the device's own buffer; chosen by trial
-GATHERED_FRAMES = 8192  # joined before they are handed on, 0.17 s
 
 
 class DeviceSource:
@@ -60,7 +60,7 @@ class DeviceSource:
         """The tape in blocks of up to so many frames, from the moment at which its carriers have come."""
         skip = first
         tape = between_silences(self.all_blocks(), self.rate_hz, self._wait_s, self.name)
-        for block in _gathered(tape, min(frames, GATHERED_FRAMES)):
+        for block in _gathered(tape, min(frames, PIECE_FRAMES)):
             self.frames += len(block)
             if skip < len(block):
                 yield block[skip:]

@@ -23,6 +23,7 @@ import numpy as np
 
 from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
+from morfax.motion.usual import SAMPLE_RATE_HZ
 from morfax.recorder.sound.riff import UNKNOWN
 from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, Stored
 
@@ -37,7 +38,7 @@ class Samples:
     """Layout of the samples in the pipe: tracks, rate, bits, and whether they are floats."""
 
     tracks: int = 4
-    sample_rate_hz: int = 48000
+    sample_rate_hz: int = SAMPLE_RATE_HZ
     bits: int = 16
     is_float: bool = False
 

@@ -25,10 +25,11 @@ from numpy.typing import NDArray
 from morfax.motion.ending import Ending
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import for_soundfile
+from morfax.motion.usual import AT_ONCE
 from morfax.recorder.sound.plain import PlainSamples
 from morfax.recorder.sound.riff import read_sizes
 
-BLOCK_FRAMES = 65536  # 1.4 s at 48 kHz, a megabyte of four tracks
+BLOCK_FRAMES = AT_ONCE  # 1.4 s at 48 kHz, a megabyte of four tracks
 LARGEST_SIDECAR_BYTES = 1 << 16  # more is no text of a tape
 _INT16_STEP = np.float32(1 / 32768)  # full scale 1
 

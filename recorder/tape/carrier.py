@@ -36,7 +36,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from morfax.motion.compiled import njit
-from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
+from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ, SAMPLES_PER_MOTION
+from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, SCREW, Sensor
 
 FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate, as drawn above
 # samples that the next frames still need: the neighbour before, and two not yet played
@@ -51,10 +52,10 @@ Frames = NDArray[np.float32]
 class PickUp:
     """The figures of wheel and screw; `level` is the amplitude of the fundamental, full scale 1."""
 
-    reference_hz: float = 6000.0
-    cycles_per_mm: float = 20.0
-    sample_rate_hz: int = 48000
-    samples_per_motion: int = 8
+    reference_hz: float = REFERENCE_HZ
+    cycles_per_mm: float = SCREW.cycles_per_mm
+    sample_rate_hz: int = SAMPLE_RATE_HZ
+    samples_per_motion: int = SAMPLES_PER_MOTION
     level: float = 0.5
     sensor: Sensor = PICK_UPS[DEFAULT_PICK_UP]
 
@@ -169,15 +170,24 @@ def _turned(first_period, reference_cycles, turned):  # type: ignore[no-untyped-
         turned[i] = cycles - np.floor(cycles)
 
 
+@njit(cache=True, inline="always")
+def _cubic(p0, p1, p2, p3):  # type: ignore[no-untyped-def]
+    """The cubic from p1 to p2 that has half of what lies about it for its slopes: of u, u² and u³."""
+    return (
+        0.5 * (p2 - p0),
+        p0 - 2.5 * p1 + 2.0 * p2 - 0.5 * p3,
+        0.5 * (p3 - p0) + 1.5 * (p1 - p2),
+    )
+
+
 @njit(cache=True, nogil=True)
 def _cubics(cycles, reference_cycles, c0, c1, c2, c3):  # type: ignore[no-untyped-def]
     """The phase of an axis in each period as a cubic; the phase of the reference is in `c0` already."""
     for i in range(len(cycles) - 3):
         p0, p1, p2, p3 = cycles[i], cycles[i + 1], cycles[i + 2], cycles[i + 3]
         c0[i] += p1 - np.floor(p1)
-        c1[i] = 0.5 * (p2 - p0) + reference_cycles
-        c2[i] = p0 - 2.5 * p1 + 2.0 * p2 - 0.5 * p3
-        c3[i] = 0.5 * (p3 - p0) + 1.5 * (p1 - p2)
+        slope, c2[i], c3[i] = _cubic(p0, p1, p2, p3)
+        c1[i] = slope + reference_cycles
 
 
 @njit(cache=True, nogil=True)
@@ -213,9 +223,8 @@ def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, fr
         for j in range(axes):
             p0, p1, p2, p3 = cycles[i, j], cycles[i + 1, j], cycles[i + 2, j], cycles[i + 3, j]
             c0 = turned + (p1 - np.floor(p1))
-            c1 = 0.5 * (p2 - p0) + reference_cycles
-            c2 = p0 - 2.5 * p1 + 2.0 * p2 - 0.5 * p3
-            c3 = 0.5 * (p3 - p0) + 1.5 * (p1 - p2)
+            slope, c2, c3 = _cubic(p0, p1, p2, p3)
+            c1 = slope + reference_cycles
             for k in range(steps):
                 u = k / steps
                 speed = c1 + u * (

@@ -30,6 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.arrays import ROUNDED
 from morfax.motion.compiled import njit
 
 VERSION = 3
@@ -207,7 +208,7 @@ def to_code(value: float, least: float) -> int:
     if not value > 0:
         return 0
     octaves = math.log2(max(value / least, 1.0))
-    return min(1 + math.ceil(octaves * _PER_OCTAVE - 1e-9), (1 << _CODE_BITS) - 1)
+    return min(1 + math.ceil(octaves * _PER_OCTAVE - ROUNDED), (1 << _CODE_BITS) - 1)
 
 
 @cache  # of 128 codes each

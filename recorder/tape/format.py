@@ -25,14 +25,18 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, TypeGuard
 
 from morfax.motion.faults import TapeFault
+from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ, SAMPLES_PER_MOTION
 from morfax.recorder.tape.carrier import PickUp
-from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, Sensor
+from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, SCREW, Sensor
 from morfax.recorder.tape.told_figures import Stated
 
 VERSION = 3  # the latest
 _NEW_ENTRIES = {"pickup": 2, "still": 3, "alike": 3}  # the first version that has it
 LARGEST_TEXT_BYTES = 2000  # libsndfile 1.2 reads no text chunk of a WAV from 2048 bytes on
 LARGEST_DEVIATION = 1.0 / 3.0  # of the reference
+SURE_CYCLES = (
+    0.25  # a phase that is off by less is miscounted by no cycle: half of the way to the next
+)
 LEAST_CHECKED_HZ = 5000.0  # of the reference: a frame of the check signal is then 0.58 s
 CHECK_SHARE = 0.2  # of the carrier: the amplitude of the check signal, 14 dB down
 _MOST_AXES = 15  # with the reference sixteen tracks; chosen here
@@ -52,15 +56,15 @@ class TapeFormat:
     """
 
     version: int = 1
-    sample_rate_hz: int = 48000
-    reference_hz: float = 6000.0
-    cycles_per_mm: float = 20.0
+    sample_rate_hz: int = SAMPLE_RATE_HZ
+    reference_hz: float = REFERENCE_HZ
+    cycles_per_mm: float = SCREW.cycles_per_mm
     axes: tuple[str, ...] = ("x", "y", "z")
     start_mm: tuple[float, ...] = ()
     end_mm: tuple[float, ...] | None = None
     dwell_s: float = 1.0
     level: float = 0.5
-    samples_per_motion: int = 8
+    samples_per_motion: int = SAMPLES_PER_MOTION
     pickup: str = DEFAULT_PICK_UP
     still: tuple[str, ...] = ()
     alike: tuple[str, ...] = ()

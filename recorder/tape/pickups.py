@@ -38,7 +38,7 @@ GAP_SHARE = 0.25  # air gap over the pitch of the teeth
 DECAY = math.exp(-2 * math.pi * GAP_SHARE)
 SCALE_PITCH_MM = 0.1  # of a scale along the slide; chosen here
 
-_SCREW = LeadScrew(pitch_mm=5.0, sectors=100)
+SCREW = LeadScrew()
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,19 +76,19 @@ class Sensor:
 _WHEEL = "screw of 5 mm over 100"
 PICK_UPS: dict[str, Sensor] = {
     "resolver": Sensor(
-        "resolver", f"{_WHEEL} pole pairs", _SCREW.cycles_per_mm, lambda n, k: float(n == 1)
+        "resolver", f"{_WHEEL} pole pairs", SCREW.cycles_per_mm, lambda n, k: float(n == 1)
     ),
     "photocell": Sensor(
         "sector wheel and photocell",
         f"{_WHEEL} sectors",
-        _SCREW.cycles_per_mm,
+        SCREW.cycles_per_mm,
         lambda n, k: 1 / n,
         flat=True,
     ),
     "coil": Sensor(
         "toothed magnetic wheel and coil",
         f"{_WHEEL} teeth",
-        _SCREW.cycles_per_mm,
+        SCREW.cycles_per_mm,
         lambda n, k: (-1) ** k * DECAY ** (n - 1),
         largest=4 / 3 / (1 - DECAY**2),  # at the largest deviation, a third of the reference
         by_speed=True,
@@ -96,7 +96,7 @@ PICK_UPS: dict[str, Sensor] = {
     "hall": Sensor(
         "toothed magnetic wheel and Hall cell",
         f"{_WHEEL} teeth",
-        _SCREW.cycles_per_mm,
+        SCREW.cycles_per_mm,
         lambda n, k: DECAY ** (n - 1) / n,
     ),
     "scale": Sensor(

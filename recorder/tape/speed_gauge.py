@@ -12,13 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import MotionFault
 from morfax.recorder.tape.carrier import ROWS_AT_ONCE
 from morfax.recorder.tape.format import TapeFormat
-
-ROUNDED = 1e-9  # of the limit: a motion at the very limit is let through
 
 
 class SpeedGauge:

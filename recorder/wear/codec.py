@@ -25,6 +25,7 @@ import soundfile
 from numpy.typing import NDArray
 
 from morfax.motion.files import for_soundfile
+from morfax.recorder.sound.source import BLOCK_FRAMES
 
 Frames = NDArray[np.float32]
 
@@ -43,7 +44,6 @@ CODECS: dict[str, tuple[str, str, dict[str, Any]]] = {
     "opus-64": ("OGG", "OPUS", {"compression_level": 0.9}),
 }
 STEREO = 2  # tracks of a file
-BLOCK_FRAMES = 32768  # 0.7 s at 48 kHz
 
 
 def coded(blocks: Iterable[Frames], rate_hz: int, tracks: int, codec: str) -> Iterator[Frames]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 
@@ -111,3 +112,11 @@ def tape_file(path_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
     file = tmp_path_factory.mktemp("tape") / "circle.wav"
     assert main(["record", str(path_file), "-o", str(file), "--quiet"]) == 0
     return file
+
+
+@pytest.fixture(scope="module")
+def small() -> np.ndarray:
+    """Grey values of a small drawing: a line of 0.5 mm round an ellipse of 19 x 14 mm."""
+    grey = np.full((320, 320), 240, np.uint8)
+    cv2.ellipse(grey, (160, 160), (110, 80), 20, 0, 360, 30, 6, cv2.LINE_AA)
+    return grey

@@ -12,7 +12,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
 from morfax.reports.canvas import DPI
 from morfax.reports.coloured import SHADES, error_lines
-from morfax.reports.overlay import Picture, draw
+from morfax.reports.overlay import Picture, draw, shortened
 from morfax.reports.page import lay_out
 from morfax.reports.plate import shades
 
@@ -93,3 +93,11 @@ def test_a_long_title_stays_on_the_picture(tmp_path: FilePath) -> None:
         with Image.open(tmp_path / "a.png") as image:
             grey = np.asarray(image.convert("L"))
         assert (grey[:, : DPI // 20] == 255).all() and (grey[:, -DPI // 20 :] == 255).all()
+
+
+def test_a_long_name_does_not_hide_what_the_colours_mean() -> None:
+    said = ": the path, coloured by its distance from the ink"
+    short = shortened("a_name_of_a_file" * 30 + said, 80)
+    assert len(short) == 80
+    assert short.startswith("a_name_of_a_file") and short.endswith(said)
+    assert shortened("a" + said, 80) == "a" + said

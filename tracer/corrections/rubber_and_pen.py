@@ -31,12 +31,11 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.motion.polyline import evenly
 from morfax.tracer.corrections.on_sheet import Stroke
+from morfax.tracer.limits import FADES, PAPER
 
 Darkness = NDArray[np.float32]
 
-CHANGED = 0.25  # of the ink's darkness: less is paper's noise, as in `drawing.noise`
 PIECE_PX = 48.0  # of a stroke that is drawn at a time
-FADES = 4.0  # softnesses from the edge of a line there is no ink left: 3e-5 of it
 LEAST_SOFT_PX = 0.3  # a sharper edge than a pixel's own has no profile
 # the line at the end of a stroke is felt this far back, in widths of the usual line; by trial
 BACK_WIDTHS = np.linspace(0.5, 5.0, 19)
@@ -109,7 +108,7 @@ class Easel:
     def _rubbed(self, window: tuple[slice, slice], share: Array) -> bool:
         """Rub out a share of the ink in a window; whether there was any."""
         before = self.darkness[window]
-        inked = bool(np.any((before > CHANGED) & (share > 0.5)))
+        inked = bool(np.any((before > PAPER) & (share > 0.5)))
         self.darkness[window] = (before * (1.0 - share)).astype(np.float32)
         return inked
 
@@ -142,7 +141,7 @@ class Easel:
             profile = erf((half_px + away_px) / soft_px) + erf((half_px - away_px) / soft_px)
             before = self.darkness[window]
             after = np.maximum(before, (0.5 * dark * profile).astype(np.float32))
-            changed = changed or bool(np.any(after - before > CHANGED * dark))
+            changed = changed or bool(np.any(after - before > PAPER * dark))
             self.darkness[window] = after
         return changed
 
@@ -251,7 +250,7 @@ def _profile(seen: Array, aside_mm: Array) -> tuple[float, float, float] | None:
     Of several lines it is the one nearest to the middle of the profile.
     """
     inked = seen > 0.5 * seen.max()
-    if seen.max() < CHANGED:
+    if seen.max() < PAPER:
         return None
     places = np.flatnonzero(inked)
     # 1. the run of ink nearest to the middle

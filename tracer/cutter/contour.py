@@ -26,7 +26,7 @@ import numpy as np
 from morfax.motion.crossings import crossings
 from morfax.motion.curves import hermite
 from morfax.motion.long_array import LongArray, is_mapped
-from morfax.motion.plane import NOTHING_MM2, heading_of, left_of
+from morfax.motion.plane import CORNER_RAD, NOTHING_MM2, heading_of, left_of
 from morfax.motion.polyline import (
     APART_MM,
     at_places,
@@ -54,7 +54,6 @@ MET_MM = 1.0  # over this a contour's beginning and end are brought together
 LEFT_OUT_MM = 0.5  # left out beside the junction of a guide line: the head swivelled there
 # the heading there is that of a parabola over so much of the contour; of a chord where half of it is missing
 FELT_MM = 1.0
-CORNER = math.radians(20)  # the contour turns by more where a guide line leaves at a corner
 NEAR = 0.05  # of the radius: a path that the arm meets further from its end is another path
 
 
@@ -140,7 +139,7 @@ def _bridge(before: Array, after: Array) -> Array:
     """A cubic from the end of some places (n, 2) mm to the beginning of others; nothing at a corner."""
     arrives = _end_heading(before)
     leaves = _end_heading(after[::-1]) + math.pi
-    if abs(turn(arrives, leaves)) > CORNER:
+    if abs(turn(arrives, leaves)) > CORNER_RAD:
         return np.empty((0, 2))
     return hermite(before[-1], arrives, after[0], leaves)[1:-1]
 

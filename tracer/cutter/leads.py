@@ -28,12 +28,12 @@ from morfax.motion.offset import DriveCurve
 from morfax.motion.polyline import APART_MM, Nearest, with_places
 from morfax.tracer.cutter import sides
 from morfax.tracer.cutter.contouring import Lead
+from morfax.tracer.limits import EVERY_MM
 
 # a lead without a cutter stays so far from other lines: our own choice, for thin cuts; a kerf can be given
 # a place is clear if it is no nearer to a contour or line than the radius less this
 CLEAR_MM = 0.001
 KEPT_MM = 0.25
-EVERY_MM = 0.05  # between the places that stand for lines, where there is no cutter
 AWAY = 0.5  # of a lead's depth: the tool goes down so far from every cut; by trial
 TOUCHES_MM = 0.02  # so deep in the scrap a lead has left the line that it touches
 # of the size asked for, tried one after the other, down to 9 %; by trial

@@ -17,12 +17,12 @@ from morfax.motion.arrays import Array
 from morfax.motion.feed import run_along
 from morfax.motion.plane import SAME_MM
 from morfax.motion.polyline import begun_at, length_mm, lengths_mm
+from morfax.motion.usual import ACCELERATION_MM_S2
 from morfax.tracer.cutter.contour import PathPlace
 from morfax.tracer.cutter.start_places import Begin
 from morfax.tracer.following.line import Leads
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.program.passes import braking
-from morfax.tracer.program.passes.passes import BRAKE_MM_S2
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class FeedRate:
         """Positions along a way (n, 2) mm from rest to rest."""
         if length_mm(way_mm) < SAME_MM:
             return way_mm[-1:]
-        return run_along(way_mm, self.mm_s, BRAKE_MM_S2, self.rate_hz)
+        return run_along(way_mm, self.mm_s, ACCELERATION_MM_S2, self.rate_hz)
 
     def resting(
         self, rows_mm: Array, at: Sequence[float]
@@ -44,7 +44,7 @@ class FeedRate:
         """Positions (n, 2) mm that come to rest at some of them, fractions included, and end at the last of
         those; and which position each of them has become.
         """
-        pieces = braking.pieces(rows_mm, at, BRAKE_MM_S2, self.rate_hz)[: len(at)]
+        pieces = braking.pieces(rows_mm, at, ACCELERATION_MM_S2, self.rate_hz)[: len(at)]
         rested = np.vstack([pieces[0], *(piece[1:] for piece in pieces[1:])])
         rests = [len(pieces[0]) - 1, *(len(piece) - 1 for piece in pieces[1:])]
         index = np.arange(len(rows_mm))

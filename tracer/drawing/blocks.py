@@ -26,9 +26,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.tracer.drawing.components import Numbers
+from morfax.tracer.limits import FEW_PX
 
 BLOCK_PX = 16  # of a sheet of darkness; by trial
-MUCH_PX = 1 << 21  # of a sheet that is shared by two threads
 GAP_PX = 64  # between stretches: a shorter one costs less than to begin anew; by trial
 ABOUT = np.ones((3, 3), np.uint8)  # a block and those about it
 
@@ -60,7 +60,7 @@ class Blocks(NamedTuple):
 
 def in_parts(pixels: int, count: int, work: Callable[[int, int], Any]) -> list[Any]:
     """Work on rows 0 … count of a sheet of so many pixels, the two halves of a large one at the same time."""
-    if pixels < MUCH_PX or count < 2:
+    if pixels < FEW_PX or count < 2:
         return [work(0, count)]
     done, faults = list[Any](), list[BaseException]()
 

@@ -19,7 +19,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import INK, Patches, runs_of, strips
+from morfax.tracer.drawing.components import FRINGE_PX, INK, Patches, runs_of, strips
 from morfax.tracer.drawing.tiles import Tiles, paper_like
 
 # All limits below were chosen by trial on framed and badly cropped pictures.
@@ -27,7 +27,6 @@ from morfax.tracer.drawing.tiles import Tiles, paper_like
 AT_EDGE_PX, AT_EDGE = 3, 0.005
 ALONG = 0.6  # of an edge along which there is ink: it is a border's
 MARGIN = 0.05  # of the shorter side: a border reaches no further into the picture
-FRINGE_PX = 3  # beyond the border's ink its soft edge ends
 OTHER_PX = 40  # a longer patch is other ink
 
 Picture = NDArray[np.float32] | Tiles

@@ -26,14 +26,17 @@ from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import at_lengths
 from morfax.tracer.drawing.hollow import FEWEST_PIECES, Seen, rows_of
+from morfax.tracer.limits import WIDER
 
 # All limits below were chosen by trial on pairs of lines, and on line art.
 ACROSS = np.arange(-24, 25) / 16  # of the line's width, to the left
 INK = 0.5  # of the darkest: a place on the path that is paler is not on its ink
 PAPER = 0.2  # of the darkest: there ink has ended, and what is darker again is another line's
 TWO = (1.8, 2.15)  # widths of the pen
-LEAST_WIDTHS = 30.0  # widths of the pen: a shorter stretch is a blot, or where lines meet
-ALIKE = 1.15  # times the pen's width: so wide its lines look at most
+# of the ink: a path with so much more on one side than on the other does not run between two lines, of which
+# the one that it follows leaves 0.45 more on the other's side
+ASIDE = 0.25
+SHORT_WIDTHS = 30.0  # widths of the pen: a shorter stretch alone does not tell its width
 LEAST_SHARE = 0.15  # of the ink is the pen's
 PLACES = 60  # of a line that was not followed
 ABOUT_WIDTHS = 2.0  # of its middle places so near to each tell its heading
@@ -72,12 +75,14 @@ def width_of(seen: Seen, middles: Array, width_mm: float) -> float:
 
 
 def inks(profiles: Array) -> Array:
-    """The ink of profiles in rows `ACROSS` a path, widths; NaN if it does not end, or the path is off it."""
+    """The ink of profiles in rows `ACROSS` a path, widths; NaN if it does not end, or the path is off it, or
+    within one side of it.
+    """
     middle = len(ACROSS) // 2
-    left, right = profiles[:, middle:], profiles[:, middle::-1]
+    left, right = _beside(profiles[:, middle:]), _beside(profiles[:, middle::-1])
     step = ACROSS[1] - ACROSS[0]
-    own = profiles[:, middle]
-    return step * (_beside(left) + _beside(right) - own)
+    inked = left + right - profiles[:, middle]
+    return step * np.where(np.abs(left - right) < ASIDE * inked, inked, np.nan)
 
 
 def _beside(outward: Array) -> Array:
@@ -95,7 +100,7 @@ def pen_of(widths_mm: Array, lengths_mm: Array) -> float:
     order = np.argsort(widths_mm)
     widths, lengths = widths_mm[order], lengths_mm[order]
     sums = np.r_[0.0, np.cumsum(lengths)]
-    last = np.searchsorted(widths, ALIKE * widths, "right")
+    last = np.searchsorted(widths, WIDER * widths, "right")
     shares = (sums[last] - sums[:-1]) / max(sums[-1], NOT_ZERO)
     enough = np.flatnonzero(shares >= LEAST_SHARE)
     if not len(enough):
@@ -113,7 +118,7 @@ def broad(places: Array, widths_mm: Array, piece_mm: float, pen_mm: float) -> Br
     shares = widths_mm / pen_mm
     is_broad = (shares > TWO[0]) & (shares < TWO[1])
     ends = np.flatnonzero(np.diff(np.r_[False, is_broad, False].astype(np.int8)))
-    least = max(FEWEST_PIECES, math.ceil(LEAST_WIDTHS * pen_mm / piece_mm))
+    least = max(FEWEST_PIECES, math.ceil(SHORT_WIDTHS * pen_mm / piece_mm))
     rows = [(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= least]
     if not rows:
         return None

@@ -123,7 +123,7 @@ def streaks_of(share: Grey, softness_px: float, pitch_mm: float) -> list[Closed]
     """Slits in the shapes that are too thin for the lens to show an edge of them, the longest first."""
     border = np.concatenate([share[0], share[-1], share[:, 0], share[:, -1]])
     shape = share if float(np.median(border)) < 0.5 else 1 - share
-    depth = cv2.distanceTransform((shape > 0.5).view(np.uint8), cv2.DIST_L2, 5)
+    depth = cv2.distanceTransform((shape > 0.5).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)
     pale = ((shape < STREAK) & (depth > STREAK_DEEP * softness_px)).view(np.uint8)
     joins = np.ones((2 * round(STREAK_GAP_MM / pitch_mm) + 1,) * 2, np.uint8)
     pale = np.asarray(cv2.morphologyEx(pale, cv2.MORPH_CLOSE, joins), np.uint8)

@@ -31,7 +31,7 @@ Numbers = NDArray[np.int32]
 INK = 0.5  # of the darkest: what is darker is ink
 SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
 STRIP_PX = 1 << 24  # pixels that are worked on at a time
-FEW_PX = 1 << 20  # the same where much else is held meanwhile: 4 MB of darkness; chosen
+FRINGE_PX = 4  # beyond ink its soft edge ends
 
 
 @dataclass(frozen=True)

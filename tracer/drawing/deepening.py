@@ -25,9 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import percentile
-from morfax.tracer.drawing.components import FEW_PX, INK, Mask, strips
-from morfax.tracer.drawing.contrast import DARKER
+from morfax.tracer.drawing.components import INK, Mask, strips
+from morfax.tracer.drawing.contrast import DARKER, LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.noise import measured
+from morfax.tracer.limits import FEW_PX
 
 Darkness = NDArray[np.float32]
 
@@ -49,7 +50,6 @@ RIM_PX, SPOTS = 2, 2.0
 # a line is made darker so much farther than that rim: up to ink, and into its edge
 BEYOND_PX = 2
 TOUCHED = 0.7  # of a pale line's darkness: within the rim of ink it goes on where it is as dark
-LEAST_MM, LEAST_PX = 2.0, 8  # as for ink: what is shorter is a speck; by trial
 # letters are as low (see `lettering`): a shorter line than others counts if it stands out so much farther
 LETTER_MM, TWICE = 1.0, 2.0
 SLENDER = 3.0  # times its breadth: a shorter patch is a blot
@@ -82,7 +82,7 @@ def deepened(
     if level > INK:
         return 0.0
     rim_px = RIM_PX + math.ceil(SPOTS * noise.softness_px)
-    length_px, shortest_px = 0.0, max(LEAST_PX, LEAST_MM / pitch_mm)
+    length_px, shortest_px = 0.0, max(LEAST_STROKE_PX, LEAST_STROKE_MM / pitch_mm)
     for _ in range(ROUNDS):
         pale = pale_ink(darkness, level, rim_px, shortest_px)
         if shapes.any():
@@ -168,13 +168,13 @@ def _lines(
     lengths_px = areas / broad_px
     long_px = boxes[:, 2:4].max(axis=1)
     usual_px, level = usual
-    are_lines = long_px >= max(LEAST_PX, LETTER_MM / pitch_mm)
+    are_lines = long_px >= max(LEAST_STROKE_PX, LETTER_MM / pitch_mm)
     are_lines &= lengths_px > SLENDER * broad_px
     are_lines &= broad_px < BROAD * usual_px + BROAD_PX
     are_lines[0] = False
     dark = _usual(darkness[rows, columns], patch, count)
     are_lines &= dark < FULL
-    are_lines &= (long_px >= LEAST_MM / pitch_mm) | (dark > TWICE * level)
+    are_lines &= (long_px >= LEAST_STROKE_MM / pitch_mm) | (dark > TWICE * level)
     if not are_lines.any():
         return None
     numbers = (np.arange(count) * are_lines).astype(np.int32)

@@ -6,9 +6,10 @@ Signals: a Drawing and a path's polylines (sheet mm) in; the signed distance of 
 the ink at places along it, mm (positive: the path lies to the left of the ink's middle), and the length of
 ink that lies beside the path.
 
-Across the path, the ink's two edges are where the darkness falls through half of what it is between them; the
-middle is halfway. Where the ink is much wider than the line usually is (a crossing, a corner) the middle
-means nothing, and the place is not measured.
+Across the path, the ink's two edges are where the darkness falls through half of what it is between them;
+the middle is halfway. It is held against the middle of the ink that a pen leaves along the path, which is the
+path itself but at corners (see `pen_edges`). Where the ink is much wider than the line usually is (a
+crossing) the middle means nothing, and the place is not measured.
 
 Source: our own. The edges are found here once more, and not by `ray`: the measure has to be independent of
 the head, so it interpolates the drawing's own darkness by scipy and sees nothing through the head's cells.
@@ -39,6 +40,7 @@ from morfax.tracer.drawing.components import (
     strips,
 )
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.pen_edges import PenEdges
 
 EVERY_MM = 0.1  # between the places that are measured
 TOUCH_MM = 0.02  # between the places of a cutter's path
@@ -111,8 +113,12 @@ def deviation(
             "the path has no run with the tool in the work; nothing to compare with the drawing"
         )
     width_mm = _line_width(drawing, places)
+    pen = PenEdges([run for run in runs if len(run) > 1], width_mm)
     errors = [
-        _averaged(_across(drawing, points, headings, width_mm)) for points, headings in places
+        _averaged(
+            _across(drawing, points, headings, width_mm) + pen.middle_mm(points, headings)
+        )
+        for points, headings in places
     ]
     if not any(np.isfinite(error).any() for error in errors):
         raise MotionFault(

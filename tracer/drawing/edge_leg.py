@@ -14,6 +14,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.plane import cross, left_of, meeting, unit
+from morfax.tracer.limits import ROUNDS
 
 BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
 NEARLY_PARALLEL = 0.1  # sine of the angle between legs that do not meet
@@ -55,7 +56,7 @@ class EdgeLeg(NamedTuple):
     def met(self, other: EdgeLeg) -> tuple[Array, Array, Array] | None:
         """Where two legs meet, and their directions there, towards the corner; None if they do not."""
         place = 0.5 * (self.origin + other.origin)
-        for _ in range(6):
+        for _ in range(ROUNDS):
             (p, t), (q, w) = self.beside(place), other.beside(place)
             if abs(cross(t, w)) < NEARLY_PARALLEL:
                 return None

@@ -30,7 +30,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.coarse import finer_dpi
+from morfax.tracer.drawing.coarse import FEWEST_PX, finer_dpi
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
 
 Darkness = NDArray[np.float32]
@@ -40,7 +40,6 @@ LEAST_GRAIN = 0.15  # standard deviation of the ink's darkness; a clean scan has
 # half of the strokes may be dry, as of a worn marker: the ink of all then has this, and the slit has to leave
 # no more than this share of its pieces
 LEAST_OF_SOME, JOINED = 0.08, 0.5
-LEAST_WIDTH_PX = 3.0  # of a thinner line the pixels themselves look like grain
 ENOUGH_TIMES = 2.0  # finer pixels, of lines that look 1.5 pixels wide or more
 ALONG_MM, ALONG_WIDTHS = 0.4, 0.8  # of the slit, standard deviation
 ACROSS_WIDTHS = 0.12
@@ -84,7 +83,7 @@ class Slit(NamedTuple):
 
 def slit_for(grain: float, width_px: float, pitch_mm: float) -> Slit | None:
     """The slit that lines of a grain and width ask for; None without grain, and for too thin lines."""
-    if not (grain > LEAST_OF_SOME and width_px > LEAST_WIDTH_PX):
+    if not (grain > LEAST_OF_SOME and width_px > FEWEST_PX):
         return None
     along_px = max(ALONG_MM / pitch_mm, ALONG_WIDTHS * width_px)
     return Slit(along_px, max(ACROSS_WIDTHS * width_px, 0.5), width_px)
@@ -101,7 +100,7 @@ def note(slit: Slit, pitch_mm: float) -> str:
 
 def is_too_thin(grain: float, width_px: float) -> bool:
     """Whether lines have grain, and are so thin that no slit sees it apart from their pixels."""
-    return grain > LEAST_GRAIN and not width_px > LEAST_WIDTH_PX
+    return grain > LEAST_GRAIN and not width_px > FEWEST_PX
 
 
 def thin_note(pitch_mm: float) -> str:

@@ -23,6 +23,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.large import runs_darker
 from morfax.tracer.drawing.paper import WIDEST_STROKE_MM
 from morfax.tracer.drawing.tiles import Tiles
+from morfax.tracer.limits import PAPER
 
 DEEPEST_PX = 200  # a line of 6 mm at 1200 dpi is 142 deep; the middle of a darker patch is not that of a line
 # the rim of a filled shape is half of the widest stroke broad, or a little less: 2.9 to 3.5 mm at 100 to 600
@@ -31,7 +32,7 @@ RIM_MM = 0.25 * WIDEST_STROKE_MM
 SOLID = 0.5  # of a patch's ink is beside filled shapes: it is theirs
 # A shape's own paper is smoothed over half of the widest stroke: inwards the rim's darkness falls slowly, and
 # so far beyond its ink it is still darker than this. A line has an edge there, on either side.
-BEYOND_MM, STILL_DARK = 0.05 * WIDEST_STROKE_MM, 0.25
+BEYOND_MM = 0.05 * WIDEST_STROKE_MM
 SOFT = 0.25  # of the paper about a patch of ink is as dark: half of it about a rim, by trial
 
 
@@ -85,7 +86,7 @@ def _falls_slowly(drawing: Drawing, patches: Patches, patch: int) -> bool:
     away_px = cv2.distanceTransform(1 - ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     about = np.abs(away_px - beyond_px) < 0.5
     darkness = drawing.darkness[slice(*rows), slice(*columns)]
-    return bool(np.mean(darkness[about] > STILL_DARK) > SOFT) if about.any() else False
+    return bool(np.mean(darkness[about] > PAPER) > SOFT) if about.any() else False
 
 
 def is_filled(drawing: Drawing, patches: Patches, patch: int) -> bool:

@@ -28,11 +28,11 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.paper import Paper
+from morfax.tracer.limits import FEW_PX
 
 Picture = NDArray[np.uint8]  # rows from the top, columns, channels
 Colour = tuple[int, int, int]
 
-SAMPLES = 1 << 20  # pixels that tell the inks
 MOST_INKS = 6
 LEAST = 40.0  # levels from the paper's colour: less is paper
 NEAR = math.radians(18)  # inks whose colours lie in directions as near as this are one
@@ -127,7 +127,7 @@ def _weights(picture: Picture, paper: Array, own: Array, near: float) -> Array:
 def _sample(picture: Picture) -> Array:
     """Some of the pixels, (n, 3)."""
     pixels = picture.reshape(-1, 3)
-    return pixels[:: max(1, len(pixels) // SAMPLES)].astype(float)
+    return pixels[:: max(1, len(pixels) // FEW_PX)].astype(float)
 
 
 def _found(picture: Picture) -> tuple[Array, list[Array]]:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.motion.median import ONE_ABOVE
-from morfax.tracer.drawing.components import Patches, runs_of
+from morfax.tracer.drawing.components import FRINGE_PX, Patches, runs_of
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
     DARKER,
@@ -37,13 +37,12 @@ from morfax.tracer.drawing.memory import make_sure_of_ink
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.paper_noise import paper_noise
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
+from morfax.tracer.limits import FEW_PX
 
 # pixels: A3 at 600 dpi is the first; smaller sheets are kept as a whole, in floats
 LARGE_PX = 1 << 26
-SAMPLE_PX = 1 << 20  # pixels that tell the noise of the paper
 SOFTENED = 1 / (2 * math.sqrt(math.pi) * SOFT_PX)  # of white noise, behind that spot
 HALO_PX = 8  # rows about a band that a spot sees
-FRINGE_PX = 4  # beyond ink its soft edge ends
 FEWEST_INKED = 1 << 21  # pixels of strokes that tell the ink
 
 Shapes = NDArray[np.bool_]
@@ -93,7 +92,7 @@ def _look(grey: Any, by: int) -> _Look:
     reduced = np.empty((-(-rows // by), -(-columns // by)), np.float32)
     least = np.empty((-(-rows // TILE_PX), across // TILE_PX), np.uint8)
     largest, samples = np.empty_like(least), list[Bytes]()
-    every = max(1, math.isqrt(rows * columns // SAMPLE_PX))
+    every = max(1, math.isqrt(rows * columns // FEW_PX))
     height = by * TILE_PX
     for top in range(0, rows, height):
         part = _rows(grey, top, min(rows, top + height))

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault
 from morfax.motion.median import ROBUST, median, percentile
-from morfax.tracer.drawing.blocks import ABOUT, MUCH_PX, runs_behind_spot, runs_in
-from morfax.tracer.drawing.components import FEW_PX, Patches, strips
+from morfax.tracer.drawing.blocks import ABOUT, runs_behind_spot, runs_in
+from morfax.tracer.drawing.components import Patches, strips
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
     DARKER,
@@ -31,6 +31,7 @@ from morfax.tracer.drawing.contrast import (
 from morfax.tracer.drawing.memory import give_back
 from morfax.tracer.drawing.paper_noise import every_px, paper_noise
 from morfax.tracer.drawing.scan import Grey
+from morfax.tracer.limits import FEW_PX
 
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 # of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen
@@ -59,7 +60,7 @@ def levelled(
     shapes = contrast.paper.shapes(ink)
     if everywhere is None:
         return contrast.darkness(ink), shapes, noise_of_paper
-    if grey.size > MUCH_PX:
+    if grey.size > FEW_PX:
         give_back()
     return contrast.in_parts_of(ink, everywhere), shapes, noise_of_paper
 

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import percentile
+from morfax.tracer.drawing.blocks import ABOUT
 
 Levels = NDArray[np.float32]
 
@@ -38,7 +39,6 @@ NOISE = 0.02  # of the brightest paper: by so much a paper's level differs from 
 LINES = 0.4  # of the ink's darkness: so dark a line of a few tenths of a millimetre is on the reduced picture
 FEW = 0.002  # of an area: specks; a single line across 50 mm covers more
 # a pixel of the reduced picture may be half on a shape's edge
-ABOUT = np.ones((3, 3), np.uint8)
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import OUTLIERS, ROBUST, median, percentile
-from morfax.tracer.drawing.paper_noise import PAPER, of_sheet
+from morfax.tracer.drawing.paper_noise import of_sheet
 from morfax.tracer.drawing.profiles import (
     FEWEST_PROFILES,
     INK,
@@ -40,6 +40,7 @@ from morfax.tracer.drawing.profiles import (
     seen_at,
 )
 from morfax.tracer.drawing.tiles import Kept
+from morfax.tracer.limits import PAPER
 
 RIGHT_ON_IT = 25.0  # percentile of how wide lines look: there a pixel lies right on the line
 # of the grain is left in profiles that are put over each other, or more: pencils of 10 to 45 % grain have 0.6

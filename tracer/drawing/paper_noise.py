@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import ONE_ABOVE, percentile
+from morfax.tracer.limits import PAPER
 
 PAPER_SAMPLES = 1 << 16  # pixels of paper: they give its standard deviation to 1/360
-PAPER = 0.25  # lighter is paper, and nothing else is drawn there
 
 
 def of_sheet(darkness: Any) -> float:

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import DrawingFault
-from morfax.motion.units import MM_PER_INCH
+from morfax.motion.units import MM_PER_INCH, POINTS_PER_INCH
 from morfax.tracer.drawing import exif
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.components import strips
@@ -46,7 +46,6 @@ from morfax.tracer.drawing.scan import (
 if TYPE_CHECKING:
     from pypdfium2 import PdfDocument, PdfImage, PdfPage
 
-POINTS_PER_INCH = 72.0
 LINES_DPI = 600.0  # drawn lines: a pen of 0.13 mm, the finest of ISO 128, is three pixels wide
 # of a scanned page, chosen: a coarser picture is a colour spread over the page, a finer one an ornament
 COARSEST_DPI, FINEST_DPI = 50.0, 4800.0

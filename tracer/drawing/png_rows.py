@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.tracer.drawing.scan import darkest
+from morfax.tracer.limits import FEW_PX
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
 Bytes = NDArray[np.uint8]
 
-AT_ONCE = 1 << 22  # bytes that are unpacked at a time
 BARE, BEFORE, ABOVE, MEAN = 0, 1, 2, 3  # filters of a line; the fourth is Paeth's
 CHANNELS = {0: 1, 2: 3, 3: 1}  # of a PNG: grey, colours, numbers of a palette
 
@@ -84,7 +84,7 @@ def _unpacked(stream: BinaryIO) -> Iterator[bytes]:
         content = stream.read(length)
         stream.seek(4, io.SEEK_CUR)
         while content:
-            yield unpacker.decompress(content, AT_ONCE)
+            yield unpacker.decompress(content, FEW_PX)
             content = unpacker.unconsumed_tail
     yield unpacker.flush()
 

@@ -23,8 +23,8 @@ from morfax.motion.plane import unit
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.components import INK
-from morfax.tracer.drawing.paper_noise import PAPER
 from morfax.tracer.drawing.tiles import Kept, Tiles
+from morfax.tracer.limits import PAPER
 
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
 MOST_PROFILES = 1000  # their median is 25 times as certain as one profile

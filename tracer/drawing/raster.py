@@ -22,7 +22,7 @@ from morfax.motion.faults import DrawingFault, Fault, FileFault
 from morfax.motion.files import check_regular
 from morfax.tracer.drawing import by_rows, exif, large
 from morfax.tracer.drawing import memory as room
-from morfax.tracer.drawing.components import FEW_PX, strips
+from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.exif import ORIENTATION
 from morfax.tracer.drawing.scan import (
     Camera,
@@ -33,6 +33,7 @@ from morfax.tracer.drawing.scan import (
     page_asked_for,
     page_notes,
 )
+from morfax.tracer.limits import FEW_PX
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -31,6 +31,7 @@ from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing import tips
 from morfax.tracer.drawing.closing import Closed, covers, note, places_of, streaks_of
+from morfax.tracer.drawing.components import FRINGE_PX
 from morfax.tracer.drawing.sharpening import APART_PX, Edge, sharpened
 from morfax.tracer.drawing.spacing import finer, too_near
 
@@ -42,7 +43,6 @@ LEAST_MM = 2.0  # a shorter outline is a speck's
 LEAST_CONTRAST = 20.0  # levels
 LEAST_SHAPE_MM = 1.0  # across at its widest; what is thinner everywhere is lines
 ROUND_ABOUT_MM = 6.0  # standard deviation: over which paper and shape are averaged
-FADES_PX = 4  # from an edge no level is taken
 SLOPE_PX = 0.3  # to both sides, to measure a slope
 LEAST_SLOPE = 0.1  # per pixel
 REDUCED = 4  # levels are estimated on a picture reduced by this
@@ -198,7 +198,7 @@ def _both_levels(soft: Grey, dark: NDArray[np.uint8], pitch_mm: float) -> tuple[
 
 def _level(soft: Grey, part: NDArray[np.uint8], pitch_mm: float) -> Grey:
     """The level of one part of the picture round about each pixel; far from the part its usual level."""
-    inner = cv2.erode(part, np.ones((2 * FADES_PX + 1,) * 2, np.uint8))
+    inner = cv2.erode(part, np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8))
     inner = inner if inner.any() else part
     rows, columns = soft.shape
     reduced = max(1, columns // REDUCED), max(1, rows // REDUCED)
@@ -227,7 +227,7 @@ def _refuse_lines(share: Grey, pitch_mm: float) -> None:
     """Raise NoShape if nothing on the sheet is as broad as a shape."""
     border = np.concatenate([share[0], share[-1], share[:, 0], share[:, -1]])
     shapes = (share < 0.5) if float(np.median(border)) > 0.5 else (share > 0.5)
-    depth_px = cv2.distanceTransform(shapes.view(np.uint8), cv2.DIST_L2, 5)
+    depth_px = cv2.distanceTransform(shapes.view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)
     broadest_mm = 2 * pitch_mm * float(depth_px.max())
     if broadest_mm < LEAST_SHAPE_MM:
         raise NoShape(

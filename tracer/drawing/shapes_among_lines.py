@@ -21,7 +21,7 @@ import cv2
 import numpy as np
 
 from morfax.tracer.drawing.border import border_note, without_border
-from morfax.tracer.drawing.components import INK, Mask
+from morfax.tracer.drawing.components import FRINGE_PX, INK, Mask
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.inks import Colour, covered
 from morfax.tracer.drawing.ruling import PaperKind
@@ -38,7 +38,6 @@ MOSTLY_SHAPES = (
     "most of the ink is filled shapes, broader than lines, and their insides are left out: --edge follows "
     "their outlines"
 )
-RIM_PX = 4  # a soft edge is no broader: as far as a solid area's own paper goes; by trial
 
 
 def drawing_of_both(scan: Scan, scale: Scale, ink: Colour | None = None) -> Drawing:
@@ -110,7 +109,7 @@ def edges_of(drawing: Drawing, solid: Mask | None = None) -> Drawing:
 
 def _only(darkness: Darkness, solid: Mask) -> Darkness:
     """The darkness of solid areas with their soft rims, and without the lines that end at them."""
-    reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * RIM_PX + 1,) * 2)
+    reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * FRINGE_PX + 1,) * 2)
     about = np.asarray(cv2.dilate(solid, reach), np.uint8)
     lines = (darkness > INK).view(np.uint8) & about & (1 - solid)
     lines = np.asarray(cv2.dilate(lines, np.ones((3, 3), np.uint8)), np.uint8)

@@ -21,7 +21,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import FEW_PX, Mask, strips
+from morfax.tracer.drawing.components import Mask, strips
+from morfax.tracer.limits import FEW_PX
 
 # All limits below were chosen by trial on own and fetched drawings, in usual widths of a line.
 BROAD, BROAD_PX = 2.2, 1.5  # a disc as broad goes into a solid area

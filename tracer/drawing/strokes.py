@@ -24,23 +24,23 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.motion.median import median
 from morfax.tracer.drawing.components import Patches
+from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 from morfax.tracer.drawing.weighing import Weight, weighed_mm
+from morfax.tracer.limits import MANY
 
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
 
-LEAST_LENGTH_MM, LEAST_LENGTH_PX = 2.0, 12
 TILE_PX = 2048
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial
 ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
-MOST_ENDS = 100
 # lines whose widths are within this share of the usual width are one pen's; by trial
 ONE_PEN = 0.3
 
@@ -64,7 +64,7 @@ class Stroke:
         order = np.argsort(self.filled)
         places = self.middles_mm[order[self.filled[order] < LESS * median(self.filled)]]
         kept: list[Array] = []
-        while len(places) and len(kept) < MOST_ENDS:
+        while len(places) and len(kept) < MANY:
             kept.append(places[0])
             places = places[np.hypot(*(places - places[0]).T) > 2 * self.width_mm]
         return np.array(kept).reshape(-1, 2)
@@ -177,7 +177,7 @@ class Sheet:
 
     def _long_enough(self) -> NDArray[np.bool_]:
         """Which patches are long enough to be lines."""
-        return self.lengths_mm >= max(LEAST_LENGTH_MM, LEAST_LENGTH_PX * self.drawing.pitch_mm)
+        return self.lengths_mm >= max(LEAST_STROKE_MM, LEAST_STROKE_PX * self.drawing.pitch_mm)
 
     def _nearest_ink(
         self, place_mm: tuple[float, float], among: NDArray[np.bool_] | None = None

@@ -23,15 +23,15 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.tracer.drawing.components import FRINGE_PX
 from morfax.tracer.drawing.holes import holes
+from morfax.tracer.limits import MANY
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.strokes import Sheet
 
 # share by which lengths by area may be off against each other, and as much again
 NEAR = 0.1
-MOST = 100  # lines: a sheet of more has many of one length, whose order is by their places
-TAIL_PX = 3  # beyond the ink's pixels the lens has left some of its darkness
 CAPS = math.pi / 4  # widths of ink in the two round ends of an open line
 
 
@@ -47,7 +47,7 @@ def weighed_mm(sheet: Sheet, patches: NDArray[np.int64], lengths_mm: Array) -> A
     order = np.argsort(lengths_mm)
     is_near = np.diff(lengths_mm[order]) < NEAR * lengths_mm[order][:-1]
     near = order[np.r_[is_near, False] | np.r_[False, is_near]]
-    if not 2 <= len(near) <= MOST:
+    if not 2 <= len(near) <= MANY:
         return lengths_mm
     # 1. their ink over the width that the lengths by area were taken with
     areas_mm2 = sheet.lengths_mm[patches[near]] * sheet.widths_mm[patches[near]]
@@ -74,10 +74,10 @@ def _weigh(sheet: Sheet, patch: int) -> Weight:
     chosen = sheet.patches.alone(patch)
     rows, columns = sheet.drawing.darkness.shape
     top, bottom, left, right = sheet.patches.box(chosen)
-    top, left = max(0, top - TAIL_PX), max(0, left - TAIL_PX)
-    bottom, right = min(rows, bottom + TAIL_PX), min(columns, right + TAIL_PX)
+    top, left = max(0, top - FRINGE_PX), max(0, left - FRINGE_PX)
+    bottom, right = min(rows, bottom + FRINGE_PX), min(columns, right + FRINGE_PX)
     ink = np.asarray(sheet.patches.painted(chosen, top, bottom, left, right), np.uint8)
-    about = cv2.dilate(ink, np.ones((2 * TAIL_PX + 1,) * 2, np.uint8)) > 0
+    about = cv2.dilate(ink, np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)) > 0
     dark = np.asarray(sheet.drawing.darkness[top:bottom, left:right])
     weight_mm2 = float(dark[about].sum()) * sheet.drawing.pitch_mm**2
     return Weight(weight_mm2, not holes(ink))

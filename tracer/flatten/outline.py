@@ -25,6 +25,7 @@ from morfax.motion.median import ROBUST
 from morfax.motion.plane import unit
 from morfax.tracer.flatten.edges import Picture, crossings, light_at
 from morfax.tracer.flatten.fit import Sightings
+from morfax.tracer.limits import ROUNDS
 
 SMALL_PX = 700  # longer side of the picture on which the outline is looked for
 LEAST_AREA, LARGEST_AREA = 0.08, 0.995  # of the photograph: of a sheet worth a trace
@@ -41,7 +42,6 @@ WIDE, NARROW_PX = 0.008, 6.0
 SMOOTH_DEGREE = 4  # of the curve of a side: lenses draw no more bends
 STRAY = 4.0  # robust standard deviations: what is further off is no edge of the sheet
 LEAST_STRAY_PX = 0.5
-ROUNDS = 6  # of leaving out what does not lie on the curve
 LEAST_SIDE = 0.3  # of a side: that must be seen
 STRETCHES = 8  # into which a side's residual is parted
 

@@ -19,6 +19,7 @@ import numpy as np
 from morfax.tracer.flatten.edges import Picture
 from morfax.tracer.flatten.layout import Box
 from morfax.tracer.flatten.projection import Projection
+from morfax.tracer.limits import FEW_PX
 
 # of a sheet, made paper: the table shows there if the sheet was cut or printed aslant
 RIM_MM = 1.5
@@ -26,7 +27,6 @@ RING_MM = 1.0  # about a box: the paper with which it is filled
 LIGHTER = 30.0  # percentile of the ring's pixels: what is darker may be ink
 # the photograph's pixels: only a sheet tilted beyond 45 degrees would have more
 MOST_TIMES = 4.0
-STRIP_PX = 1 << 20  # that are worked on at a time
 
 
 def resampled(picture: Picture, projection: Projection) -> tuple[Picture, float]:
@@ -39,7 +39,7 @@ def resampled(picture: Picture, projection: Projection) -> tuple[Picture, float]
     rows = math.ceil(sheet.height / pitch_mm - 1e-6)
     flat = np.empty((rows, columns, 3), np.uint8)
     x_mm = (np.arange(columns) + 0.5) * pitch_mm
-    every = max(1, STRIP_PX // columns)
+    every = max(1, FEW_PX // columns)
     for top in range(0, rows, every):
         y_mm = (rows - np.arange(top, min(top + every, rows)) - 0.5) * pitch_mm
         places = np.column_stack([np.tile(x_mm, len(y_mm)), np.repeat(y_mm, columns)])

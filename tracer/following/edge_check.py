@@ -20,12 +20,12 @@ from morfax.motion.faults import LineFault
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import APART_MM, lengths_mm, with_places
 from morfax.tracer.following.followed import Followed
+from morfax.tracer.head.slow_cell import CHECKED
 
 # a tip of 15 degrees that one of both has put back, and the other has left round, is as far off: six standard
 # deviations of a lens (see `drawing.lens`); of a lens as soft as a pixel, where pixels are large
 OFF_MM, OFF_PX = 0.5, 6.0
 LEFT_MM = 0.15  # where the run was so far off it had left the edge; further than the head cuts a corner
-CHECKED = 8  # one position in 8 is checked: every 13 um at 10 mm/s
 
 
 def most_off_mm(pitch_mm: float) -> float:

@@ -32,7 +32,7 @@ from morfax.tracer.following.felt_line import (
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.hidden_corner import hides_corner
 from morfax.tracer.following.run_ends import RunEnds
-from morfax.tracer.following.two_corners import or_two_corners
+from morfax.tracer.following.two_corners import or_two_before, or_two_corners
 from morfax.tracer.following.way_home import WayHome
 from morfax.tracer.following.ways_out import (
     STRAIGHT_ON,
@@ -229,6 +229,10 @@ class Follower(RunEnds):
         # past what nothing explains
         if not explained:
             plan = self._planner().past(incoming, choice) or plan
+        # by two corners, of which the line was felt round the first
+        if plan is not None and choices == 1 and not asked:
+            _, seen = felt_ahead(self.view, self.carriage, self._anchor)
+            plan = or_two_before(self._planner(), seen, choice, plan)
         return plan, choices
 
     def _with_another_pen(self, incoming: Leg) -> Plan | None:

@@ -13,13 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.tracer.head.slow_cell import rough_mm
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.junctions.felt_corner import FeltCorner
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import View
 
-REACH_WIDTHS = 1.5  # of the line's width about a place: there a pen that turns leaves other ink
 # times what the line beside it leaves unexplained, for grain and noise are the same there; and where the legs
 # meet at a clear angle
 WORSE, WORSE_AT_ANGLE = 3.0, 1.5
@@ -31,14 +32,14 @@ ALONG = 16  # places of a leg, which bends little
 
 def hides_corner(view: View, felt: FeltCorner) -> bool:
     """Whether a line that was felt as a round turns more sharply than that."""
-    if is_rough(view, felt):
+    if is_rough(view, felt.seen):
         return False
     # most lines have nothing to be held against the ink
     from morfax.tracer.tangles.likeness import Patch, Pen
 
     incoming, outgoing = felt.legs(view)
     # 1. what a pen along the felt line leaves unexplained at the corner, and beside it
-    reach_mm = REACH_WIDTHS * view.width_mm
+    reach_mm = CLEAR_WIDTHS * view.width_mm
     along = np.linspace(0.0, 3 * reach_mm, ALONG)
     places = np.vstack([incoming.at(-along[::-1]), felt.rounded, outgoing.at(along)])
     around = felt.place_mm, incoming.at(-reach_mm), outgoing.at(reach_mm)
@@ -51,6 +52,6 @@ def hides_corner(view: View, felt: FeltCorner) -> bool:
     return near > WORSE_AT_ANGLE * min(usual)
 
 
-def is_rough(view: View, felt: FeltCorner) -> bool:
+def is_rough(view: View, seen: Array) -> bool:
     """Whether a line's edges leave more ink unexplained than a corner does, or it is an edge."""
-    return view.on_edge or rough_mm(felt.seen) > ROUGH_PX * view.parted * view.pitch_mm
+    return view.on_edge or rough_mm(seen) > ROUGH_PX * view.parted * view.pitch_mm

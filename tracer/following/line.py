@@ -28,6 +28,7 @@ from morfax.tracer.following.told_stops import with_told
 from morfax.tracer.head.leaders import Led, share_of_cell
 from morfax.tracer.junctions.gaps import Break, breaks
 from morfax.tracer.junctions.guides import GuideLine
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.marks.marks import Mark, marks_along
 from morfax.tracer.sensing.leg import TURNS_OFF, turn
 from morfax.tracer.sensing.side import Side
@@ -37,7 +38,6 @@ HEADING = 300  # positions that show the heading at an end: half a mm at 10 mm/s
 NEARLY_MM = 5.0  # a line that ends so near to its beginning may be a closed one, ...
 NEARLY = 0.1  # ... if that is no more than this share of its length, ...
 AHEAD = 0.7  # ... and lies ahead: the cosine of 46 degrees
-AT_JUNCTION = 1.5  # widths: within this distance the line passes the junction
 TURN_MM = 1.5  # before and after a junction: shows whether the line turns there
 REFERENCE_MM = 3.0  # a mark nearer to a reference point is a stroke of that point
 
@@ -174,7 +174,7 @@ class Line:
         places = self.places_mm
         if self.ending in ("closed", "ended") or not self.junctions_mm:
             return places
-        there = np.hypot(*(places - self.junctions_mm[0]).T) < AT_JUNCTION * self.width_mm
+        there = np.hypot(*(places - self.junctions_mm[0]).T) < CLEAR_WIDTHS * self.width_mm
         return places[: int(np.argmax(there)) + 1] if there.any() else places
 
     @property
@@ -253,7 +253,7 @@ class Line:
     def turns_at(self, place_mm: tuple[float, float], side: Side) -> bool:
         """Whether the line turns to a side at a junction, to go on there or along a guide line and back."""
         away = np.hypot(*(self.xy_mm - place_mm).T)
-        near = np.flatnonzero(away < AT_JUNCTION * self.width_mm)
+        near = np.flatnonzero(away < CLEAR_WIDTHS * self.width_mm)
         if not len(near):
             return False
         come_mm = lengths_mm(self.xy_mm)

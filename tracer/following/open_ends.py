@@ -26,7 +26,7 @@ from morfax.tracer.head.stance import Stance
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.marks.reference import Reference, references
-from morfax.tracer.sensing.leg import leg_of, turn
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, leg_of, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end, strokes_on
 from morfax.tracer.sensing.view import View
 
@@ -39,7 +39,6 @@ LEAD_LEGS = 1.5  # lengths of a leg: a lead line is longer than this
 RING_WIDTHS, RING_PX = 1.5, 6.0  # radius of the ring of cells about an end: the larger
 WIDTH_OFF, WIDTH_OFF_PX = 0.25, 0.5  # of the width, and pixels: the end is as wide as the line
 SPUR_WIDTHS = 2.7  # a line that ends sooner is a burr
-FEWEST = 4  # stations, of which the middle half shows whether the line widens
 BEYOND_WIDTHS = 2.0  # ink that reaches no further beyond an end leaves a stop mark on one side
 # the tip of two lines widens so much, in widths or pixels, along half of what is felt of it
 GROWS, GROWS_PX = 0.08, 0.4
@@ -177,7 +176,7 @@ def _is_end(view: View, inward: Array, heading: float, radius: float) -> bool:
     """Whether a line goes on from its end: it is no burr, no tip of two lines that part, no mark."""
     seen = view.feel(inward, heading, max(4 * view.width_mm, view.leg_mm))
     long_mm = len(seen) * view.step_mm
-    if len(seen) < FEWEST or long_mm < SPUR_WIDTHS * view.width_mm - radius:
+    if len(seen) < FEWEST_STATIONS or long_mm < SPUR_WIDTHS * view.width_mm - radius:
         return False
     widths = seen[len(seen) // 4 : -len(seen) // 4, 2]
     grows_mm = median(widths[-4:]) - median(widths[:4])

@@ -25,12 +25,13 @@ from morfax.motion.plane import heading_of, unit
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.following.followed import THINNED, Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
+from morfax.tracer.limits import MANY
 from morfax.tracer.sensing.edge_scout import CIRCLE_PX
 from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import View
 
 PIECE_MM = 3.0  # longer waves are the shape; clean parts stray by 8 um at most
-MOST_PIECES, FEWEST_PIECES = 100, 3
+FEWEST_PIECES = 3
 FELT = 0.9  # of a piece: where less is felt the edge ends, or turns back
 # from the first third of a piece to its last: a parabola follows that within 2 um
 BENT_RAD = 0.5
@@ -62,7 +63,7 @@ def _pieces(run: Followed) -> list[tuple[Array, float]]:
     if over_mm < 0:
         return []
     pieces = list[tuple[Array, float]]()
-    count = min(MOST_PIECES, int(over_mm / PIECE_MM) + 1)
+    count = min(MANY, int(over_mm / PIECE_MM) + 1)
     for from_mm in np.linspace(0.0, over_mm, count):
         at = np.searchsorted(come_mm, from_mm + PIECE_MM * np.arange(4) / 3).clip(
             max=len(places) - 1

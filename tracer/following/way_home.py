@@ -19,9 +19,8 @@ from morfax.tracer.head.kernel import HOME_COSINE
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home
 from morfax.tracer.junctions.line_ahead import AHEAD
+from morfax.tracer.limits import NEAR
 from morfax.tracer.sensing.leg import Leg, turn
-
-ON_HOME = 0.3  # widths: a course that comes as near to home passes over it; by trial
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +52,7 @@ class WayHome:
         for k, way in enumerate(distinct):
             near = int(np.argmin(np.hypot(*(way - home).T)))
             step = way[min(near + 1, len(way) - 1)] - way[min(near, len(way) - 2)]
-            over_home = np.hypot(*(way[near] - home)) < ON_HOME * width_mm
+            over_home = np.hypot(*(way[near] - home)) < NEAR * width_mm
             ahead_rad = math.atan2(step[1], step[0])
             if over_home and near > 0 and math.cos(ahead_rad - heading) > HOME_COSINE:
                 return [*distinct[:k], np.vstack([way[:near], home])]

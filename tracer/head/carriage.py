@@ -19,6 +19,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.long_array import LongArray
 from morfax.motion.plane import direction, heading_of
 from morfax.motion.polyline import lengths_mm
+from morfax.motion.usual import MOTION_RATE_HZ
 from morfax.tracer.head import kernel, mount, screws, slow_cell, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import Settings
@@ -38,7 +39,9 @@ from morfax.tracer.head.tuning import CALIBRATED_ASIDE, tune, tuned_along
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
 
-CHUNK = 6000  # samples that the kernel follows before it reports: a second at the motion rate
+CHUNK = round(
+    MOTION_RATE_HZ
+)  # samples that the kernel follows before it reports: a second at the motion rate
 SETTLE_LAGS = 7  # a stop lasts this many lags of the drives: 1/1000 of the last speed is left
 HEARD = 0.1  # of what the sweep was set off; grain takes away less than the rest
 _STANDS = "x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "heading_rad"

@@ -43,7 +43,7 @@ from morfax.motion.compiled import njit
 from morfax.tracer.head.screws import move, owed_s
 from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT
 from morfax.tracer.head.swinging import detect, seen, swing, way_of
-from morfax.tracer.sensing.moments import NO_PLACES, parabola_of, with_place
+from morfax.tracer.sensing.moments import NO_PLACES, bend_of, parabola_of, with_place
 
 # Shares of the line's ink; all chosen by trial on the test drawings.
 LOST = 0.2  # less over a sweep: the line has gone from under a head without guard cells
@@ -53,7 +53,6 @@ ALTERED = 0.2  # over a sweep: the line has swollen or faded since the head was 
 
 BEND_FOLLOWS = 0.1  # share by which the usual bend follows the bend, sweep by sweep
 GUARD_FOLLOWS = 0.5  # share by which a guard cell follows what it sees, sweep by sweep
-SINGULAR = 1e-9  # of the moments' product: too few places on the drum for a parabola
 HOME_ASIDE = 0.3  # of the lead: home is on the line
 HOME_COSINE = 0.8  # of the angle between the heading and home's: 37 degrees; by trial
 SHORTEST = 0.2  # of the distance to the point: the axis may have come so near to it
@@ -97,12 +96,12 @@ def _fit(state, t):  # type: ignore[no-untyped-def]
         if abs(x) < half and abs(y) < half:
             sums = with_place(sums, 1.0 - (x / half) ** 2, x, y)
     # 2. the parabola
-    is_one, p0, p1, p2 = parabola_of(sums, SINGULAR)
+    is_one, p0, p1, p2 = parabola_of(sums)
     if not is_one:
         return
     # 3. the point on it, and the bend there
     state.point_x_mm, state.point_y_mm = x0 - p0 * s, y0 + p0 * c
-    state.bend_per_mm = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5
+    state.bend_per_mm = bend_of(p1, 2.0 * p2)
 
 
 @njit(cache=True, inline="always")

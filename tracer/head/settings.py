@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from morfax.motion.drive import Drive
+from morfax.motion.usual import ACCELERATION_MM_S2, FASTEST_MM_S, FEED_MM_S, SLOWEST_MM_S
 
 OF_DRIVE = "drive_"  # the names of the drives' settings begin so
 
@@ -36,12 +37,12 @@ def _within(usual: float | None, least: float, most: float, what: str) -> Any:
 class Settings:
     """Settings of the head, by default the precise set; a setting that is None follows from the line."""
 
-    speed_mm_s: float = _within(10.0, 0.01, 1000, "tracing speed (WC)")
+    speed_mm_s: float = _within(FEED_MM_S, SLOWEST_MM_S, FASTEST_MM_S, "tracing speed (WC)")
     slowed: float = _within(
         0.3, 0.01, 1, "share of the speed while the look-ahead relay holds (SR)"
     )
     slow_s: float = _within(0.1, 0, 10, "how long the relay holds (DL)")
-    acceleration_mm_s2: float = _within(500.0, 1, 100_000, "of the tracing speed")
+    acceleration_mm_s2: float = _within(ACCELERATION_MM_S2, 1, 100_000, "of the tracing speed")
     sweep_hz: float = _within(250.0, 1, 750, "how often the cell swings (motor 45)")
     aperture_mm: float | None = _within(
         None, 0, 10, "spot through which a cell sees the drawing"

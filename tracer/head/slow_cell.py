@@ -24,7 +24,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.contour import distances_mm
-from morfax.motion.median import ROBUST, median
+from morfax.motion.median import OUTLIERS, ROBUST, median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.tracer.head import kernel, mount
@@ -49,7 +49,6 @@ KEEPS_FINE_MM = 0.017
 # grain moves the middle of a pencil's or dry pen's ink by 3 to 5 % of its width (standard deviation), over
 # more of the line than its stations show: twice that
 KEEPS_GRAINY_WIDTHS = 0.08
-KEEPS_ROUGH = 3.0  # standard deviations of a rough line's middle, as its width shows them
 # at its end it has to head as the way does: ink beside the line turns it before it is off the way. Few pixels
 # turn it by 0.2 at the most, the ticks that led it astray by 0.4 to 0.6 (664 stretches, 90 to 300 dpi)
 HEADS_RAD = 0.25
@@ -111,7 +110,7 @@ def keeps_mm(view: View, seen: Array) -> float:
     """
     widths = KEEPS_GRAINY_WIDTHS if view.grainy else KEEPS_WIDTHS
     by_view_mm = max(widths * view.width_mm, KEEPS_PX * view.pitch_mm, KEEPS_FINE_MM)
-    return max(by_view_mm, KEEPS_ROUGH * rough_mm(seen))
+    return max(by_view_mm, OUTLIERS * rough_mm(seen))
 
 
 def keeps_straight_mm(view: View) -> float:

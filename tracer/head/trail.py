@@ -22,6 +22,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import heading_between
 from morfax.tracer.head import loop
+from morfax.tracer.limits import NEAR
 from morfax.tracer.sensing.leg import Leg
 
 # Chosen by trial on the test drawings.
@@ -29,7 +30,6 @@ MEMORY_MM = 8.0  # how far back the rings know the way in: more than they grow
 ROOM = 1024  # places to begin with
 BOXED = 256  # places to a box: 7 mm of travel
 CHORD = 4  # places on either side, that a heading is taken over
-NEAR = 0.3  # of the line's width: a place of a leg this near to the trail has been followed
 MOSTLY = 0.5  # of a leg's first third: so many of its places
 
 

@@ -27,14 +27,13 @@ from morfax.tracer.ink.hatching import ALIKE, STRAIGHT, Hatching, hatching
 from morfax.tracer.ink.onward import Onward
 from morfax.tracer.ink.outlines import spurs
 from morfax.tracer.ink.partners import meeting_place
+from morfax.tracer.limits import CLEAR_WIDTHS
 
 # An arrowhead, by trial on drawings of parts; ISO 129 draws it 15 to 30 degrees wide.
 LEAST_WIDTHS, MOST_WIDTHS = 2.5, 45.0  # of its line: how long it is
 BASE = 1.6  # widths: as broad it is at the least where it is broadest
-OFF_WIDTHS = 1.5  # from the end of its line: the ink of what it points to
 TIP_WIDTHS = 3.0  # from the end of its line, at the most, it begins to grow
 LINE = 1.25  # times as wide as its line, and as far as that: line
-DROP_WIDTHS = 1.5  # within which it is as narrow as its line again
 GROWN = 1.3  # times as broad as its tip is its foot, where it is broadest, ...
 FOOT, AT_FOOT = 2.1, 0.85  # widths: two lines are less broad; and of its greatest breadth
 BROADEST = 3.0  # ... and so many widths broad at the most, as far as cells feel
@@ -56,13 +55,13 @@ def has_arrowhead(widths_mm: Array, step_mm: float, width_mm: float) -> bool:
     one = width_mm / step_mm  # stations to a width
     some = min(math.ceil(MOST_WIDTHS * one), len(widths_mm) // 2)
     widths = np.nan_to_num(widths_mm[:some], nan=math.inf) / width_mm
-    broad = np.flatnonzero(widths[math.ceil(OFF_WIDTHS * one) :] > BASE) + math.ceil(
-        OFF_WIDTHS * one
+    broad = np.flatnonzero(widths[math.ceil(CLEAR_WIDTHS * one) :] > BASE) + math.ceil(
+        CLEAR_WIDTHS * one
     )
     if not len(broad):
         return False
     base = int(broad[-1])
-    drop = math.ceil(DROP_WIDTHS * one)
+    drop = math.ceil(CLEAR_WIDTHS * one)
     behind = widths[base + drop : base + 3 * drop]
     if len(behind) < 2 * drop or not (behind < LINE).all():
         return False

@@ -30,19 +30,16 @@ from morfax.tracer.ink.both_lines import within_rims
 from morfax.tracer.ink.felt import Ends, feel_along, judged
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO
+from morfax.tracer.limits import WIDER
 from morfax.tracer.sensing.leg import FEWEST_STATIONS
 
 NOTHING = np.empty((0, 2))  # was felt between
 # All limits below were chosen by trial on pairs of lines and on line art.
-BROAD, SHARED = (
-    1.08,
-    1.15,
-)  # times the pen's width: ink that may be two lines', and that is all along
+# times the pen's width: ink that may be that of two lines is broader
+BROAD = 1.08
 LONG = 6.0  # widths of a pen: shorter broad ink is where others cross, or a blot
-OWN, LEAST = (
-    (0.75, 2.75),
-    0.6,
-)  # widths before a step a line shows where it leads, and so many at least
+# widths before a step: there a line shows where it leads, along so much at least
+OWN, LEAST = (0.75, 2.75), 0.6
 NARROWEST = 10.0  # percentile of a stretch's widths: parts of its ink are so narrow
 NARROW = 0.8  # times the pen's width: a line by itself is broader
 STEEP = 1.0  # widths: within them a line begins, its pen's radius and what the cells average
@@ -134,7 +131,7 @@ def _shared(stations: Run, pen_mm: float) -> Iterator[Shared | None]:
     few = max(1, round(pen_mm / run.view.step_mm))
     padded = np.pad(run.widths_mm, few // 2, mode="edge")
     averaged = np.convolve(padded, np.ones(few) / few, "same")[few // 2 :][: len(run)]
-    broad = np.flatnonzero(averaged > SHARED * pen_mm)
+    broad = np.flatnonzero(averaged > WIDER * pen_mm)
     for some in np.split(broad, np.flatnonzero(np.diff(broad) > few) + 1):
         if len(some) * run.view.step_mm > LONG * pen_mm:
             yield _part(run, (int(some[0]), int(some[-1]) + 1), pen_mm)
@@ -153,7 +150,7 @@ def _part(run: Run, part: tuple[int, int], pen_mm: float) -> Shared | None:
     """A broad part of a stretch as two lines; None if it is not that."""
     widths, step_mm = run.widths_mm, run.view.step_mm
     inside = widths[part[0] : part[1]]
-    if median(inside) < SHARED * pen_mm or inside.max() > TWO * pen_mm:
+    if median(inside) < WIDER * pen_mm or inside.max() > TWO * pen_mm:
         return None
     # 1. where the ink becomes broader, and narrower, within a width
     first = _step(widths[: part[1]], part[0], pen_mm, step_mm)

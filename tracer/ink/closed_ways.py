@@ -36,7 +36,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.polyline import length_mm
 from morfax.tracer.ink.aside import lines_aside
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
@@ -49,6 +49,7 @@ from morfax.tracer.ink.outlines import (
     straight_chains,
     turned_by,
 )
+from morfax.tracer.limits import BACK_RAD
 from morfax.tracer.sensing.leg import FACING
 
 # Chosen by trial on synthetic nets: what leaving a partner costs, and what a way may cost in all
@@ -57,7 +58,6 @@ ALONE, CORNER, SMOOTHLY, CROSSING, END, MOST = 0.1, 0.5, 1.0, 1.0, 1.5, 4.0
 ENDS = 1  # in a way
 NEARLY_ALL = 0.9  # of a net: a way round so much is its silhouette
 NEW_BY_END = 0.9  # of a way with an end is along no other
-SHARP = math.radians(150)  # a way that turns by more goes back
 
 NOT, PAST, CROSSES = 0, 1, 2  # how a line goes straight on where a way leaves it
 
@@ -122,7 +122,7 @@ def share_beside(chain: Chain, taken: set[int], junctions: Junctions) -> float:
     """The share of a chain that is along none of some lines."""
     lengths = {link.line: junctions.net.lines[link.line].length_mm for link in chain.links}
     beside_mm = sum(mm for line, mm in lengths.items() if line not in taken)
-    return beside_mm / max(sum(lengths.values()), 1e-9)
+    return beside_mm / max(sum(lengths.values()), NOT_ZERO)
 
 
 def _goes_round(chain: Chain, junctions: Junctions, aside: Set[int]) -> bool:
@@ -245,7 +245,7 @@ class _Search:
         there = self.junctions.at(far)
         one, other = there.leg(far), there.leg(near).turned_round()
         turned = turned_by(one, other)
-        if turned > SHARP or self.onward.are_of_two_pens(far, near):
+        if turned > BACK_RAD or self.onward.are_of_two_pens(far, near):
             return None
         are_alone = sum(side.line not in self.onward.aside for side in there.sides) == 2
         go_on = self.onward.goes_on(far) + self.onward.goes_on(near)

@@ -36,11 +36,11 @@ from morfax.tracer.ink.nib import (
 )
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO, Swelling, pen_of, pen_of_hollow, stands_out
+from morfax.tracer.limits import AS_WIDE, WIDER
 
 Flags = NDArray[np.bool_]
 
 # All limits below were chosen by trial on drawings of nets and on line art.
-SHARED = 1.15  # times the line's width: ink that two lines share is wider
 BROADER = 1.05  # times the pen's width: of ink into which two lines run at both its ends
 EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is one line
 # of it, where pens are of several widths: of their lines 0.12 at most, of two lines in one ink 0.14 or more
@@ -48,11 +48,10 @@ SWELLS = 0.13
 FROM_ENDS = 10.0  # widths: within them two lines that share a stretch have begun to
 HALF = 0.5  # of a short piece's stations tell its width
 CUT_WIDTHS = 1.8  # of its own: a shorter piece is where others cross
-ALIKE = 0.15  # of its width: a piece of the same two lines is about as broad, and as broad all along
 STRAIGHT_COS = 0.98  # 11 degrees
 PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the same two lines
 # the width of a line as the head wants it: of a narrower one pixels make the width swell; and where they are
-# ink or paper alone, and tell a width to one of them: `SHARED` is more then
+# ink or paper alone, and tell a width to one of them: `WIDER` is more then
 LEAST_PX = 3.0, 7.0
 LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 
@@ -135,7 +134,7 @@ def _of_the_pen(
     found: Mapping[int, Swelling], patch_of: Mapping[int, int], pen_mm: float
 ) -> dict[int, Swelling]:
     """The stretches of the patches of which some ink is as narrow as a line of the pen."""
-    own = {patch_of[n] for n, some in found.items() if some.known.min() < SHARED * pen_mm}
+    own = {patch_of[n] for n, some in found.items() if some.known.min() < WIDER * pen_mm}
     return {n: some for n, some in found.items() if patch_of[n] in own}
 
 
@@ -167,7 +166,7 @@ def _broad(run: Run, averaged: Array, pen_mm: float) -> Flags | None:
     """Which stations of a stretch lie in ink as broad as that of two lines; None if it is no long way."""
     if np.nanmax(averaged) > TWO * pen_mm:
         return None
-    flags = averaged > SHARED * pen_mm  # NaN is not
+    flags = averaged > WIDER * pen_mm  # NaN is not
     # near its ends a stretch shows no width: what is broad wherever it does is broad from end to end
     is_whole = bool((flags | np.isnan(averaged)).all())
     stations = len(flags) if is_whole else int(flags.sum())
@@ -220,8 +219,8 @@ def _is_piece(run: Run, pen_mm: float) -> bool:
     if len(known) < HALF * len(run):
         return False
     low_mm, usual_mm, high_mm = np.percentile(known, (25, 50, 75))
-    is_two = SHARED * pen_mm < usual_mm < TWO * pen_mm
-    is_even = high_mm - low_mm < ALIKE * usual_mm
+    is_two = WIDER * pen_mm < usual_mm < TWO * pen_mm
+    is_even = high_mm - low_mm < AS_WIDE * usual_mm
     return bool(is_two and is_even and run.length_mm > CUT_WIDTHS * usual_mm)
 
 
@@ -239,7 +238,7 @@ def _is_straight_on(run: Run, other: Run, pen_mm: float) -> bool:
         if (
             math.hypot(*gap) < PAST * pen_mm
             and min(_cos(way, far), _cos(way, gap + far)) > STRAIGHT_COS
-            and abs(np.nanmedian(run.widths_mm) / np.nanmedian(widths) - 1) < ALIKE
+            and abs(np.nanmedian(run.widths_mm) / np.nanmedian(widths) - 1) < AS_WIDE
         ):
             return True
     return False

@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.long_array import one_in
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly
@@ -40,7 +40,6 @@ HALF = 0.5
 TWO_LINES = 1.0  # pen's widths: a way no further from the middle of doubled ink runs in it
 # of doubled ink: its lines bend, and are a little longer or shorter than its middle
 ONCE_SHARE = 0.1
-TINY = 1e-9  # so that a sheet of nothing but filled shapes has a share
 
 
 Patch = tuple[float, float, float]  # about where its middle is, and its length, mm
@@ -81,7 +80,7 @@ class Balance(NamedTuple):
     @property
     def all_mm(self) -> float:
         """The length of the lines' ink: what was left out on purpose apart."""
-        return max(self.followed_mm + self.left_mm + self.pale_mm + self.single_mm, TINY)
+        return max(self.followed_mm + self.left_mm + self.pale_mm + self.single_mm, NOT_ZERO)
 
     @property
     def solids(self) -> list[Area]:
@@ -144,7 +143,7 @@ def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
         # as of a patch, see `drawing.strokes`
         wide_px = 4 * float(depth[left.ink > 0].mean()) - 2
         return max(wide_px, 1.0) * sheet.drawing.pitch_mm
-    weights = np.where(sheet.are_solid, TINY, sheet.lengths_mm)
+    weights = np.where(sheet.are_solid, NOT_ZERO, sheet.lengths_mm)
     return float(np.average(sheet.widths_mm, weights=weights))
 
 

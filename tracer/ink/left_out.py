@@ -21,11 +21,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.components import FEW_PX, INK, SOFTENED_PX, Mask, strips
+from morfax.tracer.drawing.components import INK, SOFTENED_PX, Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.lettering import lettering, lower_than
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.limits import FEW_PX
 
 HALO_PX = 8  # beside a strip: softening looks no further
 OUTLINE_PX = 0.5  # so near an outline is drawn, for the eye

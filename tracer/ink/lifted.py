@@ -28,10 +28,12 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import left_of_headings
+from morfax.tracer.limits import FADES
 from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.pen import INKED, ink_at
+from morfax.tracer.tangles.pen import ink_at
 from morfax.tracer.tangles.sketch import softness_of
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -48,7 +50,6 @@ STEP_MM = 0.01  # of ends that are tried
 ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
 ROUNDS = 3  # in which lines that end in each other's ink have their ends found
 WAY_MM = 0.05  # between places of a line that may be the others' ink
-FEWEST = 8  # stations of a leg tell how soft its edges are
 EVERY_PX = 0.7  # a place is looked at
 # of the line's darkness: no pen leaves its ink more exactly; and deviations, for places share what they see
 INEXACT, DEVIATIONS = 0.05, 5.0
@@ -161,7 +162,7 @@ def _misfits(places, pen, ends_mm, out):  # type: ignore[no-untyped-def]
     Places, in order: along the line, beside it, distance from the others, mm, the direction from them, in the
     line's own, and what is seen; (n, 6). The pen: half its width, softness, mm.
     """
-    reach_mm, least = pen[0] + math.sqrt(2.0) * INKED * pen[1], math.inf
+    reach_mm, least = pen[0] + math.sqrt(2.0) * FADES * pen[1], math.inf
     # 1. what all places come to that the line has passed, or has not come to
     count = len(places)
     passed, left = np.zeros(count + 1), np.zeros(count + 1)

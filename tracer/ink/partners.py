@@ -23,7 +23,7 @@ from itertools import combinations
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.curves import hermite
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.head.course import SMOOTH, on_ink, through_nodes
@@ -43,7 +43,7 @@ NEARER = 0.05  # widths: a way that is so much nearer to its rims, in the mean, 
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
 # 945 pairings; of more legs the straightest are paired first, and partners exchanged
 MOST_LEGS = 10
-NOBODY, ROUNDED = -1, 1e-9
+NOBODY = -1
 
 Pair = tuple[int, int]
 

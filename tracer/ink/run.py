@@ -17,12 +17,17 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.sensing.leg import Leg, leg_of
-from morfax.tracer.sensing.moments import NO_PLACES, parabola_of, straight_of, with_place
+from morfax.tracer.sensing.moments import (
+    NO_PLACES,
+    bend_of,
+    parabola_of,
+    straight_of,
+    with_place,
+)
 from morfax.tracer.sensing.view import View
 
 LEAST_PLACES = 5  # for a parabola of their own; by trial
 LEAST_WEIGHT = 0.01  # of a place at the window's end: a line that is bent counts there too
-SINGULAR = 1e-12  # of the moments' product: places on one spot
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,11 +144,11 @@ def parabolas(places, half_mm, step_mm):  # type: ignore[no-untyped-def]
             x = (places[k, 0] - places[n, 0]) * c + (places[k, 1] - places[n, 1]) * s
             y = (places[k, 1] - places[n, 1]) * c - (places[k, 0] - places[n, 0]) * s
             sums = with_place(sums, max(1.0 - (x / half) ** 2, LEAST_WEIGHT), x, y)
-        is_one, p0, p1, p2 = parabola_of(sums, SINGULAR)
+        is_one, p0, p1, p2 = parabola_of(sums)
         one_sided = n - first < 2 or last - n < 2
         if last - first + 1 < LEAST_PLACES or one_sided or not is_one:
             p0, p1, p2 = straight_of(sums)
         smooth[n, 0], smooth[n, 1] = places[n, 0] - p0 * s, places[n, 1] + p0 * c
         headings[n] = math.atan2(s, c) + math.atan(p1)
-        bends[n] = 2.0 * p2 / (1.0 + p1 * p1) ** 1.5
+        bends[n] = bend_of(p1, 2.0 * p2)
     return smooth, headings, bends

@@ -25,13 +25,13 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.plane import SAME_MM, left_of_headings, unit
+from morfax.motion.plane import CORNER_RAD, SAME_MM, left_of_headings, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.tracer.ink.run import Run
+from morfax.tracer.limits import EVERY_MM, ROUNDS
 from morfax.tracer.sensing.parabola import FEWEST
 
 # All limits below were chosen by trial on drawings of nets.
-ALONG_COS = 0.94  # 20 degrees: a stretch that goes another way is not this line's
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
 ABREAST = 0.25  # widths: a station further before or behind a place tells nothing of it
 # widths: ink as broad, for as long, is that of two lines beside each other
@@ -44,8 +44,6 @@ EXACT_MM = 0.03  # a rim, felt every `EVERY_MM`: neighbours err alike
 # deviations: of the heading of a leg at its end, rad; 16 times of how far a way bulges
 TURNED, HUMP_MM = 0.01, 1.0
 FITS = 0.8  # of the places are as near to their rims as these are exact
-AGAIN = 6  # times weights are found anew
-EVERY_MM = 0.05  # a way is looked at
 
 
 class SharedInk(NamedTuple):
@@ -175,7 +173,7 @@ def _goes_along(way: Array, at: NDArray[np.int64], normals: Array) -> NDArray[np
     """Whether a way goes along the ink at some of its places, whose normals are given."""
     ways = np.gradient(way, axis=0)[at]
     across = np.abs(np.sum(ways * normals, axis=1)) / np.maximum(np.hypot(*ways.T), NOT_ZERO)
-    return np.asarray(across < math.sqrt(1 - ALONG_COS**2))
+    return np.asarray(across < math.sin(CORNER_RAD))
 
 
 def _bent(some: Array, share: Array, off: _Off) -> Array:
@@ -195,7 +193,7 @@ def _bent(some: Array, share: Array, off: _Off) -> Array:
     )
     held = np.diag(1 / np.array([TURNED, TURNED, HUMP_MM, HUMP_MM]))
     weights = off.sure / EXACT_MM
-    for _ in range(AGAIN):
+    for _ in range(ROUNDS):
         rows = np.vstack([shapes * weights[:, None], held])
         shape = np.linalg.lstsq(rows, np.r_[wanted * weights, np.zeros(4)])[0]
         misfit = np.abs(wanted - shapes @ shape)

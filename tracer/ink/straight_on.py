@@ -17,18 +17,17 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import unit
 from morfax.motion.polyline import length_mm
-from morfax.tracer.ink.doubled import SHARED
+from morfax.tracer.drawing.broad import SHORT_WIDTHS
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.graph import Graph
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO
+from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
 
 # All limits below were chosen by trial on drawings of nets.
-SHORT_WIDTHS = 30.0  # a shorter stretch is judged by the widths of those beside it, too
 FAR = 6  # stretches straight on to either side
 STRAIGHT_COS = 0.85  # 32 degrees
 AS_BROAD = 0.06  # of its width: two stretches that differ by less are one line's
-AWAY_WIDTHS = 3.0  # from a node, over which a stretch shows where it leads
 HALF = 0.5
 
 
@@ -95,7 +94,7 @@ class StraightOn:
         """The direction in which a stretch leaves the node at its end, (x, y)."""
         run = self.felt[number]
         places = run.places_mm[::-1] if last else run.places_mm
-        far = min(len(places) - 1, round(AWAY_WIDTHS * run.view.width_mm / run.view.step_mm))
+        far = min(len(places) - 1, round(ABOUT_WIDTHS * run.view.width_mm / run.view.step_mm))
         return unit(places[far] - places[0])
 
 
@@ -108,7 +107,7 @@ def of_two_lines(
     """
     for n, (long_mm, width_mm, _) in enumerate(measured):
         is_short = long_mm < SHORT_WIDTHS * width_mm
-        if not (is_short and SHARED * pen_mm < width_mm < TWO * pen_mm):
+        if not (is_short and WIDER * pen_mm < width_mm < TWO * pen_mm):
             continue
         further = straight.through(n) - {n}
         alike = {m for m in further if abs(measured[m].width_mm / width_mm - 1) < AS_BROAD}

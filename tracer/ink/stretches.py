@@ -15,13 +15,14 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median, weighted_median
+from morfax.tracer.drawing.broad import SHORT_WIDTHS
 from morfax.tracer.drawing.components import Mask
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Window
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.apertures import feel_all
 from morfax.tracer.ink.beside import Beside, lines_beside
-from morfax.tracer.ink.doubled import BROADER, LEAST_PX, SHARED, Doubled
+from morfax.tracer.ink.doubled import BROADER, LEAST_PX, Doubled
 from morfax.tracer.ink.felt import (
     Ends,
     Parted,
@@ -31,8 +32,9 @@ from morfax.tracer.ink.felt import (
 )
 from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
-from morfax.tracer.ink.straight_on import SHORT_WIDTHS, Measured, StraightOn, of_two_lines
+from morfax.tracer.ink.straight_on import Measured, StraightOn, of_two_lines
 from morfax.tracer.ink.swelling import Swelling, narrow_of
+from morfax.tracer.limits import WIDER
 
 # All limits below were chosen by trial on drawings of nets.
 # a short one, with those into which it goes straight on, is long enough to tell its width
@@ -99,7 +101,7 @@ class FeltSheet:
         is_whole = number in doubled.throughout(self.felt)
         if not doubled.is_sure or number not in doubled.stations or is_whole:
             return clean, parted
-        shared_mm = SHARED * doubled.pen_mm
+        shared_mm = WIDER * doubled.pen_mm
         own = [n for n, run in enumerate(clean) if median(run.widths_mm) < shared_mm]
         if not own:
             return clean, parted
@@ -110,7 +112,7 @@ class FeltSheet:
         measured = self.measured[number]
         if number in self.together or measured.known < HALF:
             return True
-        return measured.width_mm > SHARED * self.widths_mm[number]
+        return measured.width_mm > WIDER * self.widths_mm[number]
 
     def is_broad(self, number: int) -> bool:
         """Whether a stretch is broader than the pen of a clean sheet; of another sheet that is not known."""

@@ -33,12 +33,12 @@ from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.following.followed import THINNED
-from morfax.tracer.ink.doubled import SHARED
 from morfax.tracer.ink.track import InkStroke
+from morfax.tracer.limits import WIDER
 
 # All limits but `SAME` were chosen by trial on wedges, lines that touch, and colouring pages.
 EVERY = 0.2  # widths: between places along a stroke
-SAME = SHARED - 1.0  # widths: ink of two lines as near as that is as narrow as one's
+SAME = WIDER - 1.0  # widths: ink of two lines as near as that is as narrow as one's
 BESIDE = 0.5  # widths: a line further from another has ink of its own
 ALONG_COS = 0.97  # 14 degrees: a line that turns off by more crosses the other
 ROUND = 4.0  # widths along one stroke: nearer places of it are the same line

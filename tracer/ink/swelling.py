@@ -22,10 +22,10 @@ from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.hollow import Hollow, hollow
 from morfax.tracer.ink.felt import Ends
 from morfax.tracer.ink.run import Run
+from morfax.tracer.limits import CLEAR_WIDTHS
 
 # All limits below were chosen by trial on drawings of nets and on line art.
 AVERAGED = 2.0  # widths over which a width is averaged
-BESIDE = 1.5  # widths from the ends of a stretch: there others cross it
 NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
 # of the pen's width about it; of the ink, which is as narrow
 SO_NARROW, LEAST_NARROW = 0.05, 0.05
@@ -56,7 +56,7 @@ class Swelling(NamedTuple):
         if known.sum() < FEWEST:
             return None
         usual_mm = median(run.widths_mm[known])
-        off = math.ceil(BESIDE * usual_mm / run.view.step_mm)
+        off = math.ceil(CLEAR_WIDTHS * usual_mm / run.view.step_mm)
         inside = known.copy()
         inside[:off] = inside[len(run) - off :] = False
         if inside.sum() < FEWEST:

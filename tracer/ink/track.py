@@ -42,6 +42,7 @@ from morfax.tracer.ink.partners import way_through
 from morfax.tracer.ink.pieces import Piece, cut_open, pieces_of
 from morfax.tracer.ink.run import Run
 from morfax.tracer.junctions.planner import Planner
+from morfax.tracer.limits import NEAR
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
 
@@ -53,7 +54,6 @@ ROUND, SLACK_MM = 1.6, 1.0
 LEAST_MM = 0.15  # a shorter way before that is none
 NEAR_MM = 2.0  # a head further from a leg's end is before it, however the line has come round
 BEYOND_LEADS = 0.5  # leads: a piece that is no longer beyond its lead is run from memory
-STRAYED = 0.3  # widths: a head so far beside what was felt has left the line
 LOOKED_AT = 60  # one position in so many is held against what was felt
 SLOWLY_LEGS = 3.0  # the cell goes on by itself for so many legs, then fast again
 PAST_MM = 0.3  # stations lead beyond a stub, until its ink no longer draws the cell
@@ -208,7 +208,7 @@ class InkHead:
             / run.view.step_mm
         )
         felt = run.places_mm[max(0, at - 20) : at + beyond]
-        return bool(nearest_mm(newest, felt).max() > STRAYED * run.view.width_mm)
+        return bool(nearest_mm(newest, felt).max() > NEAR * run.view.width_mm)
 
     def through(self, run: Run, onward: Piece) -> None:
         """From a run's end through what parts it from the next, and aimed at that."""

@@ -21,27 +21,26 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import CORNER_RAD
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.junctions.rings import legs_around
+from morfax.tracer.limits import NEAR
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import STRAIGHT, Leg, goes_straight, turn, turns_off
-from morfax.tracer.sensing.probe import reach_of_ink, stroke_end
+from morfax.tracer.sensing.probe import END_MM, END_WIDTHS, reach_of_ink, stroke_end
 from morfax.tracer.sensing.side import Side
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
 # two legs within this of one line are the line that the head comes to
-SQUARE = math.radians(20)
 BESIDE = 0.35  # of the width: they lie on one line
 # widths ahead where a line is sought that turns back to a side: at first its ink runs along with the way in
 SIDEWAYS_WIDTHS = (0.0, 1.0, 2.0)
 # a lead line may be drawn so far beyond the contour's edge
 OVERRUN_MM, OVERRUN_WIDTHS = 1.5, 2.0
-REACH_MM, REACH_WIDTHS = 2.0, 6.0  # how far ahead the ink's end is sought
 LOOKS = 3  # about a place, and then about the vertex found there
-THERE = 0.3  # of the width: the rings stood about the vertex
 
 
 class Asked(NamedTuple):
@@ -102,7 +101,7 @@ def survey(way_in: WayIn, asked: Asked = STRAIGHTEST) -> Choice:
     view, incoming = way_in.view, way_in.incoming
     half = 0.5 * view.width_mm
     near = half + view.step_mm
-    ink = reach_of_ink(view, incoming, REACH_WIDTHS * view.width_mm + REACH_MM)
+    ink = reach_of_ink(view, incoming, END_WIDTHS * view.width_mm + END_MM)
     around = _Survey(way_in, asked)
     # 1. where the line stops being clean
     begin = near if ink is None else max(0.0, min(near, ink - half))
@@ -155,7 +154,7 @@ class _Survey:
             corner = Corner.of(incoming, leg)
             if corner is None or corner.beyond_mm < -view.width_mm:
                 break
-            if np.hypot(*(corner.vertex_mm - centre)) < THERE * view.width_mm:
+            if np.hypot(*(corner.vertex_mm - centre)) < NEAR * view.width_mm:
                 break
             centre = corner.vertex_mm
         return Choice(leg, corner, count)
@@ -178,7 +177,7 @@ class _Survey:
         if rank == 0 and len(legs) > 1:
             one = self._turn(legs[0])
             other = self._turn(legs[1])
-            if abs(one) > STRAIGHT and abs(one + other) < SQUARE:
+            if abs(one) > STRAIGHT and abs(one + other) < CORNER_RAD:
                 return max(legs[:2], key=self._turn)
         return legs[min(rank, len(legs) - 1)]
 
@@ -259,7 +258,7 @@ def _bent(one: Leg, other: Leg) -> float:
 
 def _passing(legs: Sequence[Leg]) -> bool:
     """Whether any two legs are about one line."""
-    return any(_bent(a, b) < SQUARE for a, b in combinations(legs, 2))
+    return any(_bent(a, b) < CORNER_RAD for a, b in combinations(legs, 2))
 
 
 def is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
@@ -271,6 +270,6 @@ def is_aside(incoming: Leg, leg: Leg, side: Side) -> bool:
 def _is_across(leg: Leg, legs: list[Leg], reach_mm: list[float]) -> bool:
     """Whether another stroke that ends soon lies in line with a leg, on the other side."""
     return any(
-        math.isfinite(mm) and _bent(leg, other) < SQUARE
+        math.isfinite(mm) and _bent(leg, other) < CORNER_RAD
         for other, mm in zip(legs, reach_mm, strict=True)
     )

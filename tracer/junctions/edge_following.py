@@ -29,6 +29,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding
+from morfax.tracer.limits import ABOUT_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, TURNS_BACK, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
@@ -40,7 +41,6 @@ FARTHEST_MM = 40.0
 WELL_WITHIN = 10  # stations from a leg's clean end: both edges are clean there
 CHORD = 5  # stations that a heading is taken over
 REGAINED_MM = 1.5  # after this much of both edges the line is by itself again
-BESIDE = 4.0  # widths; ink that is beside the line for less is a corner or a crossing
 JUMP = 0.25  # of the width, from station to station: the far edge is no longer the same
 WIDE = 0.62  # of the width, from the middle to the far edge: ink beside the line
 FEWEST_BACK = 6  # stations that make a way to a tip, or back from it
@@ -48,14 +48,12 @@ FEWEST_BACK = 6  # stations that make a way to a tip, or back from it
 # of the way clear of a vertex: a line that passes is seen there
 PASSED = np.array([0.4, 0.6, 0.8, 1.0])
 CLEAR_WIDTHS, CLEAR_ACROSS, LEAST_SINE = 1.5, 1.2, 0.1  # that way: beyond the other leg's ink
-FARTHEST_CLEAR = 4.0  # widths; if it is longer, the legs are too nearly in line to tell
 # of the width: by so much a line that passes may be wider, and off the leg's line
 LIKE, CENTRED = 0.2, 0.8
 BEFORE, BEYOND = 0.5, 1.0  # widths that a vertex may move towards the legs, and away from them
 
 NEAR_EDGE = 0.2  # of the width from the middle: the edge that is followed is further out
 OFF, OFF_PX = 1 / 6, 0.2  # of the width, and pixels: farther off its place the edge is lost
-ACROSS = 3.0  # widths to which edges are looked for
 
 
 class Walk(NamedTuple):
@@ -126,7 +124,7 @@ def _passes(view: View, leg: Leg, vertex_mm: float, turned: float) -> bool:
     clear_mm = view.width_mm * max(
         CLEAR_WIDTHS, CLEAR_ACROSS / max(abs(math.sin(turned)), LEAST_SINE)
     )
-    if clear_mm > FARTHEST_CLEAR * view.width_mm:
+    if clear_mm > LONGER_WIDTHS * view.width_mm:
         return False
     if not all(view.dark(place) for place in leg.at(vertex_mm + clear_mm * PASSED)):
         return False
@@ -190,7 +188,7 @@ def _run_on(view: View, incoming: Leg, side: float) -> EdgeRun | None:
     stations = felt[:-2]
     # 2. where ink is beside them
     wide = np.flatnonzero(~(stations[:, 2] < WIDE * width))
-    if not len(wide) or (wide[-1] - wide[0]) * step < BESIDE * width:
+    if not len(wide) or (wide[-1] - wide[0]) * step < LONGER_WIDTHS * width:
         return None
     # 3. past that ink, or back from the tip where it ends
     seen = np.column_stack([stations[:, :2], np.full(len(stations), width)])
@@ -253,7 +251,7 @@ def _from_tip(excess: Array, first: int, tip: int, jump_mm: float) -> list[int]:
 @njit(cache=True)
 def _along_edge(cells, pose, side, width_mm, walk):  # type: ignore[no-untyped-def]
     """Stations (n, 3) from a pose (x mm, y mm, heading rad) on: the middle, half a width within the edge on
-    one side, and the distance to the first light on the other (NaN beyond `ACROSS`).
+    one side, and the distance to the first light on the other (NaN beyond `ABOUT_WIDTHS`).
 
     It stops where that edge or the ink under the middle is lost, or when the line has been by itself for
     `regained` stations after ink beside it.
@@ -262,7 +260,7 @@ def _along_edge(cells, pose, side, width_mm, walk):  # type: ignore[no-untyped-d
     x, y, heading = pose
     alone, been_wide = 0, False
     near = NEAR_EDGE * width_mm
-    across = ACROSS * width_mm
+    across = ABOUT_WIDTHS * width_mm
     for n in range(walk.stations):
         # 1. the edge, and the middle half a width within it
         if darkness_at(cells, x, y) < cells.level:

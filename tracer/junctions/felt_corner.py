@@ -64,15 +64,20 @@ class FeltCorner(NamedTuple):
         incoming = leg_of(self.seen[: self.station - SKIPPED], True, view.leg_mm)
         return incoming, leg_of(self.seen[self.station + SKIPPED + 1 :], False, view.leg_mm)
 
-    def corner(self, view: View, back: int, on: int) -> Corner | None:
-        """The corner of legs that end so many stations further back, and begin so many further on; None if
-        one of them is too short, or they do not meet.
+    def legs_beyond(self, view: View, back: int, on: int) -> tuple[Leg, Leg] | None:
+        """The legs that end so many stations further back, and begin so many further on; None if one of them
+        is too short.
         """
         last, first = self.station - SKIPPED - 1 - back, self.station + SKIPPED + 1 + on
         if last + 1 < LEG_STATIONS or first > len(self.seen) - LEG_STATIONS:
             return None
         incoming = leg_of(self.seen[: last + 1], True, view.leg_mm)
-        return Corner.of(incoming, leg_of(self.seen[first:], False, view.leg_mm))
+        return incoming, leg_of(self.seen[first:], False, view.leg_mm)
+
+    def corner(self, view: View, back: int, on: int) -> Corner | None:
+        """The corner of these legs; None without them, or if they do not meet."""
+        legs = self.legs_beyond(view, back, on)
+        return None if legs is None else Corner.of(*legs)
 
 
 def corner_ahead(view: View, seen: Array, here: int) -> FeltCorner | None:

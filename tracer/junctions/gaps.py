@@ -18,9 +18,10 @@ import numpy as np
 from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.motion.plane import heading_of
-from morfax.tracer.junctions.line_ahead import FARTHEST_WIDTHS, straight_on
+from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.parabola import FEWEST
+from morfax.tracer.sensing.probe import END_WIDTHS
 from morfax.tracer.sensing.view import View
 
 EVERY_MM = 0.1  # gaps are tried in these steps: the option shows as many digits
@@ -54,7 +55,7 @@ def _gap_mm(view: View, way_mm: Array) -> float | None:
     if len(seen) < FEWEST:
         return None
     leg = leg_of(seen, True, view.leg_mm)
-    most_mm = FARTHEST_WIDTHS * view.width_mm
+    most_mm = END_WIDTHS * view.width_mm
     if straight_on(view, leg, most_mm) is None:
         return None
     gaps = np.arange(EVERY_MM, most_mm, EVERY_MM)

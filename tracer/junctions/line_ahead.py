@@ -19,23 +19,22 @@ from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.motion.plane import cross, direction, heading_of
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.photocell import STEP_PX
-from morfax.tracer.sensing.probe import reach_of_ink
+from morfax.tracer.sensing.probe import END_WIDTHS, reach_of_ink
 from morfax.tracer.sensing.scout import REACH, REACH_PX
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
 AHEAD = math.radians(75)  # a lost line is looked for within this of its heading
-FARTHEST_WIDTHS = 6.0  # how far the heading is held through a blot, in widths of the line
 BEGIN = 0.5  # of the width: a leg begins no further from the place where it is sought
 ARCS_APART = 0.5  # widths
 WIDE_GAP_MM = 1.0  # twice the usual gap: over less a leg's own bend will do
 LOOKS_BACK = 2.0  # gaps: so much of the line shows on what circle it goes on
 # of the width: the line has been a circle if it lies within this, root mean square
 OFF_CIRCLE = 0.1
-OFF_PLACE = 1.5  # widths from a place on ink, beyond its own blot: legs leave it there
 
 
 def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
@@ -55,7 +54,7 @@ def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
 
 def looks_mm(view: View, gap_mm: float) -> float:
     """How far from a leg's end it is looked for the line straight ahead, or felt back, mm."""
-    ahead_mm = FARTHEST_WIDTHS * view.width_mm + gap_mm + view.leg_mm
+    ahead_mm = END_WIDTHS * view.width_mm + gap_mm + view.leg_mm
     beside_mm = (REACH + BEGIN) * view.width_mm + (REACH_PX + 1) * view.pitch_mm
     return max(ahead_mm, LOOKS_BACK * gap_mm) + beside_mm
 
@@ -82,7 +81,7 @@ def _round_about(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
 def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
     """The clean line met by going on along a leg."""
     paper_mm, step = 0.0, STEP_PX * view.pitch_mm
-    farthest_mm = FARTHEST_WIDTHS * view.width_mm + gap_mm
+    farthest_mm = END_WIDTHS * view.width_mm + gap_mm
     for along in np.arange(0.5 * view.width_mm, farthest_mm, step):
         place = incoming.at(along)
         paper_mm = 0.0 if view.dark(place) else paper_mm + step
@@ -124,7 +123,7 @@ def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> L
 
 def _from(view: View, place: Array) -> list[Leg]:
     """The clean legs that leave a place on ink."""
-    found, away_mm = [], OFF_PLACE * view.width_mm
+    found, away_mm = [], CLEAR_WIDTHS * view.width_mm
     for arc in view.ring(place, away_mm):
         heading = float(arc.mean())
         start = place + away_mm * direction(heading)

@@ -31,14 +31,15 @@ from morfax.tracer.junctions.corner import (
 )
 from morfax.tracer.junctions.edge_following import EdgeRun, follow_edge, to_vertex
 from morfax.tracer.junctions.line_ahead import (
-    FARTHEST_WIDTHS,
     caught_again,
     looks_mm,
     straight_on,
 )
 from morfax.tracer.junctions.width_change import Onward, another_pen
-from morfax.tracer.sensing.leg import Leg, goes_straight, leg_of, turn
+from morfax.tracer.limits import LONGER_WIDTHS
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.photocell import STEP_PX
+from morfax.tracer.sensing.probe import END_WIDTHS
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
@@ -46,9 +47,7 @@ LEAST_GAP_PX = 2.5  # a scan can lose this much of a line
 FAINTER = 0.5  # of the level: a line may become lighter at once by half
 ACROSS = np.linspace(-0.5, 0.5, 7)  # of the width: where a faint line's ink is looked for
 SPECK_PX = 4.5  # between stations of a line that is clean but for a speck
-FAR_WIDTHS = 4.0  # ink beside the line for longer may be the line's own way back
 BEYOND_MM = 0.05  # a course ends at least so far beyond the vertex
-LEAST_BEYOND = 4  # stations behind a junction, to know where they lead
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +101,7 @@ class Planner:
             return self._by_choice(incoming, leg, choice.corner)
         if not straight:
             return None
-        farthest_mm = FARTHEST_WIDTHS * self.view.width_mm
+        farthest_mm = END_WIDTHS * self.view.width_mm
         gap_mm = max(self.settings.gap_mm, farthest_mm)
         wider = replace(self, settings=replace(self.settings, gap_mm=gap_mm))
         outgoing = wider._straight_on(incoming, others=False)
@@ -250,7 +249,7 @@ class Planner:
     def _goes_back(self, seen: Array) -> bool:
         """Whether what was felt from a width behind a junction on has been followed the other way."""
         width_mm = self.view.width_mm
-        first = min(round(width_mm / self.view.step_mm), len(seen) - LEAST_BEYOND)
+        first = min(round(width_mm / self.view.step_mm), len(seen) - FEWEST_STATIONS)
         leg = leg_of(seen[first:], False, self.view.leg_mm)
         return self.trail.holds(leg, width_mm) and self.trail.comes_back(leg)
 
@@ -258,4 +257,4 @@ class Planner:
         """Whether the ink runs beside the line for so long that it may be the line's own way back."""
         if outgoing is None:
             return False
-        return course.ahead_mm(incoming.end_mm, outgoing) > FAR_WIDTHS * self.view.width_mm
+        return course.ahead_mm(incoming.end_mm, outgoing) > LONGER_WIDTHS * self.view.width_mm

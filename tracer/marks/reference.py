@@ -34,9 +34,10 @@ from morfax.motion.median import median
 from morfax.motion.plane import direction
 from morfax.tracer.drawing.holes import holes
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.limits import WIDER
 from morfax.tracer.marks.crosses import crosses
 from morfax.tracer.marks.sizes import BOX, CROSS_MM, RING_LIKE, RING_ROUND, RING_SEEN
-from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS
 from morfax.tracer.sensing.spokes import SPOKES, WAYS, spokes
 from morfax.tracer.sensing.view import View
@@ -46,8 +47,6 @@ MOST_PX = 50_000_000  # of a patch that is searched for holes: a tenth of a seco
 BESIDE = np.arange(SPOKES) - 1  # of each spoke, the one before it
 BEYOND = np.array([1.5, 1.9, 2.3])  # widths beyond the arms, at which the lead line is sought
 PARTING = 3.0  # widths round a cross or a ring: two lines that leave it nearer to each other part there
-WIDENED = 1.15  # widths: a line that is broader is two, still side by side
-FEWEST = 4  # stations that show a width
 
 Kind = Literal["cross", "ring", "symbol"]
 
@@ -199,7 +198,7 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
         way = direction(heading)
         for start in centre + (reach_mm + BEYOND[:, None] * view.width_mm) * way:
             seen = view.feel(start, heading, view.leg_mm)
-            if len(seen) < FEWEST:
+            if len(seen) < FEWEST_STATIONS:
                 continue
             if _widens(view, seen):
                 break
@@ -220,7 +219,7 @@ def _round(along_mm: Array, circle_mm: float) -> Array:
 def _widens(view: View, seen: Array) -> bool:
     """Whether a line that is clean for less than a leg has grown wider until then: two lines part there."""
     is_short = (len(seen) - 1) * view.step_mm < view.leg_mm - view.step_mm
-    return is_short and median(seen[-FEWEST:, 2]) > WIDENED * view.width_mm
+    return is_short and median(seen[-FEWEST_STATIONS:, 2]) > WIDER * view.width_mm
 
 
 def _ring(view: View, place: Array) -> Reference | None:

@@ -10,13 +10,15 @@ from __future__ import annotations
 
 import math
 
+from morfax.tracer.limits import AHEAD_RAD
+
 # a tick: a short stroke across the line or beside it
 LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # it reaches at least this far beyond the line's edge
 LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0  # and at most, across the line, on each side
 # a tick that touches the line on one side: a longer stroke is a line that begins there
 BESIDE_MM, BESIDE_WIDTHS = 3.5, 7.0
 FARTHEST_MM = 1.5  # from the line's edge to a tick beside it
-SLANT = math.tan(math.radians(40))  # from square to the line, at most
+SLANT = math.tan(AHEAD_RAD)  # from square to the line, at most
 BENT_MM = 0.1  # root mean square distance from a straight line, at most
 # width, of the line's: of a tick, and of ink that is looked at, for a line that crosses may show half
 LIKE, SEEN = (0.5, 1.6), (0.3, 2.0)

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from morfax.motion.toml_fields import Field
 from morfax.motion.units import parse_length_mm
-from morfax.tracer.operator.zunit import COUNT_MM, COUNTS_PER_MM, LARGEST_COUNT, counts_of
+from morfax.motion.usual import COUNT_MM
+from morfax.tracer.operator.zunit import COUNTS_PER_MM, LARGEST_COUNT, counts_of
 
 
 def counts_in(field: Field, least: int = 1) -> int:

@@ -37,17 +37,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion import ramp
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.usual import COUNT_MM
 
-COUNT_MM = 0.01  # one pulse of disc 128
-COUNTS_PER_MM = 100
+COUNTS_PER_MM = round(1 / COUNT_MM)
 LARGEST_COUNT = 99_999  # five decades
 ACCELERATION_MM_S2 = 200.0  # of the Z motor: our own figure
-_OFF_COUNT = 1e-6  # of a count: what arithmetic with inches leaves over
-# of a count: what rounding takes off a pulse that has passed, 1e5 counts in 53 bits
-_PULSE = 1e-9
 
 
 Sense = Literal["up", "down"]
@@ -127,7 +124,7 @@ class QuillMove:
 def counts_of(length_mm: float) -> int:
     """Whole counts of a length; raises ValueError for parts of a count."""
     counts = round(length_mm * COUNTS_PER_MM)
-    if abs(length_mm * COUNTS_PER_MM - counts) > _OFF_COUNT:
+    if abs(length_mm * COUNTS_PER_MM - counts) > ROUNDED:
         raise ValueError(
             f"{length_mm:g} mm cannot be counted; give whole steps of {COUNT_MM:g} mm"
         )
@@ -162,7 +159,7 @@ def z_moves(
 
 def counted(come_mm: Array, pulse_mm: float = COUNT_MM) -> NDArray[np.int64]:
     """What the counters show at each place of a move, from its start: pulses of disc 128, up and down."""
-    return np.trunc(come_mm / pulse_mm + np.copysign(_PULSE, come_mm)).astype(np.int64)
+    return np.trunc(come_mm / pulse_mm + np.copysign(ROUNDED, come_mm)).astype(np.int64)
 
 
 def coincidence(shown: NDArray[np.int64], counts: int) -> int | None:

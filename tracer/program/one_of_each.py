@@ -28,7 +28,9 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.following.start import a_dark_area
 from morfax.tracer.marks.reference import LARGEST_MM
+from morfax.tracer.program.laid.bridges import bridged
 from morfax.tracer.program.laid.small_loops import SmallLoops
+from morfax.tracer.program.laid.touches import touching
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.selection import SHORT, Contour, Which
 from morfax.tracer.program.nets.net_lines import net_of, or_outline
@@ -95,25 +97,6 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
     return OneOfEach(lines, unclear, others)
 
 
-def with_least_numbers(lines: list[Line], asked: list[Contour]) -> list[Line]:
-    """The lines, each of several patches by the least of their numbers: which of equal pieces of a line with
-    gaps was followed first is chance.
-    """
-    taken = {line.number for line in lines}
-    numbered = list[Line]()
-    for line in lines:
-        pieces = [
-            contour.number
-            for contour in asked
-            if contour.number < line.number
-            and contour.number not in taken
-            and contour.lies_on(line.places_mm)
-        ]
-        numbered.append(replace(line, number=min(pieces)) if pieces else line)
-        taken.add(numbered[-1].number)
-    return numbered
-
-
 def references_of(lines: list[Line]) -> list[tuple[float, float]]:
     """The reference points from which lines, or lead lines, begin, mm."""
     return [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
@@ -163,16 +146,24 @@ def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -
         net = net_of(setup, contour)
         lines = net.lines() if net is not None and net.is_clear else []
         if lines and lines[0].ending == "closed":
-            return _Found(loops.mended(lines[0]), [loops.mended(line) for line in lines[1:]])
+            return _as_found(setup, [loops.mended(line) for line in lines])
         found = _follow_in_window(setup, contour, is_letter)
         own = or_outline(setup, contour, found.line)
         if own is not None:
             line = loops.mended(own)
             if net is not None and not line.is_lead:
-                return _Found(line, net.besides(line))
+                return _as_found(setup, [line, *net.besides(line)])
             return _Found(line, found.others if line is own else None)
         loop = loops.of_patch(stroke.patch, stroke.width_mm)
     return _Found(None if loop is None else loop.line(contour.number))
+
+
+def _as_found(setup: Setup, lines: list[Line]) -> _Found:
+    """The lines that a patch is, the first and the others: those that bars join as one, and those that touch
+    each along its own rim.
+    """
+    lines = touching(setup, bridged(setup, lines))
+    return _Found(lines[0], lines[1:])
 
 
 def _follow_in_window(setup: Setup, contour: Contour, is_letter: bool) -> _Found:

@@ -46,7 +46,6 @@ from morfax.tracer.program.one_of_each import (
     is_inside,
     one_of_each,
     references_of,
-    with_least_numbers,
 )
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress, Setup
@@ -171,7 +170,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     asked, letters_out = _high_enough(setup, asked) if not numbers else (asked, ())
     lines, unclear, strokes = one_of_each(setup, asked, which)
     # 2. the other lines of those patches
-    lines = with_bars(setup, lines)
+    lines = with_bars(setup, lines, [line for some in strokes.values() for line in some])
     joined, left_mm = _joined(setup, asked, lines, strokes)
     patch_of = dict[int, int]()
     if beyond or not numbers:
@@ -179,7 +178,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
         patch_of = {line.number: patch for line, patch in further}
         others = [line for line, _ in further]
         lines += [line for line in others if which != "outer" or not is_inside(line, lines)]
-    lines = with_least_numbers(lines, asked)
+    lines = selection.with_least_numbers(lines, asked)
     # 3. dots that stand alone, and slots whose sides run together
     lines += holes
     if beyond or (holes and numbers):

@@ -17,18 +17,21 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST, median
-from morfax.motion.plane import direction, heading_of, left_of
+from morfax.motion.plane import CORNER_RAD, direction, heading_of, left_of
+from morfax.tracer.limits import AHEAD_RAD, BACK_RAD, ROUNDS
+from morfax.tracer.sensing.moments import LEAST_WEIGHT, bend_of
 from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, leg_through, parabola
+from morfax.tracer.sensing.scout import FEWEST
 
 # straight on is within this, and a leg turns off to a side by more than that
-STRAIGHT, TURNS_OFF = math.radians(40), math.radians(20)
+STRAIGHT, TURNS_OFF = AHEAD_RAD, CORNER_RAD
 # legs that turn by more lie beside each other: a tip, or a line that comes back; by trial
-TURNS_BACK = math.radians(150)
+TURNS_BACK = BACK_RAD
 # two ends whose headings are so near to one line face each other; by trial
 FACING = math.radians(35)
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 NEARLY_PARALLEL = 0.02  # sine of the angle between two legs that do not meet
-FEWEST_STATIONS, LEAST_WIDTHS = 4, 0.8  # of clean line make a leg; by trial
+FEWEST_STATIONS, LEAST_WIDTHS = FEWEST, 0.8  # of clean line make a leg; by trial
 
 # how far two legs meet beyond the one's clean end and before the other's, mm
 Meeting = tuple[float, float]
@@ -105,9 +108,9 @@ def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
     width = median(seen[near, 2])
     off = np.abs(seen[near, 2] / width - 1)
     usual = max(OUTLIERS * ROBUST * median(off), BITTEN)
-    weights = np.maximum(1 - (x / half_mm) ** 2, 0.05) / (1 + (off / usual) ** 4)
+    weights = np.maximum(1 - (x / half_mm) ** 2, LEAST_WEIGHT) / (1 + (off / usual) ** 4)
     offset, slope, bend = parabola(x, y, weights, 2)[0]
-    curvature = 2 * bend / (1 + slope * slope) ** 1.5
+    curvature = bend_of(slope, 2 * bend)
     place = seen[i, :2] + offset * n
     return Leg(place, heading + math.atan(slope), curvature, width, seen[i:])
 
@@ -130,7 +133,7 @@ def turn(a: float, b: float) -> float:
 def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
     """Distances (beyond the incoming leg's end, before the outgoing leg's) where they cross, mm, or None."""
     s = u = 0.0
-    for _ in range(6):
+    for _ in range(ROUNDS):
         a = incoming.heading_at(s)
         b = outgoing.heading_at(-u)
         cross = math.sin(turn(a, b))

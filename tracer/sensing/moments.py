@@ -12,7 +12,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.compiled import njit
+
+LEAST_WEIGHT = 0.05  # of a station at the window's end
 
 
 class Moments(NamedTuple):
@@ -48,21 +51,27 @@ def with_place(sums, w, x, y):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, _nrt=False, inline="always")
-def parabola_of(sums, singular):  # type: ignore[no-untyped-def]
+def parabola_of(sums):  # type: ignore[no-untyped-def]
     """Whether the places tell a parabola, and (p0, p1, p2).
 
-    They do not where the determinant is so small a share, or less, of the product of the moments.
+    They do not where the determinant is no share of the product of the moments: too few places, or one spot.
     """
     s0, s1, s2, s3, s4, b0, b1, b2 = sums
     d0, d1, d2 = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
     det = s0 * d0 + s1 * d1 + s2 * d2
-    if det <= singular * s0 * s2 * s4:
+    if det <= NOT_ZERO * s0 * s2 * s4:
         return False, 0.0, 0.0, 0.0
     d11, d12, d22 = s0 * s4 - s2 * s2, s1 * s2 - s0 * s3, s0 * s2 - s1 * s1
     p0 = (d0 * b0 + d1 * b1 + d2 * b2) / det
     p1 = (d1 * b0 + d11 * b1 + d12 * b2) / det
     p2 = (d2 * b0 + d12 * b1 + d22 * b2) / det
     return True, p0, p1, p2
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def bend_of(slope, second):  # type: ignore[no-untyped-def]
+    """The bend of a curve y(x) by its derivatives at a place, 1/mm."""
+    return second / (1.0 + slope * slope) ** 1.5
 
 
 @njit(cache=True, inline="always")

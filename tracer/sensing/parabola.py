@@ -14,10 +14,12 @@ import math
 
 import numpy as np
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.arrays import median as median_of
 from morfax.motion.compiled import njit
 from morfax.motion.median import OUTLIERS, ROBUST
 from morfax.motion.plane import heading_between, length_between
+from morfax.tracer.sensing.moments import LEAST_WEIGHT, bend_of
 
 BITTEN = 0.06  # of the width: more than a scan's noise
 LEAST_OFF_MM = 0.001  # of a station: nearer ones stay in
@@ -94,7 +96,7 @@ def _leg(seen, end, within_mm):  # type: ignore[no-untyped-def]
         widths[k] = seen[near[k], 2]
     # 2. the parabola
     (slope, offset, bend), misfit = fit(x, y)
-    curvature = bend / (1 + slope * slope) ** 1.5
+    curvature = bend_of(slope, bend)
     place = end[0] + offset * -s, end[1] + offset * c
     leg = place[0], place[1], heading + math.atan(slope), curvature, median_of(widths)
     return leg, misfit
@@ -160,7 +162,7 @@ def parabola(x, y, weights, degree):  # type: ignore[no-untyped-def]
     for i in range(n):
         for j in range(n):
             sums[i, j] = moments[i + j]
-    inverse = _inverse(sums + 1e-12 * np.eye(n))
+    inverse = _inverse(sums + NOT_ZERO * np.eye(n))
     found = np.zeros(3)
     for i in range(n):
         for j in range(n):
@@ -221,7 +223,7 @@ def bend_at(seen, i, half_mm):  # type: ignore[no-untyped-def]
         x[k] = dx * c + dy * s
         y[k] = dy * c - dx * s
         spoiled = (weights[k] / usual) ** 4
-        weights[k] = max(1.0 - (x[k] / half_mm) ** 2, 0.05) / (1.0 + spoiled)
+        weights[k] = max(1.0 - (x[k] / half_mm) ** 2, LEAST_WEIGHT) / (1.0 + spoiled)
     # 3. the parabola
     found = parabola(x, y, weights, 2)[0]
-    return 2.0 * found[2] / (1.0 + found[1] * found[1]) ** 1.5
+    return bend_of(found[1], 2.0 * found[2])

@@ -17,9 +17,10 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.sensing import edge_scout, photocell, ray
 from morfax.tracer.sensing.gauge import gauge
-from morfax.tracer.sensing.photocell import Cells
+from morfax.tracer.sensing.photocell import STEP_PX, Cells
 from morfax.tracer.sensing.scout import (
     CLEAN,
     FEWEST,
@@ -32,11 +33,9 @@ from morfax.tracer.sensing.scout import (
 )
 
 EDGE_LEG_PX = 4  # of a leg along an edge, at least
-EDGE_STEP_PX = 0.35  # stations along an edge go round corners that are as sharp as the lens
 GRAIN = 0.4  # of the line's width: standard deviation of a cell that averages its grain
 GRAIN_LEVEL = 0.3  # an edge is at this share of the darkness then
 GRAIN_STATIONS = 20
-EDGES_WIDTHS = 3.0  # to either side of such a station its edges are looked for
 STEP_WIDTHS = 0.1  # between the places that stand for a way where it is held against another
 
 
@@ -72,7 +71,7 @@ class View:
     def step_mm(self) -> float:
         """Distance of stations and rings."""
         if self.on_edge:
-            return EDGE_STEP_PX * self.pitch_mm
+            return STEP_PX * self.pitch_mm
         return max(0.05, 0.6 * self.pitch_mm)
 
     @property
@@ -179,10 +178,10 @@ class View:
         far about the last station as `looks_mm` says of that view, and paper beyond.
         """
         places = stations[-GRAIN_STATIONS:, :2]
-        larger = self._larger(places, EDGES_WIDTHS * self.width_mm)
+        larger = self._larger(places, ABOUT_WIDTHS * self.width_mm)
         darkness = median([larger.darkness_at(place) for place in places])
         larger = larger.at_level(GRAIN_LEVEL * darkness)
-        found = [larger.edges(place, heading, EDGES_WIDTHS * self.width_mm) for place in places]
+        found = [larger.edges(place, heading, ABOUT_WIDTHS * self.width_mm) for place in places]
         widths = [left - right for right, left in found if math.isfinite(left - right)]
         if not widths:
             return self

@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.tracer.limits import ABOUT_WIDTHS
 
 NEAR_WIDTHS = 0.6  # sides that are nearer to each other are one line
 # of way between them, at the least: a spike of 28 degrees has its sides so near
 ON_WIDTHS = 2.5
-APART_WIDTHS = 3.0  # of way between two stretches
 
 
 def stretches(
@@ -35,16 +35,13 @@ def stretches(
     """From which place of a closed way (n, 2) to which it comes so near to itself after so much way between;
     the last may be over n.
     """
-    count, near_mm = len(way), near_widths * width_mm
-    cell = np.floor((way - way.min(axis=0)) / near_mm).astype(np.int64) + 1
-    partner = np.full(count, -1)
-    heads = np.full(tuple(cell.max(axis=0) + 2), -1)
-    _find_partners(way, cell, near_mm, round(on_widths * width_mm / step_mm), heads, partner)
+    count = len(way)
+    partner = partners(way, near_widths * width_mm, round(on_widths * width_mm / step_mm))
     found = np.flatnonzero(partner >= 0)
     if not len(found):
         return []
     # 1. places that follow one another, and those beside them
-    apart = round(APART_WIDTHS * width_mm / step_mm)
+    apart = round(ABOUT_WIDTHS * width_mm / step_mm)
     group = np.zeros(count, np.int64)
     group[found] = np.cumsum(np.diff(found, prepend=found[0]) > apart)
     if found[0] + count - found[-1] <= apart:
@@ -55,6 +52,17 @@ def stretches(
         shortest(found[joined[group[found]] == number], count)
         for number in sorted(set(joined[group[found]].tolist()))
     ]
+
+
+def partners(way: Array, near_mm: float, apart: int) -> NDArray[np.int64]:
+    """For each place of a closed way (n, 2) mm one that is near to it, so many places apart along it or more;
+    -1 where none is.
+    """
+    cell = np.floor((way - way.min(axis=0)) / near_mm).astype(np.int64) + 1
+    partner = np.full(len(way), -1)
+    heads = np.full(tuple(cell.max(axis=0) + 2), -1)
+    _find_partners(way, cell, near_mm, apart, heads, partner)
+    return partner
 
 
 def _joined(

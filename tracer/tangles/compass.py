@@ -91,7 +91,7 @@ class Core(NamedTuple):
         if len(points) > 1:
             middle = 0.5 * (way[:1] + way[-1:])
             way = np.vstack([middle, way, middle])
-        return [way] if self.radius_mm > 0 else _between_corners(way)
+        return [way] if self.radius_mm > 0 else between_corners(way)
 
     def _arcs(self, points: Array) -> Iterator[Array]:
         """The arc (n, 2) mm about each point of the core, counter-clockwise."""
@@ -106,7 +106,7 @@ class Core(NamedTuple):
             yield point + self.radius_mm * np.column_stack([np.cos(normal), np.sin(normal)])
 
 
-def _between_corners(way: Array) -> list[Array]:
+def between_corners(way: Array) -> list[Array]:
     """The stretches of a way (n, 2) mm between its sharp corners."""
     steps = np.diff(way, axis=0)
     headings = np.arctan2(steps[:, 1], steps[:, 0])

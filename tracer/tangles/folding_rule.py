@@ -87,6 +87,11 @@ class Rule(NamedTuple):
         """The length of the way."""
         return length_mm(self.way)
 
+    @property
+    def ahead(self) -> Array:
+        """From its first place to its first corner, (x, y) mm."""
+        return np.asarray(self.corners_mm[0] - self.first_mm)
+
     def stretches(self) -> list[Array]:
         """The way as stretches (n, 2) mm between sharp corners."""
         places = self._places()

@@ -19,7 +19,7 @@ from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, turn
 from morfax.tracer.sensing.probe import stroke_end
 from morfax.tracer.sensing.view import View
 
@@ -31,7 +31,6 @@ if (
     from morfax.tracer.tangles.tangle import Tangle
 
 # Chosen by trial on the test drawings.
-LEAST_SEEN = 4  # stations of the incoming leg, to know the pen by
 LEAST_AHEAD_MM = 0.1  # the head can still come onto a strand's own leg
 BACK_RAD, LONGEST_TIP_MM = math.radians(130), 5.5  # lines that run together to one tip
 
@@ -68,7 +67,7 @@ class Tangles:
         from morfax.tracer.tangles.tangle import tangle_ahead
 
         incoming, plan = approach.incoming, approach.plan
-        if len(incoming.seen) < LEAST_SEEN:
+        if len(incoming.seen) < FEWEST_STATIONS:
             return plan, False
         # 1. the strand that is left of a tangle that is known
         strand = self._strand_left(approach, view.width_mm)

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM2
+from morfax.tracer.limits import FADES
 from morfax.tracer.sensing.photocell import darkness_at
 
 # Chosen by trial on the test drawings.
@@ -32,7 +33,6 @@ STEEPEST = 0.6  # cosine: a bend that leaves further aside of its chord reaches 
 SPECK_PX = 1.5  # from the middle of a speck to the ink beside it
 NARROW_RAD = math.radians(3)  # a tip as narrow as this is a tick
 NOWHERE_MM = 1e3  # from all that is drawn
-INKED = 3.0  # softnesses from its edge, ink is whole or none: erfc is within 1e-5 of that
 
 
 class Ink(NamedTuple):
@@ -208,7 +208,7 @@ def tips(drawn, vertices):  # type: ignore[no-untyped-def]
 def ink_at(distance_mm, half_mm, softness_mm):  # type: ignore[no-untyped-def]
     """Darkness that a pen of half a width leaves at a distance from its way."""
     u = (distance_mm - half_mm) / (math.sqrt(2.0) * softness_mm)
-    return 0.5 * math.erfc(u) if abs(u) < INKED else (0.0 if u > 0 else 1.0)
+    return 0.5 * math.erfc(u) if abs(u) < FADES else (0.0 if u > 0 else 1.0)
 
 
 @njit(cache=True)

@@ -21,6 +21,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -28,7 +29,7 @@ OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is t
 
 # widths: a place of a way from which ink is farther is beside its ink; that of a right way is within half of
 # one, and of the places that show ink some are left out
-BESIDE, EVERY_WIDTHS = 1.5, 0.5
+EVERY_WIDTHS = 0.5
 DIFFER = 0.1  # darkness; chosen
 # spacings of places: a place of ink has so many so near; one of a speck has not; chosen
 CLOSE, NEIGHBOURS = 2.5, 5
@@ -134,7 +135,7 @@ class SeenInk(NamedTuple):
 
     def holds(self, way: Array) -> bool:
         """Whether a way (m, 2) mm lies on ink all along: beyond the places seen nothing costs it."""
-        dark, off_mm = self.places_mm[self.darkness > INK], BESIDE * self.width_mm
+        dark, off_mm = self.places_mm[self.darkness > INK], CLEAR_WIDTHS * self.width_mm
         # a fit may throw a corner kilometres away: such a way is too long to be looked at
         if not len(dark) or np.any(way < dark.min(axis=0) - off_mm):
             return False

@@ -17,8 +17,10 @@ import math
 
 import numpy as np
 
+from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM2
+from morfax.tracer.limits import ROUNDS
 from morfax.tracer.tangles.pen import (
     PIECES,
     ink_at,
@@ -33,7 +35,6 @@ NUDGE_MM = 0.01  # by which a vertex is moved to see what that changes
 FARTHEST_MM = 0.3  # a vertex is moved at a time
 DAMPING, LEAST_DAMPING = 1e-2, 1e-4  # of the step: at first, and at the least
 EASED, DAMPED = 0.3, 4  # times: after a step that was good, and after one that was not
-MOST_DAMPED = 6  # times that a step is tried again, shorter
 LEAST_GAIN = 1e-3  # of what is wrong: a smaller gain ends the fit
 
 
@@ -161,10 +162,10 @@ def settle(seen, drawn, vertices, rounds):  # type: ignore[no-untyped-def]
         square, right = change @ change.T, change @ now[1]
         before = best
         # 2. a step that makes less wrong, damped until it does
-        for _ in range(MOST_DAMPED):
+        for _ in range(ROUNDS):
             damped = square + np.diag(damping * np.diag(square) + 1e-6)
             step = np.linalg.solve(damped, right)
-            step *= min(1.0, FARTHEST_MM / (np.max(np.abs(step)) + 1e-12))
+            step *= min(1.0, FARTHEST_MM / (np.max(np.abs(step)) + NOT_ZERO))
             moved = vertices - step.reshape(-1, 2)
             total = _wrong(seen, places, drawn, moved, lines, out)
             if total < best:

@@ -25,6 +25,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import median, medians
 from morfax.motion.plane import NOTHING_MM2, unit
+from morfax.tracer.junctions.rings import FARTHEST_MM
 from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.photocell import darkness_along
 from morfax.tracer.sensing.probe import end_of
@@ -52,7 +53,6 @@ PLAN_EVERY = 4  # of the places of a stretch, 20 um apart
 # rounds in which vertices settle: at last, of a plain redrawing, of a try
 ALL, SOME, FEW = 12, 4, 3
 LEG_MM = np.linspace(0, 1.2, 7)  # of each leg is drawn
-FARTHEST_MEETING_MM = 5.0  # legs that meet further ahead do not meet within a tangle
 
 SOFTNESSES_PX = np.geomspace(0.2, 4.0, 24)  # that the pen is tried with
 # of the width and some paper, where a leg's darkness is seen
@@ -137,7 +137,7 @@ class Sketch:
         into, out = self.poses[a], self.poses[b] + [0, 0, math.pi]
         one, other = (Leg(pose[:2], pose[2], 0.0, 0.0, NONE) for pose in (into, out))
         met = meet(one, other)
-        if met is None or min(met) < -2 * self.ink.half_mm or max(met) > FARTHEST_MEETING_MM:
+        if met is None or min(met) < -2 * self.ink.half_mm or max(met) > FARTHEST_MM:
             return 0.5 * (one.end_mm + other.end_mm)[None]
         return one.at(met[0])[None]
 

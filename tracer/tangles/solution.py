@@ -23,6 +23,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import TURNS_BACK, TURNS_OFF, Leg, goes_straight, turn
 from morfax.tracer.tangles.likeness import Patch, Pen
@@ -44,11 +45,10 @@ LEG_WIDTHS = np.linspace(-0.2, 2.2, 13)  # from a leg's end, where it is looked 
 SLACK = 0.005  # misfit that noise makes up for, if there is little of it
 WELL_MM2 = 0.015  # area of wrong ink in a redrawing that explains all of it
 # more vertices that reach no farther, and leave ink, are a scribble
-BLOT_VERTICES, BLOT_WIDTHS = 4.5, 4.0
+BLOT_VERTICES = 4.5
 ROUGH_WIDTHS = 0.6  # to and fro within the line's own ink: that is rough
 # times the misfit of a redrawing: a tick in its place explains the ink as well
 MARK_AS_GOOD = 1.3
-GENTLE_RAD = math.radians(120)  # a strand that turns less at each vertex is a corner or a step
 
 
 class Approach(NamedTuple):
@@ -217,7 +217,7 @@ def _is_gentle(sketch: Sketch, way: Redrawing) -> bool:
         *np.arctan2(steps[:, 1], steps[:, 0]),
         sketch.poses[1, 2] + math.pi,
     ]
-    return all(abs(turn(a, b)) < GENTLE_RAD for a, b in pairwise(headings))
+    return all(abs(turn(a, b)) < TIP_RAD for a, b in pairwise(headings))
 
 
 def _is_rough(sketch: Sketch, way: Redrawing, line: Plan | None) -> bool:
@@ -267,7 +267,7 @@ def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan, slack: float) -> bool:
 def _is_scribble(way: Redrawing, beside_mm: float, width_mm: float) -> bool:
     """Whether a redrawing has many vertices that reach nowhere, and leaves ink all the same."""
     laboured = way.effort > BLOT_VERTICES * VERTEX and way.misfit > WELL_MM2 / width_mm**2
-    return laboured and beside_mm < BLOT_WIDTHS * width_mm
+    return laboured and beside_mm < LONGER_WIDTHS * width_mm
 
 
 def _ticked(sketch: Sketch, way: Redrawing, marked: Redrawing, bare: Redrawing) -> float:

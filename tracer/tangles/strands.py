@@ -18,13 +18,14 @@ from morfax.motion.curves import hermite
 from morfax.motion.polyline import APART_MM
 from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto
 from morfax.tracer.head.plan import Plan
+from morfax.tracer.limits import LONGER_WIDTHS
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.tangle import Tangle
 
 # Chosen by trial on the test drawings: two legs are on one line if they are
 ASIDE = 0.5  # of the width: no further off each other's line
-NEAR_MM, NEAR_WIDTHS = 3.0, 4.0  # no further apart along it
+NEAR_MM = 3.0  # no further apart along it
 
 
 def stretches_over(
@@ -77,7 +78,7 @@ def same_line(leg: Leg, other: Leg, width_mm: float) -> bool:
     along = ahead_mm(leg.end_mm, other) * math.cos(turn(leg.heading_rad, other.heading_rad))
     gap = other.end_mm - leg.at(along)
     turned = abs(turn(leg.heading_at(along), other.heading_rad))
-    near = abs(along) < max(NEAR_WIDTHS * width_mm, NEAR_MM)
+    near = abs(along) < max(LONGER_WIDTHS * width_mm, NEAR_MM)
     return turned < TURNS_OFF and near and float(np.hypot(*gap)) < ASIDE * width_mm
 
 

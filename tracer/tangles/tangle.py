@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.tracer.drawing.drawing import Darkness
+from morfax.tracer.junctions.rings import FARTHEST_MM, FARTHEST_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
@@ -30,7 +31,6 @@ from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 Flags = NDArray[np.bool_]
 
 # Chosen by trial on the test drawings.
-REACH_MM, REACH_WIDTHS = 5.0, 10.0  # the wave runs no farther than the larger of these
 STUB_WIDTHS, STUB_MM = 3.0, 1.5  # ink that ends sooner than either is a tip
 BEGIN_WIDTHS = 0.6  # from the start: a leg begins no nearer
 # of the line's width, as a mean of so many fronts
@@ -60,7 +60,7 @@ class Tangle:
 
 def tangle_ahead(view: View, incoming: Leg) -> Tangle:
     """The tangle that begins at the clean end of an incoming leg."""
-    reach_mm = max(REACH_MM, REACH_WIDTHS * view.width_mm)
+    reach_mm = max(FARTHEST_MM, FARTHEST_WIDTHS * view.width_mm)
     fronts = fronts_from(view, incoming.end_mm, incoming.heading_rad, reach_mm)
     if not len(fronts.at):  # no ink joins the leg
         return Tangle([incoming], np.empty((0, 2)), np.empty(0), 0.0, whole=False)

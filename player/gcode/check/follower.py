@@ -18,7 +18,7 @@ import math
 from morfax.motion.faults import ProgramFault
 from morfax.player.gcode.arc_words import TURN, ArcLimits, ArcWords, Place, WordError
 from morfax.player.gcode.check import not_followed
-from morfax.player.gcode.check.cycles import CannedCycle
+from morfax.player.gcode.check.cycles import MOST_REPEATS, CannedCycle
 from morfax.player.gcode.check.findings import Finding, Findings
 from morfax.player.gcode.check.lines import Words
 from morfax.player.gcode.check.planes import LEVEL, PLANES
@@ -29,7 +29,6 @@ from morfax.player.gcode.tool_state import ToolState
 from morfax.recorder.gcode.machine import Machine
 from morfax.recorder.gcode.takes import Code, codes
 
-MOST_TURNS = 1000  # of a helix; more are a mistake, and only take time here
 _READ = codes("G0-G4 G20 G21 G90 G91")  # words that the reader obeys
 _PLAIN = codes("G0-G3")
 _HOME = codes("G28 G30")
@@ -164,7 +163,7 @@ class CheckingReader(GcodeReader):
         if self.motion in codes("G2 G3"):
             letters |= set("IJR")
             turns = values.get("P", 1.0) if self.machine.takes.turns else 1.0
-            self.turns = round(min(max(turns, 1.0), MOST_TURNS))
+            self.turns = round(min(max(turns, 1.0), MOST_REPEATS))
             if "K" in values and not {"I", "J", "R"} & values.keys():
                 values = {**values, "I": 0.0}
         self.k = values.get("K", 0.0)

@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from morfax.motion.faults import SHOWN
 from morfax.player.gcode.check.findings import Findings
 from morfax.player.gcode.gcode_text import PROGRAM_NUMBER, WORD
 from morfax.recorder.gcode.machine import Machine
@@ -29,7 +30,6 @@ _COMPUTED = re.compile(
 )
 _POLAR = re.compile(r"[@^][-+\d.]+")
 LONGEST_READ = 1 << 16  # characters of a line: 256 times what any control here reads
-_LONGEST_SHOWN = 30  # characters of a line, in a finding
 _MOVES = frozenset("XYZIJKRABCUVW")
 
 
@@ -177,7 +177,7 @@ class ControlInput:
         for between in filter(None, parts[::3]):
             self.findings.here(
                 "word",
-                f"{between[:_LONGEST_SHOWN]!r} is no word",
+                f"{between[:SHOWN]!r} is no word",
                 "words are a letter and a number such as X5 or Y-0.25",
                 "take it out",
             )

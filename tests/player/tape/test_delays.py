@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from morfax.motion.median import OUTLIERS
 from morfax.player.tape.bridges import Bound
-from morfax.player.tape.delays import DOUBT_ERRORS, WINDOW, Delay
+from morfax.player.tape.delays import WINDOW, Delay
 from morfax.player.tape.tail import apart, tail_of
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.format import TapeFormat
@@ -38,7 +39,7 @@ def test_the_doubt_is_what_the_line_may_be_off(beyond: float) -> None:
         doubt_s = delay.doubt_s(row)
     # beyond the last the line goes on from what is used there, half a us of dead zone beside it
     assert np.mean(np.array(off_s) > doubt_s + 0.5e-6) < 0.01
-    assert np.mean(np.array(off_s) > doubt_s / DOUBT_ERRORS / 2) > 0.3
+    assert np.mean(np.array(off_s) > doubt_s / OUTLIERS / 2) > 0.3
 
 
 def test_what_was_told_too_seldom_is_not_judged() -> None:

@@ -17,7 +17,8 @@ from morfax.motion.contour import distance
 from morfax.motion.pathfile import read_path
 from morfax.player.gcode.machine_reader import read_program
 from morfax.recorder.gcode.arcs import fit
-from morfax.recorder.gcode.blocks import TOLERANCE_MM, record_blocks
+from morfax.recorder.gcode.blocks import record_blocks
+from morfax.recorder.gcode.machine import TOLERANCE_MM
 from morfax.recorder.gcode.normal_equations import BREAK_RAD
 from morfax.recorder.gcode.pieces import (
     corners,

@@ -20,7 +20,8 @@ from morfax.motion.pathfile import read_path
 from morfax.player.gcode.machine_reader import read_program
 from morfax.player.gcode.moves import LINE
 from morfax.recorder.gcode.arcs import fit
-from morfax.recorder.gcode.blocks import TOLERANCE_MM, record_blocks
+from morfax.recorder.gcode.blocks import record_blocks
+from morfax.recorder.gcode.machine import TOLERANCE_MM
 from morfax.recorder.gcode.pieces import (
     off_circle_mm,
     off_line_mm,

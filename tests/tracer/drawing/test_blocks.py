@@ -38,13 +38,13 @@ def test_two_threads_see_what_one_sees(monkeypatch: pytest.MonkeyPatch) -> None:
     picture = sheet()
     dark = near(darkest(picture, BY) > 0.5)
     alone = runs_behind_spot(picture, dark, BY, 0.7, 0.5)
-    monkeypatch.setattr(blocks, "MUCH_PX", 1)
+    monkeypatch.setattr(blocks, "FEW_PX", 1)
     for one, other in zip(alone, runs_behind_spot(picture, dark, BY, 0.7, 0.5), strict=True):
         assert np.array_equal(one, other)
 
 
 def test_a_fault_of_the_other_thread_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(blocks, "MUCH_PX", 1)
+    monkeypatch.setattr(blocks, "FEW_PX", 1)
 
     def work(first: int, last: int) -> None:
         if first:

@@ -1,6 +1,6 @@
 """Broad lines: two lines whose ink runs together, against the pen that other lines of the sheet show.
 
-Broken on purpose, with `TWO` from 1.5 on, `LEAST_WIDTHS` a tenth or `ALIKE` twice as large, tests here fail.
+Broken on purpose, with `TWO` from 1.5 on, `SHORT_WIDTHS` a tenth or `WIDER` twice as large, tests here fail.
 """
 
 from __future__ import annotations

@@ -152,3 +152,19 @@ def test_what_the_head_follows_the_measure_finds_good(drawing) -> None:  # type:
     """Two ways to the same ink: cells and steering there, edges and the image's own interpolation here."""
     found = deviation(drawing, [trace(drawing).xy_mm])
     assert found.rms_mm < 4 * UM and found.max_mm < 25 * UM and found.missed_share == 0
+
+
+TIPS_MM, DENTS_MM = 10.0, 5.0
+SHARP_MM = (
+    12 * UM
+)  # places near a corner that are measured on one edge's pixels, of which some are blurred
+
+
+@pytest.mark.parametrize("seed", [None, 1])
+def test_right_corners_do_not_deviate(seed: int | None) -> None:
+    """The middle between the edges lies up to a tenth of a width inside a corner; the pen ran round it."""
+    angles = np.pi * np.arange(11) / 5 + 0.3
+    radii = np.where(np.arange(11) % 2, DENTS_MM, TIPS_MM)
+    star = MIDDLE + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    line = polyline(*(tuple(place) for place in star))
+    assert deviation(inked(line, seed=seed), [line]).max_mm < SHARP_MM

@@ -14,8 +14,10 @@ from tests.tracer.inked import UM, arc, inked, polyline
 TURN = np.radians(60)
 # a third of a pixel of 85 um: of 30 such drawings two corners are 3 to 11 um off, of 6 rounds 18 to 28 um
 CORNER_MM = 30 * UM
+STEP_CUT_OFF_MM = 40 * UM  # as one bend, or by one vertex, a step of 0.6 mm is 44 to 70 um off
 CUT_OFF_MM = 60 * UM  # an arc in place of two corners 0.6 to 0.75 mm apart is 69 to 96 um off
 FLOOR_MM = 0.6  # high: the floor, or the arc in its place
+NEAR_STEP_MM = 2.0  # both of its ends
 
 
 def valley(side_mm: float) -> Array:
@@ -75,3 +77,36 @@ def test_a_round_stays_an_arc(radius_mm: float, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(follower, "or_two_corners", noted)
     assert worst_mm(rounded_valley(radius_mm), 1) < CORNER_MM
     assert laid and not any(laid)
+
+
+def stepped(side_mm: float, turn_deg: float) -> Array:
+    """A bar with a step in its lower side, which is so long and so steep; closed."""
+    steep = np.radians(turn_deg)
+    low = np.array([20.0, 20.0])
+    high = low + side_mm * np.array([np.cos(steep), np.sin(steep)])
+    bar = ((10, 20), low, high, (34, high[1]), (34, 30), (10, 30), (10, 20))
+    return polyline(*(tuple(place) for place in bar))
+
+
+def worst_at_step_mm(line: Array, seed: int) -> float:
+    """How far the ends of the step are at the most from the path of the head."""
+    run = trace(inked(line, width_mm=0.5, seed=seed))
+    assert run.fault is None
+    near = line[np.hypot(*(line - (20.0, 20.0)).T) < NEAR_STEP_MM]
+    return distance(run.xy_mm[::4], near).reference_to_path.max_mm
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("turn_deg", [45, 60, 75])
+@pytest.mark.parametrize("widths", [1.2, 1.5])
+def test_both_corners_of_a_step_are_sharp(widths: float, turn_deg: float, seed: int) -> None:
+    assert worst_at_step_mm(stepped(widths * 0.5, turn_deg), seed) < CORNER_MM
+
+
+@pytest.mark.parametrize(("turn_deg", "seed"), [(45, 1), (60, 3), (75, 2)])
+def test_as_one_bend_or_by_one_vertex_they_are_cut_off(
+    turn_deg: float, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(follower, "or_two_corners", lambda planner, felt, plan: plan)
+    monkeypatch.setattr(follower, "or_two_before", lambda planner, seen, choice, plan: plan)
+    assert worst_at_step_mm(stepped(0.6, turn_deg), seed) > STEP_CUT_OFF_MM

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.usual import COUNT_MM
 from morfax.tracer.operator import zunit
 from morfax.tracer.operator.zunit import (
-    COUNT_MM,
     LARGEST_COUNT,
     Counters,
     Preset,

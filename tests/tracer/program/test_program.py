@@ -12,13 +12,13 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, join
+from morfax.motion.usual import ACCELERATION_MM_S2
 from morfax.tracer.following.line import Leads, Line
 from morfax.tracer.junctions.guides import GuideLine
 from morfax.tracer.marks.marks import Mark
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Work
-from morfax.tracer.program.passes.passes import BRAKE_MM_S2
 from morfax.tracer.program.program import Trace
 
 WORK = Work(depth_mm=4.0, clearance_mm=2.0)
@@ -103,7 +103,7 @@ def test_x_and_y_come_to_rest_where_the_tool_goes_down() -> None:
     down = int(np.flatnonzero(np.diff(positions[:, 2]) < 0)[0])
     speeds = np.hypot(*np.diff(positions[:down, :2], axis=0).T) * MOTION_RATE_HZ
     assert speeds[speeds > 0][-1] < np.sqrt(
-        2 * BRAKE_MM_S2 * STEP_MM
+        2 * ACCELERATION_MM_S2 * STEP_MM
     )  # the last step is one of braking
 
 

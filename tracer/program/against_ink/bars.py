@@ -20,13 +20,13 @@ from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.tangles.seen_ink import middles_mm
 
 OF_WIDTH = 1.3  # about a way ink is the line's own
 ABOUT = 2.0  # times as far as the ink reaches from the line, and ...
-ABOUT_WIDTHS = 3.0  # ... so much more, its bar is looked for about its furthest place
 # widths: the ink of a bay is two lines thick at the least; it may come to a point, and a part of it at the
 # mouth counts as the line's own
 THICK = 1.2, 4.0

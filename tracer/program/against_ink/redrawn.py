@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm
+from morfax.tracer.drawing.components import FRINGE_PX
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -35,7 +36,6 @@ SAMPLES = 10  # places of the way to a pixel
 SPOTS_PX = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1)  # standard deviations that are tried
 AVERAGED_PX = 0.8  # standard deviation of the average of what differs
 BESIDE_PX = 1.5  # further from the way other lines may lie
-AROUND_PX = 4  # of the sheet about the way is looked at
 DARK = 98.0  # percent of the places are less dark than the darkest ink
 
 
@@ -51,7 +51,7 @@ def most_astray(drawing: Drawing, way_mm: Array) -> Astray:
     finer, pitch_mm = drawing.finer, drawing.pitch_mm
     # 1. the sheet about the way, and how much of the way is in each pixel
     rows, columns = drawing.darkness.shape
-    around = AROUND_PX * finer
+    around = FRINGE_PX * finer
     x = way_mm[:, 0] / pitch_mm - 0.5
     y = rows - way_mm[:, 1] / pitch_mm - 0.5
     top = max(0, int(y.min()) - around)

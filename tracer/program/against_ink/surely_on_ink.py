@@ -17,11 +17,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from morfax.motion.arrays import ROUNDED
 from morfax.motion.compiled import njit
 from morfax.tracer.program.against_ink.pen_on_ink import band_of, clear
 from morfax.tracer.tangles.pen import ink_at
 
-ROUNDED = 1e-9  # of a limit: more than the sums of a box are rounded by
 KEPT = 1021  # boxes of which is kept what was told; a prime number
 WIDEST_PX = 1 << 20  # more than any part of a sheet is wide: a box's number tells its place
 

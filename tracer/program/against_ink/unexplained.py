@@ -36,21 +36,17 @@ from morfax.tracer.drawing.sharpening import turned_at
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, EVERY_MM, PAPER, TIP_RAD
 from morfax.tracer.program.against_ink.own_ink import beside
 from morfax.tracer.program.against_ink.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.photocell import darkness_along, without_aperture
 
-BEYOND_WIDTHS = 1.5  # beyond the edge of a line ink is no longer that line's
-BARE = 0.25  # darkness: paler places are paper
 # darkness: on a coarse scan a line's middle is darker; of 135 right paths on lines of 1 to 2 pixels 3 come
 # below it, in blurred corners, and all of 10 wrong ones; by trial
 PALE = 0.6
-TIP = np.radians(120.0)  # a corner that turns by more is a tip
 CUT_MM = 0.1  # ten times a corner's error
 BESIDE = 2.0  # times as far apart as both are off: it is the same tip
-BESIDE_WIDTHS = 3.0  # of a place: it has been found already
-EVERY_MM = 0.05  # between the places of an edge, as between those of a way
 # darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
 # less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
 ASTRAY = 0.2
@@ -111,7 +107,7 @@ def _beside_ink(
     drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained], of_limit: float
 ) -> Iterator[Unexplained]:
     """Stretches of closed lines beside their ink, but for those about what was found otherwise."""
-    about_mm = BESIDE_WIDTHS * max(line.width_mm for line in lines)
+    about_mm = ABOUT_WIDTHS * max(line.width_mm for line in lines)
     for place_mm, long_mm, is_sure in beside(drawing, lines, of_limit):
         if all(math.dist(place_mm, other.place_mm) > about_mm for other in found):
             yield Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
@@ -140,7 +136,7 @@ def ink_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Unexplained]:
     width_mm = np.array([line.width_mm for line in come_round]).max()
     widths_mm = np.maximum(sheet.widths_mm[patches.patch[runs]], width_mm)
     widths_mm = widths_mm - (_pixel_mm(sheet) if _is_coarse(sheet) else 0.0)
-    far = away_mm.max(axis=0) > (0.5 + BEYOND_WIDTHS) * widths_mm
+    far = away_mm.max(axis=0) > (0.5 + CLEAR_WIDTHS) * widths_mm
     # 3. those that lie together, where each reaches furthest
     runs, away_mm, ends = runs[far], away_mm[:, far], ends.reshape(2, -1, 2)[:, far]
     group, count = joined(patches.row[runs], patches.begin[runs], patches.end[runs], True)
@@ -156,7 +152,7 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
     for line in closed:
         places = line.loop_mm
         come_mm, dark = lengths_mm(places), _darkness(sheet, places)
-        bare = list(_stretches(dark < BARE, come_mm, gap_mm + BEYOND_WIDTHS * line.width_mm))
+        bare = list(_stretches(dark < PAPER, come_mm, gap_mm + CLEAR_WIDTHS * line.width_mm))
         for middle, long_mm in bare:
             x, y = places[middle]
             yield Unexplained((float(x), float(y)), long_mm, "bare")
@@ -169,7 +165,7 @@ def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[
 
 def _tips_cut(edges_mm: Sequence[Array], closed: Sequence[Line]) -> Iterator[Unexplained]:
     """Tips of filled shapes that the picture shows, and the way does not come to."""
-    tips = [edge[:-1][turned_at(edge[:-1], 1) > TIP] for edge in edges_mm]
+    tips = [edge[:-1][turned_at(edge[:-1], 1) > TIP_RAD] for edge in edges_mm]
     places = np.vstack([np.empty((0, 2)), *tips])
     if not len(places) or not closed:
         return
@@ -247,5 +243,5 @@ def _pixel_mm(sheet: Sheet) -> float:
 
 def _darkness(sheet: Sheet, places_mm: Array) -> Array:
     """Darkness of the drawing at places (n, 2) mm, under a cell as small as a point."""
-    cells = without_aperture(sheet.drawing, BARE)
+    cells = without_aperture(sheet.drawing, PAPER)
     return np.asarray(darkness_along(cells, places_mm))

@@ -29,6 +29,7 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import set_fields
+from morfax.tracer.program.laid.rim_bays import RimBay
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.folding_rule import Rule
 
@@ -38,7 +39,7 @@ class Bay(NamedTuple):
 
     first_mm: float
     last_mm: float
-    rule: Rule
+    rule: Rule | RimBay
     gain: float
 
     def moved(self, by_mm: float, round_mm: float) -> Bay:
@@ -98,7 +99,7 @@ def _run(setup: Setup, line: Line, bay: Bay) -> Splice:
     xy_mm = line.xy_mm
     first, last = _position(line, bay.first_mm), _position(line, bay.last_mm)
     view = view_of(setup.sheet, setup.settings.aperture_mm, 2 * bay.rule.half_mm)
-    ahead = bay.rule.corners_mm[0] - bay.rule.first_mm
+    ahead = bay.rule.ahead
     stance = Stance(xy_mm[first], math.atan2(ahead[1], ahead[0]), view)
     carriage = Carriage(stance, setup.settings, MOTION_RATE_HZ)
     # 1. the drives lag: the axis is where its demand comes to the bay
@@ -115,3 +116,21 @@ def _run(setup: Setup, line: Line, bay: Bay) -> Splice:
     after = max(last - 2 * lag, first + 1)
     nearest = np.hypot(*(xy_mm[after : last + 1] - way_mm[-1]).T)
     return Splice(first, after + int(np.argmin(nearest)) + 1, way_mm)
+
+
+def apart(bays: list[Bay], length_mm: float) -> list[Bay]:
+    """Those of some bays that gain most, none of which lies on another."""
+    kept = list[Bay]()
+    for bay in sorted(bays, key=lambda bay: -bay.gain):
+        if all(_are_apart(bay, other, length_mm) for other in kept):
+            kept.append(bay)
+    return kept
+
+
+def _are_apart(bay: Bay, other: Bay, length_mm: float) -> bool:
+    """Whether two bays of a closed way of a length do not lie on one another."""
+    rounds = (-length_mm, 0.0, length_mm)
+    return all(
+        bay.last_mm + more < other.first_mm or other.last_mm < bay.first_mm + more
+        for more in rounds
+    )

@@ -18,6 +18,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.limits import FADES
 from morfax.tracer.program.against_ink.own_ink import MOST_SPECKS, OVER
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.compass import Core
@@ -30,7 +31,6 @@ STATION, ABOUT_STATION = 0.25, 0.75
 # shapes the worst leaves 0.15
 ABOUT_LEFT, MOST_LEFT = 1.0, 0.25
 NEAR_STEP = 0.1  # widths between the places of a way that are held against each other
-ABOUT_SOFT = 3.0  # softnesses: so far beyond the ink its edge is seen
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 
 
@@ -42,7 +42,7 @@ def ink_of(
     """
     drawing, patches = sheet.drawing, sheet.patches
     rows, columns = drawing.darkness.shape
-    about = 2 + math.ceil(ABOUT_SOFT * drawing.noise.softness_px)
+    about = 2 + math.ceil(FADES * drawing.noise.softness_px)
     top, bottom, left, right = patches.boxes[patch].tolist()
     top, bottom = max(top - about, 0), min(bottom + about, rows)
     left, right = max(left - about, 0), min(right + about, columns)

@@ -27,6 +27,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
+from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import bar_at, reaches
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
@@ -35,7 +36,9 @@ from morfax.tracer.program.against_ink.unexplained import (
     unexplained,
 )
 from morfax.tracer.program.against_ink.window import Window
-from morfax.tracer.program.laid.bay_run import Bay, laid
+from morfax.tracer.program.laid.bay_run import Bay, apart, laid
+from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, rim_bays
+from morfax.tracer.program.laid.rim_loops import broad_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
@@ -89,9 +92,10 @@ def beside_mended(
     return _mended(setup, lines, beside_ink)
 
 
-def with_bars(setup: Setup, lines: Sequence[Line]) -> list[Line]:
-    """The lines with those narrow bays mended that show as bars of ink beside them."""
-    return _once_mended(setup, lines, tuple(ink_beside(setup.sheet, lines)))
+def with_bars(setup: Setup, lines: Sequence[Line], others: Sequence[Line] = ()) -> list[Line]:
+    """The lines with those narrow bays mended that show as bars of ink beside them and some others."""
+    left = tuple(ink_beside(setup.sheet, [*lines, *others]))
+    return _once_mended(setup, lines, left, others)
 
 
 def is_clear(drawing: Drawing) -> bool:
@@ -116,12 +120,16 @@ def _mended(
 
 
 def _once_mended(
-    setup: Setup, lines: Sequence[Line], left: Sequence[Unexplained]
+    setup: Setup,
+    lines: Sequence[Line],
+    left: Sequence[Unexplained],
+    others: Sequence[Line] = (),
 ) -> list[Line]:
-    """The lines with their narrow bays mended; those of a drawn program as they are."""
+    """The lines, beside some others, with their narrow bays mended; those of a drawn program as they are."""
     if setup.operator.reads_marks(lines):
         return list(lines)
-    return [_Bays(setup, line, lines, left).mended() for line in lines]
+    every = [*lines, *others]
+    return [_Bays(setup, line, every, left).mended() for line in lines]
 
 
 @dataclass(frozen=True)
@@ -147,7 +155,7 @@ class _Bays:
         bays = [bay for each in suspects if (bay := self._bay(way, step_mm, each)) is not None]
         if line.as_told:  # it begins where it is told to
             bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < round_mm]
-        bays = _apart(bays, round_mm)
+        bays = apart(bays, round_mm)
         return laid(self.setup, line, bays, round_mm) if bays else line
 
     def _suspects(self, way: Array, step_mm: float) -> Iterator[Suspect]:
@@ -200,7 +208,7 @@ class _Bays:
         ink = self._ink(about, rest)
         if self._goes_on(ink, about):
             return None
-        # 2. the best rule along the way, or round a bar of ink
+        # 2. the best rule along the way, or round a bar of ink; else the way within the rim of that
         rules = list[Rule]()
         if not len(suspect.beyond_mm):
             rules += folding_rule.along(own, ink.half_mm)
@@ -208,19 +216,44 @@ class _Bays:
             legs = np.vstack([own[: leg + 1], own[-leg - 1 :]])
             rules += folding_rule.round_bar(ink, legs)
         rule = self._explained(ink, rules)
-        if rule is None:
+        gain = self._gain(ink, own, rule, suspect) if rule is not None else None
+        if rule is not None and gain is not None:
+            return Bay(first * step_mm, last * step_mm, rule, gain)
+        return self._rim_bay(ink, own, suspect, (first * step_mm, last * step_mm))
+
+    def _rim_bay(
+        self, ink: SeenInk, own: Array, suspect: Suspect, ends_mm: tuple[float, float]
+    ) -> Bay | None:
+        """The bay between two places along the way that lies within the rim of the ink, if that explains the
+        ink better than the way does.
+        """
+        if not suspect.is_beside_itself and not len(suspect.beyond_mm):
             return None
-        # 3. against the way
+        setup, best = self.setup, None
+        view = view_of(setup.sheet, setup.settings.aperture_mm, self.line.width_mm)
+        for rim_bay in rim_bays(setup.sheet.drawing, view, own, suspect.beyond_mm):
+            drawn = ink.drawn_along(rim_bay.way, rim_bay.half_mm)
+            rule = rim_bay._replace(misfit=ink.misfit(drawn))
+            gain = self._gain(ink, own, rule, suspect)
+            if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rule.way)):
+                continue
+            if gain is not None and (best is None or gain > best.gain):
+                best = Bay(*ends_mm, rule, gain)
+        return best
+
+    def _gain(
+        self, ink: SeenInk, own: Array, rule: Rule | RimBay, suspect: Suspect
+    ) -> float | None:
+        """How much better a rule explains the ink than the way (n, 2) mm; None if it does not, or badly."""
+        width_mm = self.line.width_mm
         widths = rule.length_mm / width_mm
         drawn_by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
         own_misfit = ink.misfit(drawn_by_own)
-        gain = own_misfit - rule.misfit + FURTHER * (STEP_WIDTHS * long - widths)
+        gain = own_misfit - rule.misfit + FURTHER * (STEP_WIDTHS * (len(own) - 1) - widths)
         is_like = rule.misfit < LIKE * widths
         drawn = ink.drawn_along(rule.way, rule.half_mm)
         is_like &= suspect.is_beside_itself or ink.share_left(drawn, drawn_by_own) < MOST_LEFT
-        if not is_like or gain < GAIN * widths:
-            return None
-        return Bay(first * step_mm, last * step_mm, rule, gain)
+        return gain if is_like and gain >= GAIN * widths else None
 
     def _explained(self, ink: SeenInk, rules: list[Rule]) -> Rule | None:
         """The rule that explains an ink best. A bay is looked at again when another was mended; the same
@@ -236,7 +269,8 @@ class _Bays:
         beside = (ink.darkness > 0.5) & (ink.known_mm > OWN * self.line.width_mm)
         away_mm = pen.away_from(ink.places_mm[beside], about)
         far = np.count_nonzero(away_mm > (REACH - EDGE) * self.line.width_mm)
-        return bool(far * ink.area_mm2 > 0.5 * EDGE * self.line.width_mm**2)
+        # one place alone is a speck
+        return bool(far > 1 and far * ink.area_mm2 > 0.5 * EDGE * self.line.width_mm**2)
 
     def _ink(self, about: Array, rest: Array) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
@@ -255,21 +289,3 @@ class _Bays:
             if line is not self.line and reaches(line.places_mm, low, high):
                 known_mm = np.minimum(known_mm, nearest_mm(places, line.places_mm))
         return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
-
-
-def _apart(bays: list[Bay], length_mm: float) -> list[Bay]:
-    """Those of some bays that gain most, none of which lies on another."""
-    kept = list[Bay]()
-    for bay in sorted(bays, key=lambda bay: -bay.gain):
-        if all(_are_apart(bay, other, length_mm) for other in kept):
-            kept.append(bay)
-    return kept
-
-
-def _are_apart(bay: Bay, other: Bay, length_mm: float) -> bool:
-    """Whether two bays of a closed way of a length do not lie on one another."""
-    rounds = (-length_mm, 0.0, length_mm)
-    return all(
-        bay.last_mm + more < other.first_mm or other.last_mm < bay.first_mm + more
-        for more in rounds
-    )

@@ -20,9 +20,11 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.median import median
 from morfax.motion.polyline import area_mm2, length_mm
+from morfax.tracer.drawing.narrow import LONG_WIDTHS
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
 from morfax.tracer.ink.rim import felt_rim
+from morfax.tracer.limits import AS_WIDE
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
@@ -32,10 +34,8 @@ from morfax.tracer.tangles.compass import Core
 # that are further apart the head follows as any line
 BROAD = 1.6, 4.2
 LONGEST = 800.0  # widths round; chosen
-STRETCH = 20.0  # widths along a line: they show how wide the pen is
 DISTINCT = 0.2  # of a step: places nearer to each other are one corner
 FELT_PLACES = 9  # the pen's width is the middle one of so many of the plainest places
-AS_WIDE = 0.15  # of the pen's width: a line that differs by more is another pen's
 
 
 def narrow_outline(sheet: Sheet, patch: int, pen_mm: float) -> Array | None:
@@ -79,7 +79,7 @@ def felt_pen_mm(sheet: Sheet, aperture_mm: float | None, pen_mm: float) -> float
     lines = lines_of(sheet)
     of_pen = np.abs(sheet.widths_mm[lines] / pen_mm - 1) < AS_WIDE
     stroke = sheet.stroke(int(lines[of_pen][0]) if of_pen.any() else int(lines[0]))
-    reach_mm = STRETCH * pen_mm
+    reach_mm = LONG_WIDTHS * pen_mm
     x, y = stroke.middles_mm[0].tolist()
     places = places_of(stroke, (x, y), reach_mm)
     window = Window.about(sheet.drawing, places, reach_mm)

@@ -7,8 +7,6 @@ Source: the drill points of patent ES 361967 are dots on guide lines; a dot alon
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from morfax.tracer.following.line import Line
@@ -29,15 +27,15 @@ def small_lines(setup: Setup) -> list[tuple[int, Line]]:
         loops = SmallLoops(sheet, setup.settings)
         tried = ((p, loops.of_patch(p, loops.pen_mm)) for p in maybe_slots(sheet))
         slots = {patch: loop for patch, loop in tried if loop is not None}
-    small = [(patch, dot) for patch, dot in dots_alone(setup) if patch not in slots]
     first = len(selection.lines_of(sheet)) + 1
-    small = [(patch, replace(dot, number=n)) for n, (patch, dot) in enumerate(small, first)]
+    small = _dots_alone(setup, set(slots), first)
     numbered = enumerate(slots.items(), first + len(small))
     return small + [(patch, loop.line(n)) for n, (patch, loop) in numbered]
 
 
-def dots_alone(setup: Setup) -> list[tuple[int, Line]]:
-    """The dots that stand alone on the paper, numbered on from the patches that are lines: patch, and line.
+def _dots_alone(setup: Setup, others: set[int], first: int) -> list[tuple[int, Line]]:
+    """The dots that stand alone on the paper, numbered from a first on, without some patches: patch, and
+    line.
 
     None of them is found if neither a line nor a setting shows how wide the pen is.
     """
@@ -47,5 +45,8 @@ def dots_alone(setup: Setup) -> list[tuple[int, Line]]:
         return []
     width_mm = width_mm or float(np.median(setup.sheet.widths_mm[patches]))
     view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
-    found = enumerate(dots.alone(setup.sheet, view), len(patches) + 1)
-    return [(patch, Line.of_dot(centre, width_mm, n)) for n, (patch, centre) in found]
+    alone = (dot for dot in dots.alone(setup.sheet, view) if dot[0] not in others)
+    return [
+        (patch, Line.of_dot(centre, width_mm, n))
+        for n, (patch, centre) in enumerate(alone, first)
+    ]

@@ -35,6 +35,7 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.limits import ABOUT_WIDTHS, MANY, WIDER
 from morfax.tracer.program.laid.loop_ink import ink_of, is_drawn, is_single, leaves_none
 from morfax.tracer.program.laid.rim_loops import (
     BROAD,
@@ -44,7 +45,7 @@ from morfax.tracer.program.laid.rim_loops import (
     narrow_outline,
 )
 from morfax.tracer.program.lines.selection import lines_of
-from morfax.tracer.program.lines.small_rings import MAYBE_BROAD, paper_within_px, pen_mm
+from morfax.tracer.program.lines.small_rings import paper_within_px, pen_mm
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.compass import Core, explained, filled_misfit, with_misfit
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
@@ -56,14 +57,12 @@ NARROW_WIDTHS, LONG_WIDTHS = 3.0, 60.0
 ONCE = 1.5  # of the length of its ink: a way that is longer goes round twice
 # two lines whose ink runs together: times as broad as a line at the most, and how long at the least; so many
 # are tried
-BROADEST, SHORT_WIDTHS, MOST_BROAD = 2.7, 2.0, 100
+BROADEST, SHORT_WIDTHS = 2.7, 2.0
 NO_BROADER = 0.9  # times as broad as a line: in the mean a seam may make up for it
 # for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
 SEAM = 0.002
-ABOUT_WIDTHS = 3.0  # from a patch to the edge of what its cells see
 GOES_BACK = 1.2  # widths: a closed way that is so much longer runs a piece of its line twice
 RIM_PLACES = 40  # for each width of the way round, of a loop of any shape
-TEXT = 100  # letters on a sheet: on one with more nobody looks for small holes among them
 
 
 class Loop(NamedTuple):
@@ -94,7 +93,7 @@ class SmallLoops:
     @cached_property
     def passed_by(self) -> set[int]:
         """The patches that are no loops: on a page of text the letters."""
-        return self._letters if len(self._letters) > TEXT else set()
+        return self._letters if len(self._letters) > MANY else set()
 
     @cached_property
     def pen_mm(self) -> float:
@@ -159,14 +158,14 @@ class SmallLoops:
     def slots(self) -> dict[int, Loop]:
         """The loops that patches are whose sides run together, by the patch; the largest are looked at."""
         largest_first = np.argsort(-self.sheet.patches.areas, kind="stable").tolist()
-        broad = [patch for patch in largest_first if self._is_broad(patch)][:MOST_BROAD]
+        broad = [patch for patch in largest_first if self._is_broad(patch)][:MANY]
         loops = {patch: self.slot(patch) for patch in broad}
         return {patch: loop for patch, loop in loops.items() if loop is not None}
 
     def slot(self, patch: int) -> Loop | None:
         """The loop that a patch is whose sides run together; None for another."""
         loop = self._with_seam(patch) if self._is_broad(patch) else None
-        is_broad = self.sheet.widths_mm[patch] > MAYBE_BROAD * self.pen_mm
+        is_broad = self.sheet.widths_mm[patch] > WIDER * self.pen_mm
         return self._within_rim(patch) if loop is None and is_broad else loop
 
     @cached_property
@@ -181,7 +180,7 @@ class SmallLoops:
         is_clear = drawing.noise.softness_px > 0 and drawing.finer == 1
         return is_clear and not drawing.edges_mm and len(lines_of(self.sheet)) > 0
 
-    def _is_broad(self, patch: int, least: float = MAYBE_BROAD) -> bool:
+    def _is_broad(self, patch: int, least: float = WIDER) -> bool:
         """Whether a patch is as broad as so many lines to two; no longer than a narrow loop, no letter."""
         if not self._shows_seams:
             return False

@@ -34,7 +34,6 @@ FIRSTS = 16  # lines that are tried as the first of the order, and as the last
 SOME = 2000  # places in all the orders that are tried: of a hundred lines 16 orders, of a thousand two
 MOVED = 3  # lines moved together
 TURNINGS = 6  # orders that are tried, each with the lines turned as is best for the one before
-ROUNDING_MM = 0.5e-9  # of the sum of a thousand ways, some metres in all
 
 
 def in_order(starts_mm: Array, ends_mm: Array, before: NDArray[np.bool_]) -> list[int]:
@@ -179,7 +178,7 @@ def _turn_stretches(way, legs, may):  # type: ignore[no-untyped-def]
     lines, better, other = len(way), False, may[0]
     saved = _saved(legs)
     for i in range(lines - 1):
-        if i > 0 and not _best_turn(way, legs, saved, i) > NOTHING_MM - ROUNDING_MM:
+        if i > 0 and not _best_turn(way, legs, saved, i) > NOTHING_MM / 2:
             continue
         there = back = 0.0
         for j in range(i + 1, lines):

@@ -17,7 +17,7 @@ letter is a line, and is left out by asking for the others by number.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import NamedTuple
 
@@ -32,6 +32,7 @@ from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.inner_rings import inner_rings
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.line import Line
+from morfax.tracer.limits import SOME_PLACES
 from morfax.tracer.marks.reference import LARGEST_MM
 
 Which = str | tuple[int, ...]  # "contours", "outer", or the numbers of lines
@@ -50,7 +51,6 @@ SAME_WIDTHS = 0.7  # a place nearer to another line is that line's, ...
 NEW = 0.6  # ... and a line is new if so much of its way is no other line's
 COVERED = 0.8  # a stroke is a part of a followed line if this share of it lies on that line
 ABOUT_REFERENCE_MM = 1.0  # ink as far beyond the largest reference point is still a part of it
-COMPARED = 40  # places of a stroke that are compared with a followed line
 BESIDE_MM = 1.0  # a stroke further outside a followed line's bounds does not lie on it
 
 
@@ -78,7 +78,7 @@ class Contour:
 
     def lies_on(self, line_mm: Array) -> bool:
         """Whether a followed line (n, 2) mm runs along most of this stroke, as along a line with gaps."""
-        places = self.stroke.middles_mm[:: max(1, len(self.stroke.middles_mm) // COMPARED)]
+        places = self.stroke.middles_mm[:: max(1, len(self.stroke.middles_mm) // SOME_PLACES)]
         low, high = bounds(line_mm)
         within = (places > low - BESIDE_MM) & (places < high + BESIDE_MM)
         if within.all(axis=1).mean() < COVERED:
@@ -226,3 +226,22 @@ def a_letter(contour: Contour) -> LineFault:
         x_mm=float(x),
         y_mm=float(y),
     )
+
+
+def with_least_numbers(lines: list[Line], asked: list[Contour]) -> list[Line]:
+    """The lines, each of several patches by the least of their numbers: which of equal pieces of a line with
+    gaps was followed first is chance.
+    """
+    taken = {line.number for line in lines}
+    numbered = list[Line]()
+    for line in lines:
+        pieces = [
+            contour.number
+            for contour in asked
+            if contour.number < line.number
+            and contour.number not in taken
+            and contour.lies_on(line.places_mm)
+        ]
+        numbered.append(replace(line, number=min(pieces)) if pieces else line)
+        taken.add(numbered[-1].number)
+    return numbered

@@ -25,12 +25,13 @@ from morfax.tracer.drawing.inked import is_filled
 from morfax.tracer.drawing.inner_rings import LEAST_PX, LEAST_WIDTHS
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.limits import WIDER
 from morfax.tracer.program.lines.selection import Contour, lines_of
 
 BROAD = 1.4  # of a line's width: two lines whose ink runs together
 FILLED = 0.65  # of the square about it: a dot fills 0.79
 # the same of what may be a slot, if its ink shows the seam between its sides
-MAYBE_BROAD, MAYBE_FILLED = 1.15, 0.75
+MAYBE_FILLED = 0.75
 MOST_RINGS = 500  # patches that are looked at, the largest first: sheets of text have thousands
 
 
@@ -84,7 +85,7 @@ def filled_up(sheet: Sheet) -> list[int]:
 def maybe_slots(sheet: Sheet) -> list[int]:
     """The same of all that may be slots, if their ink shows the seam between two sides."""
     small = _small_inside(sheet)[:MOST_RINGS]
-    maybe = _are_filled_up(sheet, small, MAYBE_BROAD, MAYBE_FILLED)
+    maybe = _are_filled_up(sheet, small, WIDER, MAYBE_FILLED)
     shows_paper = np.array([paper_within_px(sheet, p) > 0 for p in small.tolist()], bool)
     chosen: list[int] = small[maybe | shows_paper].tolist()
     return chosen

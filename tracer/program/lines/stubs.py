@@ -21,6 +21,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
 from morfax.tracer.following.line import Line
+from morfax.tracer.limits import NEAR
 from morfax.tracer.sensing.view import STEP_WIDTHS
 
 # All limits below were chosen by trial on lines with ticks, and on outlines with tips. In widths of the line:
@@ -30,7 +31,6 @@ MOST_OUT = 4.0  # one that goes out further is a line
 APPROACH = 1.5  # before and after it show whether the line goes straight on, ...
 STRAIGHT_ON = math.radians(50)  # ... within this, ...
 CORNER = math.radians(125)  # ... or turns a corner that is no tip
-IN_TRACK = 0.3  # out and back: the sides of a tip of 20 degrees are further apart
 
 
 class Stub(NamedTuple):
@@ -66,7 +66,7 @@ def _found(way: Array, width_mm: float) -> Iterator[Stub]:
         after = _headings(way[first + 2 * out + near] - way[first + 2 * out])
         turned = np.abs(np.angle(np.exp(1j * (after - before))))
         # 2. out and back beside itself; at a corner of the line in its own track
-        close = np.select([turned < STRAIGHT_ON, turned < CORNER], [CLOSE, IN_TRACK], 0.0)
+        close = np.select([turned < STRAIGHT_ON, turned < CORNER], [CLOSE, NEAR], 0.0)
         for foot, most in zip(first[close > 0].tolist(), close[close > 0], strict=True):
             stroke = way[foot : foot + 2 * out + 1]
             apart_mm = np.hypot(*(stroke - stroke[::-1]).T)

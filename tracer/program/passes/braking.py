@@ -25,16 +25,14 @@ from itertools import pairwise
 import numpy as np
 
 from morfax.motion import curves, long_array
-from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.motion.arrays import NOT_ZERO, ROUNDED, Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import LongArray, blocks, released
-from morfax.motion.plane import NOTHING_MM
+from morfax.motion.plane import CORNER_RAD, NOTHING_MM
 from morfax.motion.polyline import at_lengths, at_places, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
-ROUNDED = 1e-6  # of a period: what rounding adds
 # a sharper turn is a corner, at which the head stops to swivel; by trial
-CORNER = np.radians(20)
 RUN_MM = 0.1  # from node to node of a way that is run from memory
 BRAKED_ROWS = 600  # looked at first, back from a halt: from 10 mm/s the axis brakes in 120
 SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
@@ -86,7 +84,7 @@ def _corners(places: Array) -> list[int]:
     steps = np.diff(places, axis=0)
     turned = np.diff(np.arctan2(steps[:, 1], steps[:, 0]))
     turned = np.abs(np.remainder(turned + np.pi, 2 * np.pi) - np.pi)
-    return [int(i) + 1 for i in np.flatnonzero(turned > CORNER)]
+    return [int(i) + 1 for i in np.flatnonzero(turned > CORNER_RAD)]
 
 
 def _timed(places: Array, took_s: Array, speeds: Array, rate_hz: float) -> Array:

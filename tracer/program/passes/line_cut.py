@@ -24,6 +24,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.long_array import released
 from morfax.motion.motion import BLOCK_SAMPLES
+from morfax.motion.usual import ACCELERATION_MM_S2
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Descent
@@ -39,7 +40,6 @@ from morfax.tracer.program.passes.tool_height import (
 )
 from morfax.tracer.program.passes.way import Rest, Way, in_order
 
-BRAKE_MM_S2 = 500.0  # of X and Y, as the head's own
 SHORTEST_MM = 0.1  # in which the tool goes to and fro down a ramp: less is no way
 
 
@@ -295,4 +295,4 @@ class LineCut:
 
     def _resting(self, xy_mm: Array, at: Sequence[float]) -> list[Array]:
         """Positions (n, 2) mm cut at some of them, at rest there."""
-        return braking.pieces(xy_mm, at, BRAKE_MM_S2, self.rate_hz)
+        return braking.pieces(xy_mm, at, ACCELERATION_MM_S2, self.rate_hz)

@@ -20,12 +20,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.usual import ACCELERATION_MM_S2
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Work
 from morfax.tracer.operator.zunit import QuillMove
 from morfax.tracer.program.passes import braking
-from morfax.tracer.program.passes.line_cut import BRAKE_MM_S2, LineCut
+from morfax.tracer.program.passes.line_cut import LineCut
 from morfax.tracer.program.passes.tabs import Tab
 from morfax.tracer.program.passes.tool_height import PlaceMm, at_height, rapid, standing
 
@@ -70,7 +71,7 @@ class Passes:
         last = len(line.xy_mm) - 1 if line.loop_from is None else line.loop_from
         back = np.vstack(line.without_guides(0, last))[::-1]
         yield self.rapid(at_mm, back[0])  # a loop does not end just where it began
-        way = braking.run(back, self.work.rapid_mm_s, BRAKE_MM_S2, self.rate_hz)
+        way = braking.run(back, self.work.rapid_mm_s, ACCELERATION_MM_S2, self.rate_hz)
         yield at_height(way, self.work.clearance_mm)
         if line.begin_mm != line.start_mm:
             yield self.rapid(line.start_mm, line.begin_mm)

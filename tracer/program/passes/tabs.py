@@ -19,7 +19,6 @@ tabs gets as many as it has room for, down to none, and a remark says so, unless
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -28,7 +27,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
-from morfax.motion.plane import left_of_headings
+from morfax.motion.plane import CORNER_RAD, left_of_headings
 from morfax.motion.polyline import area_mm2, at_lengths
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
@@ -42,7 +41,6 @@ CLEAR_MM = 1.0  # from a tab to a corner, a halt, the beginning of the line
 APART_MM = 0.1  # between the places that are tried
 FELT_MM = 0.5  # to either side of a place: shows the heading there
 # turned over twice that: a corner, or a bend of less than 3 mm radius
-TIGHT_RAD = math.radians(20)
 # turned over a tab: the first of these that it stays in counts
 STRAIGHT_RAD = np.radians([20, 45, 90])
 BESIDE_MM = 0.2  # beside the cut: there must be something that the tab can hold
@@ -170,7 +168,7 @@ def _places(
     sharpest = maximum_filter1d(bend, clear)
     # 3. clear of the ends of the loop and of the halts on it
     half_mm = 0.5 * long_mm + CLEAR_MM
-    ok = (turned <= STRAIGHT_RAD[-1]) & (sharpest <= TIGHT_RAD)
+    ok = (turned <= STRAIGHT_RAD[-1]) & (sharpest <= CORNER_RAD)
     ok &= (at_mm >= half_mm) & (at_mm <= loop.length_mm - half_mm)
     for halt_mm in kept_off_mm:
         ok &= np.abs(at_mm - halt_mm) >= half_mm

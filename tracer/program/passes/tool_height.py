@@ -16,13 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from morfax.motion import ramp
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.plane import NOTHING_MM
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.operator.work import Descent, Work
 from morfax.tracer.operator.zunit import QuillMove, z_moves
-
-ROUNDED = 1e-9  # of the feed, and of a period: what rounding adds
 
 PlaceMm = Array | tuple[float, float]
 

@@ -93,7 +93,7 @@ def test_the_best_turn_is_that_of_plain_loops(
             turned = np.concatenate([way[:i], way[i : j + 1][::-1], way[j + 1 :]])
             gains.append(order.idle_way_mm(way, idle_mm) - order.idle_way_mm(turned, idle_mm))
         best = order._best_turn(way, laid, order._saved(laid), i)
-        assert best == pytest.approx(max(gains), abs=order.ROUNDING_MM)
+        assert best == pytest.approx(max(gains), abs=NOTHING_MM / 2)
 
 
 def test_an_order_is_made_once_where_no_line_may_be_turned(

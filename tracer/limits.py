@@ -1,0 +1,32 @@
+"""Limits of the tracer that several rooms share: one idea, one number. Those of one room stand there.
+
+Widths are those of the line, or of the pen that drew it. Turns stand in `motion.plane`, the least length of a
+stroke in `drawing.contrast`, the fewest stations in `sensing`. Chosen by trial, where nothing else is said.
+"""
+
+from __future__ import annotations
+
+import math
+
+from morfax.motion.plane import CORNER_RAD
+
+AHEAD_RAD = 2 * CORNER_RAD  # what lies within this of a heading lies ahead; it goes straight on
+TIP_RAD = 6 * CORNER_RAD  # a corner that turns by more is a tip
+BACK_RAD = math.radians(150)  # what turns by more goes back
+
+PAPER = 0.25  # of the ink's darkness: paler places are paper
+AS_WIDE = 0.15  # of a width: what differs by more is no line of the same pen ...
+WIDER = 1 + AS_WIDE  # ... or two lines that share their ink
+NEAR = 0.3  # widths from a line's middle: so near a place is on that line
+CLEAR_WIDTHS = 1.5  # from a place where lines meet: further on, the ink is that of one line
+ABOUT_WIDTHS = 3.0  # about a place: so far what belongs to it is looked for
+LONGER_WIDTHS = 4.0  # what goes on beside a line for longer is no corner, crossing or blot
+FADES = 3.0  # softnesses from its edge, ink is whole or none: erfc is within 1e-5 of that
+
+EVERY_MM = 0.05  # between the places that stand for a way where it is held against another
+SOME_PLACES = 40  # of a line, which show where it runs
+MANY = 100  # lines, patches, pieces of a line: of more not each is looked at
+ROUNDS = 6  # times that a fit is made anew from the one before, at the most
+FEW_PX = (
+    1 << 20
+)  # pixels that are worked on at a time, 4 MB of darkness; so many tell a figure of a sheet

@@ -1,0 +1,96 @@
+"""Parts of closed lines, and lines made of such parts; the ink about where they meet.
+
+Signals: lines as the head ran along them in; lines of the same positions, mm at the motion rate, out.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import length_mm, lengths_mm
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following.followed import THINNED
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import Led
+from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.laid.bay_run import Bay, laid
+from morfax.tracer.program.laid.rim_bays import RimBay
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
+from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
+
+REACH = 2.2  # widths of the ink about a place that is looked at
+MOST_PLACES = 4000  # of that
+MOST_ABOUT = 600  # places that show what is near
+
+
+def is_plain(line: Line) -> bool:
+    """Whether a line came round, and bears no mark."""
+    is_marked = line.is_lead or line.reference_mm is not None or line.marks or line.guides
+    return line.ending == "closed" and not is_marked and not line.loop_from and not line.on_edge
+
+
+def part_of(line: Line, first: int, last: int) -> Line:
+    """The part of a closed line from one of its thinned places to another, perhaps over its beginning."""
+    count = len(line.xy_mm)
+    begin, end = first * THINNED, last * THINNED
+    at = np.arange(begin, end + 1 + count * (end < begin)) % count
+    at = at[: len(at) // THINNED * THINNED]  # whole steps of the thinned places
+    return replace(line, xy_mm=line.xy_mm[at], led=Led.along(line.led.of(count)[at]))
+
+
+def back_along(line: Line) -> Line:
+    """A line from its end to its beginning."""
+    return replace(line, xy_mm=line.xy_mm[::-1], led=line.led.turned_round(len(line.xy_mm)))
+
+
+def run_on(setup: Setup, parts: Sequence[Line], sides: Sequence[RimBay]) -> Line:
+    """Parts of lines as one closed line, with the head run along a side from the end of each part onto the
+    next, or the first.
+    """
+    line = _one_after_the_other(parts)
+    come_mm = lengths_mm(line.places_mm)
+    round_mm = float(come_mm[-1])
+    counts = np.cumsum([0, *(len(part.places_mm) for part in parts)])
+    bays = list[Bay]()
+    for k, side in enumerate(sides):
+        onto = (k + 1) % len(parts)
+        away_mm = np.hypot(*(parts[onto].places_mm - side.way[-1]).T)
+        last_mm = float(come_mm[counts[onto] + int(np.argmin(away_mm))])
+        over_mm = round_mm if onto == 0 else 0.0
+        bays.append(Bay(float(come_mm[counts[k + 1] - 1]), over_mm + last_mm, side, 0.0))
+    return laid(setup, line, bays, round_mm)
+
+
+def _one_after_the_other(parts: Sequence[Line]) -> Line:
+    """Parts of lines as one closed line, straight from each to the next."""
+    first = parts[0]
+    leaders = [line.led.of(len(line.xy_mm)) for line in parts]
+    xy_mm = np.vstack([*(line.xy_mm for line in parts), first.xy_mm[:1]])
+    return replace(
+        first,
+        xy_mm=xy_mm,
+        led=Led.along(np.concatenate([*leaders, leaders[0][:1]])),
+        number=min(line.number for line in parts),
+        ink_mm=max(line.ink_mm for line in parts),
+        length_mm=length_mm(xy_mm),
+        junctions_mm=tuple(
+            dict.fromkeys(place for line in parts for place in line.junctions_mm)
+        ),
+    )
+
+
+def ink_about(drawing: Drawing, about: Array, width_mm: float) -> SeenInk:
+    """The ink about some places (n, 2) mm."""
+    i, j = Window.about(drawing, about, REACH * width_mm).grid()
+    near = away_from(middles_mm(drawing, i, j), about[:: 1 + len(about) // MOST_ABOUT])
+    within = np.flatnonzero(near < REACH * width_mm)
+    every = 1 + len(within) // MOST_PLACES
+    i, j = i[within[::every]], j[within[::every]]
+    return SeenInk.of(drawing, (i, j), np.full(len(i), NOWHERE_MM), width_mm, every)

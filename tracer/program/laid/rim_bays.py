@@ -1,0 +1,168 @@
+"""Rim bays: a stretch of a closed line laid within the rim of its ink, however long and of whatever shape.
+
+    ──╮ ╭──     a stalk, a slit: two sides that run together over many widths, straight or bent; on one side
+      │ │       of the line the rim of its ink is as clear as that of any other
+      ╰─╯
+
+Signals: the ink about a stretch, and the stretch, in; the ways within the rims of its ink from its first
+place to its last out.
+
+Source: our own (see `ink.rim`). Questions: that the bar is two lines and not a broad one its ink does not
+tell, where the sides touch; on a drawing of one pen it is two.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.crossings import crossings_of
+from morfax.motion.polyline import area_mm2, length_mm, lengths_mm, nearest_mm
+from morfax.tracer.drawing.components import INK
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.ink.rim import felt_rim
+from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.laid.rim_loops import AS_WIDE, broad_mm
+from morfax.tracer.program.lines.selection import lines_of
+from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.compass import between_corners
+
+# In widths of the pen:
+REACH = 3.0  # about a stretch its rim is looked for
+NEAR = 1.0  # from an end of the stretch to the rim's way
+ASIDE = 0.2  # the same, where both run side by side
+LEG = 1.5  # over so much the way comes to the stretch's ends
+LONGER = 1.5  # than the stretch: a way that is not goes along no bay
+LOOP = 2.0  # of the way: a longer loop at a crossing is none of a narrow end
+OPEN = 0.2  # in the mean between its sides: a way with less runs out and back along one line
+
+
+class RimBay(NamedTuple):
+    """A way as stretches (n, 2) mm between sharp corners, half the pen's width, mm, and its misfit."""
+
+    between_corners: tuple[Array, ...]
+    half_mm: float
+    misfit: float = math.inf
+
+    @property
+    def way(self) -> Array:
+        """The way (n, 2) mm."""
+        return np.vstack(self.between_corners)
+
+    @property
+    def ahead(self) -> Array:
+        """From its first place to the next, (x, y) mm."""
+        places = self.between_corners[0]
+        return np.asarray(places[1] - places[0])
+
+    @property
+    def length_mm(self) -> float:
+        """The length of the way."""
+        return length_mm(self.way)
+
+    def stretches(self) -> list[Array]:
+        """The way as stretches (n, 2) mm between sharp corners."""
+        return list(self.between_corners)
+
+    def turned_round(self) -> RimBay:
+        """The same from its last place to its first."""
+        return self._replace(between_corners=tuple(s[::-1] for s in self.between_corners[::-1]))
+
+
+def rim_bays(drawing: Drawing, view: View, own: Array, beyond: Array) -> Iterator[RimBay]:
+    """Those ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
+    its first place to its last, that are longer than the stretch and go round more than one line.
+    """
+    for bay in ways_within_rims(drawing, view, own, beyond):
+        if _is_bay(bay.way, own, view.width_mm):
+            yield bay
+
+
+def ways_within_rims(
+    drawing: Drawing, view: View, own: Array, beyond: Array
+) -> Iterator[RimBay]:
+    """The ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
+    its first place to its last, that do not cross themselves.
+    """
+    half_mm = 0.5 * view.width_mm
+    for outline in _outlines(drawing, np.vstack([own, beyond]), view.width_mm):
+        if nearest_mm(own[[0, -1]], outline).max() > NEAR * view.width_mm:
+            continue
+        rim = felt_rim(view, outline)
+        if rim is None:
+            continue
+        for way in _between(rim.way(half_mm), own, view.width_mm):
+            if not len(crossings_of(way, np.arange(len(way) - 1))):
+                yield RimBay(tuple(between_corners(way)), half_mm)
+
+
+def _outlines(drawing: Drawing, about: Array, width_mm: float) -> Iterator[Array]:
+    """The outlines (n, 2) mm of the ink about some places, with the ink to their left."""
+    window = Window.about(drawing, about, REACH * width_mm)
+    ink = np.asarray(window.of(drawing.darkness), float) > INK
+    padded = np.pad(ink.astype(np.uint8), 1)
+    found, tree = cv2.findContours(padded, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    for outline, (_, _, _, around) in zip(found, tree[0] if len(found) else (), strict=True):
+        column, row = outline[:, 0].T - 1
+        places = np.column_stack(window.place_mm(column, row))
+        is_hole = around >= 0
+        yield places if (area_mm2(places) > 0) != is_hole else places[::-1]
+
+
+def _between(way: Array, own: Array, width_mm: float) -> Iterator[Array]:
+    """The parts of a closed way on either side of a stretch (n, 2) mm, from its first place to its last; to
+    these places.
+    """
+    ends, steps = own[[0, -1]], own[[1, -1]] - own[[0, -2]]
+    ahead = np.roll(way, -1, axis=0) - np.roll(way, 1, axis=0)
+    for side in (1, -1):  # on its left the way comes back: the ink is to the left of that
+        at = list[int]()
+        for end, step in zip(ends, steps, strict=True):
+            away_mm = np.where(side * (ahead @ step) > 0, np.hypot(*(way - end).T), math.inf)
+            at.append(int(np.argmin(away_mm)))
+        if np.hypot(*(way[at] - ends).T).max() < ASIDE * width_mm:
+            count = (side * (at[1] - at[0])) % len(way)
+            part = way[(at[0] + side * np.arange(count + 1)) % len(way)]
+            yield _without_loops(_to_ends(part, ends, LEG * width_mm), LOOP * width_mm)
+
+
+def _to_ends(way: Array, ends: Array, leg_mm: float) -> Array:
+    """A way (n, 2) mm that comes to two places over a leg at each of its ends."""
+    come_mm = lengths_mm(way)
+    leg_mm = min(leg_mm, 0.4 * float(come_mm[-1]))
+    near_first = np.clip(1 - come_mm / leg_mm, 0, 1)[:, None]
+    near_last = np.clip(1 - (come_mm[-1] - come_mm) / leg_mm, 0, 1)[:, None]
+    return np.asarray(way + near_first * (ends[0] - way[0]) + near_last * (ends[1] - way[-1]))
+
+
+def _without_loops(way: Array, most_mm: float) -> Array:
+    """A way (n, 2) mm with a corner in place of loops no longer than that: within a round end as narrow as
+    the pen the way comes to a point, and past it.
+    """
+    pieces = crossings_of(way, np.arange(len(way) - 1))
+    come_mm, kept, at = lengths_mm(way), list[Array](), 0
+    for first, last in sorted(np.sort(pieces, axis=1).tolist()):
+        i, j = int(first), int(last)
+        if i < at or come_mm[j] - come_mm[i] > most_mm:
+            continue
+        kept += [way[at : i + 1], (way[i] + (first - i) * (way[i + 1] - way[i]))[None]]
+        at = j + 1
+    return np.vstack([*kept, way[at:]])
+
+
+def _is_bay(way: Array, own: Array, width_mm: float) -> bool:
+    """Whether a way is longer than a stretch, and goes round more than one line."""
+    is_longer = length_mm(way) > length_mm(own) + LONGER * width_mm
+    return is_longer and broad_mm(way) > OPEN * width_mm
+
+
+def is_a_pen(sheet: Sheet, broad_mm: float) -> bool:
+    """Whether a line of the sheet is about so broad."""
+    shares = sheet.widths_mm[lines_of(sheet)] / broad_mm
+    return bool(np.any(np.abs(shares - 1) < AS_WIDE))

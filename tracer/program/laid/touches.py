@@ -1,0 +1,270 @@
+"""Touches: where two sides of closed lines run together for a while, each is laid within its own rim.
+
+    ──╲_______╱──      touching lines bend away from one another: the rims of their ink go on from either line
+    ──╱‾‾‾‾‾‾‾╲──      into itself, smoothly. The head may have gone over from one to the other between them
+
+If the ways within the rims explain the ink, and the head's ways do not, the lines are those: each run along
+its own rim; or, where the head went over, two lines out of one, or the same line round one of its lobes the
+other way.
+
+Signals: the set-up and the closed lines of a patch of ink in; the lines out.
+
+Source: our own (see `ink.rim`). Questions: lines that cross leave the ink that the head's ways explain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations_with_replacement, product
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array, bounds
+from morfax.motion.neighbours import Neighbours
+from morfax.motion.polyline import at_lengths, evenly, length_mm, lengths_mm
+from morfax.tracer.following.line import Line
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.program.against_ink.bars import reaches
+from morfax.tracer.program.laid.bay_run import Bay, laid
+from morfax.tracer.program.laid.line_parts import (
+    back_along,
+    ink_about,
+    is_plain,
+    part_of,
+    run_on,
+)
+from morfax.tracer.program.laid.narrow_bays import is_clear
+from morfax.tracer.program.laid.rim_bays import RimBay, ways_within_rims
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.tangles.beside_itself import partners, shortest
+from morfax.tracer.tangles.pen import away_from
+from morfax.tracer.tangles.seen_ink import LIKE, SeenInk
+
+# In widths of the line; chosen by trial on circles that touch lines and each other:
+STEP = 0.25  # between the places that are looked at
+NEAR = 1.3  # sides that are nearer leave one ink
+ON = 8.0  # of way between two sides of one line
+GAP = 4.0  # of way between two touches
+SHORT, LONG = 5.0, 60.0  # a shorter one is a crossing; a longer one is no touch
+LEG = 2.0  # of clean line before and after
+HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
+# for each width of the ways: head's ways that leave less explain the ink, and rims must leave so much less
+LEAVES, TIMES = 0.01, 2.0
+LONGER = 1.4  # a rim, than the head's way; and a width
+MOST = 20  # touches of one patch that are looked at
+
+
+class _Touch(NamedTuple):
+    """Where two lines touch, or one touches itself: the lines' numbers, from where to where along each, mm,
+    with legs; and whether both run the same way.
+    """
+
+    lines: tuple[int, int]
+    first_mm: tuple[float, float]
+    last_mm: tuple[float, float]
+    is_parallel: bool
+
+
+def touching(setup: Setup, lines: Sequence[Line]) -> list[Line]:
+    """The lines of a patch, each along its own rim where closed lines touch."""
+    lines = list(lines)
+    if not is_clear(setup.sheet.drawing):
+        return lines
+    for _ in range(MOST):
+        closed = [n for n, line in enumerate(lines) if is_plain(line)]
+        for touch in _touches(lines, closed):
+            mended = _mended(setup, lines, touch)
+            if mended is not None:
+                kept = [line for n, line in enumerate(lines) if n not in touch.lines]
+                lines = sorted([*kept, *mended], key=lambda each: each.ending != "closed")
+                break
+        else:
+            break
+    return lines
+
+
+def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[_Touch]:
+    """The touches of closed lines, given by their numbers."""
+    ways = {n: evenly(lines[n].loop_mm, STEP * lines[n].width_mm) for n in closed}
+    for one, other in combinations_with_replacement(closed, 2):
+        width_mm = lines[one].width_mm
+        low, high = bounds(ways[one])
+        near_mm = NEAR * width_mm
+        if one == other:
+            partner = partners(ways[one], near_mm, round(ON / STEP))
+        elif reaches(ways[other], low - near_mm, high + near_mm):
+            away_mm, nearest = Neighbours(ways[other]).nearest(ways[one], near_mm)
+            partner = np.where(np.isfinite(away_mm), nearest, -1)
+        else:
+            continue
+        yield from _grouped((one, other), (ways[one], ways[other]), partner, width_mm)
+
+
+def _grouped(
+    pair: tuple[int, int],
+    ways: tuple[Array, Array],
+    partner: NDArray[np.int64],
+    width_mm: float,
+) -> Iterator[_Touch]:
+    """The touches of two ways by the places of the second that lie near to those of the first."""
+    near = np.flatnonzero(partner >= 0)
+    if not len(near):
+        return
+    first, last = shortest(near, len(ways[0]))
+    if last >= len(ways[0]):  # over its beginning: in order from behind the widest gap
+        near = np.concatenate([near[near >= first], near[near < first] + len(ways[0])])
+    for group in np.split(near, np.flatnonzero(np.diff(near) > GAP / STEP) + 1):
+        others = partner[group % len(ways[0])]
+        begin, end = shortest(np.unique(others), len(ways[1]))
+        long = max(group[-1] - group[0], end - begin) * STEP
+        is_once = pair[0] != pair[1] or group[0] % len(ways[0]) < begin
+        if not is_once or not SHORT < long < LONG:
+            continue
+        apart = np.diff(others) if len(others) > 1 else np.zeros(1)
+        leg, step_mm = LEG / STEP, STEP * width_mm
+        firsts = (group[0] - leg) * step_mm, (begin - leg) * step_mm
+        lasts = (group[-1] + leg) * step_mm, (end + leg) * step_mm
+        yield _Touch(pair, firsts, lasts, bool(np.median(np.sign(apart[apart != 0])) > 0))
+
+
+class _Ways(NamedTuple):
+    """The stretches of a touch as the head ran, both in the first one's direction."""
+
+    one: Array
+    other: Array
+
+
+def _stretch(line: Line, first_mm: float, last_mm: float, step_mm: float) -> Array:
+    """Places of a closed line from a length along it to another, (n, 2) mm."""
+    places = line.loop_mm
+    round_mm = float(lengths_mm(places)[-1])
+    count = max(2, round((last_mm - first_mm) / step_mm))
+    return at_lengths(places, np.linspace(first_mm, last_mm, count + 1) % round_mm)
+
+
+def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | None:
+    """The lines of a touch, or those that they are, each along its rim; None if they explain the ink as they
+    are, or rims do not.
+    """
+    one, other = (lines[n] for n in touch.lines)
+    width_mm, step_mm = one.width_mm, 0.1 * one.width_mm
+    whole = [float(lengths_mm(line.loop_mm)[-1]) for line in (one, other)]
+    long = [last - first for first, last in zip(touch.first_mm, touch.last_mm, strict=True)]
+    if sum(long) > 0.6 * min(whole):
+        return None
+    # 1. the ways as they are, held against the ink
+    first, second = (
+        _stretch(line, begin, end, step_mm)
+        for line, begin, end in zip((one, other), touch.first_mm, touch.last_mm, strict=True)
+    )
+    ways = _Ways(first, second if touch.is_parallel else second[::-1])
+    ink = ink_about(setup.sheet.drawing, np.vstack(ways), width_mm)
+    rest_mm = _rest_mm(ink, lines, touch, whole)
+    widths = sum(long) / width_mm
+
+    def left(*along: Array) -> float:
+        away_mm = np.min([rest_mm, *(away_from(ink.places_mm, way) for way in along)], axis=0)
+        return ink.misfit(ink.best_drawn(away_mm)) / widths
+
+    own = left(*ways)
+    if own < LEAVES:
+        return None
+    # 2. the ways within the rims
+    rims = _rims(setup, width_mm, ways, left)
+    if rims is None or rims.left > LIKE or own < TIMES * rims.left:
+        return None
+    if not rims.is_exchanged:
+        return _laid_each(setup, (one, other), touch, rims, whole)
+    return _exchanged(setup, one, touch, rims) if one is other else None
+
+
+def _rest_mm(
+    ink: SeenInk, lines: Sequence[Line], touch: _Touch, whole: Sequence[float]
+) -> Array:
+    """How far the ink is from all lines but the stretches of a touch, mm."""
+    ways = [line.places_mm for n, line in enumerate(lines) if n not in touch.lines]
+    step_mm = 0.1 * lines[touch.lines[0]].width_mm
+    if touch.lines[0] != touch.lines[1]:
+        ways += [
+            _stretch(lines[n], last, first + round_mm, step_mm)
+            for n, first, last, round_mm in zip(
+                touch.lines, touch.first_mm, touch.last_mm, whole, strict=True
+            )
+        ]
+    else:
+        (first, begin), (last, end) = touch.first_mm, touch.last_mm
+        line, round_mm = lines[touch.lines[0]], whole[0]
+        ways.append(_stretch(line, last, last + (begin - last) % round_mm, step_mm))
+        ways.append(_stretch(line, end, end + (first - end) % round_mm, step_mm))
+    return np.min([away_from(ink.places_mm, way) for way in ways], axis=0)
+
+
+class _Rims(NamedTuple):
+    """The ways within both rims of a touch, in the first line's direction, one from where the first line
+    comes; whether they end on the other line; and what they leave unexplained for each width.
+    """
+
+    one: RimBay
+    other: RimBay
+    is_exchanged: bool
+    left: float
+
+
+def _rims(
+    setup: Setup, width_mm: float, ways: _Ways, left: Callable[[Array, Array], float]
+) -> _Rims | None:
+    """The ways within the rims that leave least, from either way's beginning to either's end."""
+    view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
+    drawing, about = setup.sheet.drawing, np.vstack(ways)
+    longest_mm = LONGER * max(length_mm(way) for way in ways) + width_mm
+    best: _Rims | None = None
+    for is_exchanged in (False, True):
+        onto = ways[::-1] if is_exchanged else ways
+        found = list[list[RimBay]]()
+        for into, out_of in zip(ways, onto, strict=True):
+            own = np.vstack([into[:2], out_of[-2:]])
+            every = ways_within_rims(drawing, view, own, about)
+            found.append([rim for rim in every if rim.length_mm < longest_mm])
+        for one, other in product(*found):
+            rims = _Rims(one, other, is_exchanged, left(one.way, other.way))
+            if best is None or rims.left < best.left:
+                best = rims
+    return best
+
+
+def _laid_each(
+    setup: Setup,
+    pair: tuple[Line, Line],
+    touch: _Touch,
+    rims: _Rims,
+    whole: Sequence[float],
+) -> list[Line]:
+    """The lines of a touch, or the one line, along their rims."""
+    other = rims.other if touch.is_parallel else rims.other.turned_round()
+    (first, begin), (last, end) = touch.first_mm, touch.last_mm
+    bays = Bay(first, last, rims.one, 0.0), Bay(begin, end, other, 0.0)
+    if pair[0] is pair[1]:
+        return [laid(setup, pair[0], bays, whole[0])]
+    return [
+        laid(setup, line, [bay], round_mm)
+        for line, bay, round_mm in zip(pair, bays, whole, strict=True)
+    ]
+
+
+def _exchanged(setup: Setup, line: Line, touch: _Touch, rims: _Rims) -> list[Line]:
+    """What one line is that goes over to itself at a touch: two lines, or one round a lobe the other way."""
+    come_mm, more_mm = lengths_mm(line.places_mm), HALF_LEG * line.width_mm
+    (first, begin), (last, end) = touch.first_mm, touch.last_mm
+
+    def part(first_mm: float, last_mm: float) -> Line:
+        at = (first_mm % come_mm[-1], last_mm % come_mm[-1])
+        return part_of(line, *np.searchsorted(come_mm, at).tolist())
+
+    if touch.is_parallel:
+        own, other = part(last - more_mm, begin), part(end - more_mm, first)
+        return [run_on(setup, [own], [rims.other]), run_on(setup, [other], [rims.one])]
+    lobe = back_along(part(last, begin + more_mm))
+    sides = [rims.one, rims.other.turned_round()]
+    return [run_on(setup, [part(end - more_mm, first), lobe], sides)]
