@@ -37,7 +37,7 @@ NOTHING = np.empty((0, 2))  # was felt between
 # All limits below were chosen by trial on pairs of lines and on line art.
 BROAD = 1.08  # times the pen's width: ink that may be two lines'
 LONG = 6.0  # widths of a pen: shorter broad ink is where others cross, or a blot
-# widths before a step a line shows where it leads, and so many at least
+# widths before a step: there a line shows where it leads, along so much at least
 OWN, LEAST = (0.75, 2.75), 0.6
 NARROWEST = 10.0  # percentile of a stretch's widths: parts of its ink are so narrow
 NARROW = 0.8  # times the pen's width: a line by itself is broader

@@ -74,11 +74,12 @@ class Doubled(NamedTuple):
         felt: Sequence[Run],
         found: Mapping[int, Swelling],
         patch_of: Mapping[int, int],
-        parts: Callable[[int], bool],
+        onward: Callable[[int], tuple[int, int]],
         narrowest_mm: float,
     ) -> Doubled:
         """Find the doubled stretches among those whose widths are given, and patches; none of a sheet that is
-        not clean, or whose lines are narrower than a width. `parts` says whether one parts at an end.
+        not clean, or whose lines are narrower than a width. `onward` says how many go straight on
+        from either end of one.
         """
         # 1. whether the ink along each stretch is one pen's line, or two lines
         every = list(found.values())
@@ -101,7 +102,7 @@ class Doubled(NamedTuple):
         are_several = _are_several_pens(felt, spreads)
         swell = {n for n in broad if spreads[n] > (SWELLS if are_several else EVEN)}
         if not beside_mm > 0:
-            swell -= _nibs({n: found[n] for n in swell}, patch_of, parts, pen_mm)
+            swell -= _nibs({n: found[n] for n in swell}, patch_of, onward, pen_mm)
         while not are_several and (
             more := {n for n in broad.keys() - swell if _goes_on(felt, n, swell, pen_mm)}
         ):
@@ -141,7 +142,7 @@ def _of_the_pen(
 def _nibs(
     some: Mapping[int, Swelling],
     patch_of: Mapping[int, int],
-    parts: Callable[[int], bool],
+    onward: Callable[[int], tuple[int, int]],
     pen_mm: float,
 ) -> set[int]:
     """Stretches that swell as one stroke of a nib, on patches where lines do not cross more than once."""
@@ -151,7 +152,7 @@ def _nibs(
     return {
         n
         for n, each in some.items()
-        if crossed[patch_of[n]] < ENOUGH and not may_be_two_lines(each, pen_mm, parts=parts(n))
+        if crossed[patch_of[n]] < ENOUGH and not may_be_two_lines(each, pen_mm, onward(n))
     }
 
 

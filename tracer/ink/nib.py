@@ -91,14 +91,16 @@ def _misfit(sines: Array, means: Array, weights: Array) -> float:
     return float(np.sum((shapes @ fit - means * weights) ** 2))
 
 
-def may_be_two_lines(each: Swelling, thin_mm: float, *, parts: bool) -> bool:
-    """Whether ink that swells may be two lines of the thinnest width; `parts`: it parts at an end.
+def may_be_two_lines(each: Swelling, thin_mm: float, onward: tuple[int, int]) -> bool:
+    """Whether ink that swells may be two lines of the thinnest width; so many go straight on from its ends.
 
-    Two lines part, cross, or end somewhere. Ink that does not and is thin at its ends, or within it as a nib
-    is that swells twice, is one stroke's.
+    Two lines part, cross, or end somewhere, side by side too. Ink that does not and is thin at its ends, or
+    within it as a nib is that swells twice, is one stroke's.
     """
-    if parts or like_two_lines(each, thin_mm):
+    if max(onward) > 1 or like_two_lines(each, thin_mm):
         return True
+    first, last = onward
+    each = each._replace(ends=(first == 0, last == 0))
     low = np.flatnonzero(each.known < LOW * thin_mm)
     is_thin_within = bool(len(low)) and low[0] > 0 and low[-1] < len(each.known) - 1
     return not is_thin_within and any(_broad_ends([each], thin_mm))

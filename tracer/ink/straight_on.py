@@ -19,7 +19,7 @@ from morfax.motion.plane import unit
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.broad import SHORT_WIDTHS
 from morfax.tracer.ink.felt import usual_width_mm
-from morfax.tracer.ink.graph import Graph
+from morfax.tracer.ink.graph import RING, Graph
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO
 from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
@@ -65,9 +65,11 @@ class StraightOn:
                 found.add(here[0])
         return found
 
-    def parts(self, number: int) -> bool:
-        """Whether two stretches go straight on from an end of a stretch, as two lines do that part there."""
-        return any(len(self._ahead(number, last)) > 1 for last in (False, True))
+    def onward(self, number: int) -> tuple[int, int]:
+        """How many stretches go straight on from either end of a stretch; a ring goes on into itself."""
+        if self.graph.stretches[number].nodes[0] == RING:
+            return 1, 1
+        return len(self._ahead(number, False)), len(self._ahead(number, True))
 
     def _onto(self, number: int, last: bool) -> tuple[int, bool] | None:
         """The stretch straight on from an end of another, and its far end; None if none is straight on.

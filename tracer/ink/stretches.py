@@ -152,7 +152,7 @@ class FeltSheet:
             narrowest_mm = LEAST_PX[drawing.is_hard] * pixel_mm
             swell = {n: s for n in some if (s := Swelling.of(felt[n], ends[n])) is not None}
             patch_of = {n: int(patch[n]) for n in some}
-            doubled = Doubled.of(felt, swell, patch_of, straight.parts, narrowest_mm)
+            doubled = Doubled.of(felt, swell, patch_of, straight.onward, narrowest_mm)
             pen_mm = narrow_of(list(swell.values()))
             some_beside = swell if are_strokes else {}
             beside = {

@@ -106,3 +106,13 @@ def test_a_brush_beside_a_thin_line_is_run_once(swells: int) -> None:
     # along both rims it would be run twice
     assert run_mm(found) == pytest.approx(54 + length_mm(way), rel=0.01)
     assert found.ink is not None and not found.ink.single
+
+
+def test_two_lines_from_one_place_whose_other_ends_lie_side_by_side_are_both_run() -> None:
+    """Their ink swells from a tip to its end, as that of a brush would that is lifted where it is broad."""
+    one, other = (np.array([(8.0, 20.0), (30.0, 20.0 + off)]) for off in (0.0, 1.1 * PEN_MM))
+    thin = np.array([(8.0, 40.0), (62.0, 40.0)])
+    found = trace_ink(inked(one, other, thin, width_mm=PEN_MM, seed=1))
+    assert run_mm(found) == pytest.approx(
+        54 + 2 * 22, rel=0.02
+    )  # out along one, back along the other
