@@ -2,9 +2,7 @@
 
 Signals: an image file in (PNG, JPEG, TIFF, …; any depth, grey or colour, with or without alpha), darkness
 out: float32 (rows from the top, columns), 0 = paper, 1 = the ink of the drawing's lines, on square pixels of
-`pitch_mm`.
-
-Uneven paper and the darkness of the ink are seen to by `levelling`.
+`pitch_mm`. Uneven paper and the darkness of the ink are seen to by `levelling`.
 
 Sheet coordinates: mm from the lower-left corner, X right, Y up; pixel i covers [i, i+1) pitches, so the
 centre of pixel 0 is at half a pitch.
@@ -45,8 +43,7 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.strokes import Sheet
     from morfax.tracer.flatten.flat import Flattening
 
-# of a scan of 300 dpi, for which the head's legs are made; a head that is slowed down more
-# than five times loses edges; by trial
+# of a scan of 300 dpi, for which the head's legs are made; a head slowed five times loses edges; by trial
 EDGE_PITCH_MM, SMALLEST = 0.0847, 0.2
 LEAST_RADIUS_MM, MOST_ENLARGED = 1.3, 4  # of an edge; by trial on round holes
 
