@@ -27,7 +27,6 @@ from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing.edge_leg import EdgeLeg
 from morfax.tracer.drawing.lens import radius_of, way_inside
-from morfax.tracer.limits import ROUNDS
 
 APART_PX = 0.25  # between the places of an outline
 CLEAR = 3.0  # standard deviations: a leg is where it is when the other is as far away as this
@@ -38,6 +37,7 @@ NARROWEST = math.radians(12)  # between the legs
 CLEAR_OF_ROUND = 2.0  # standard deviations from where the round touches the leg
 # standard deviations: noise, beside the vertex; the lens moves an outline there by no more than at it
 ASIDE = 0.25
+TRIES = 5  # each with the legs felt where the angle and the round of the one before leave them clear
 # of the way, and standard deviations: by noise the outline of a sharp corner is further inside (98 %)
 FURTHER, NOISE = 0.18, 0.05
 SHORT, LEGS = 0.1, 0.35  # and by the legs' bend less far
@@ -195,7 +195,7 @@ def _corner(
     at, dense = room.at, softness_px / APART_PX
     # 1. feel the legs, from further away where the corner that they make is narrow or round
     fit, angle, touch = None, math.pi / 2, 0.0
-    for _ in range(ROUNDS):
+    for _ in range(TRIES):
         clear = CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2)
         away = max(clear, touch + CLEAR_OF_ROUND) * dense
         ends = [

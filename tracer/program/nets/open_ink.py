@@ -25,6 +25,7 @@ from morfax.tracer.following.start import ENDS, ends_of
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.program.lines.selection import LETTER_MM, SHORT, Contour
 from morfax.tracer.program.nets.net_outline import (
+    NEARLY_ALL,
     chain_mm,
     goes_round,
     junctions_of,
@@ -64,8 +65,11 @@ def strokes_told(setup: Setup, contour: Contour, is_letter: bool) -> list[Line] 
         return strokes
     if not is_letter and leads_on(junctions, setup.settings.gap_mm):
         return None
-    are_more = len(strokes) > 1 or len(junctions.chains()) > 1
-    return strokes if are_more or strokes[0].length_mm > SHORT * strokes[0].ink_mm else None
+    # what is left out lies beside them: the head may go along more
+    long_mm = sum(line.length_mm for line in strokes)
+    all_mm = sum(chain_mm(chain, junctions) for chain in junctions.chains())
+    are_all = len(strokes) > 1 and long_mm > NEARLY_ALL * all_mm
+    return strokes if are_all or strokes[0].length_mm > SHORT * strokes[0].ink_mm else None
 
 
 def can_stand(setup: Setup, contour: Contour) -> bool:
