@@ -97,6 +97,12 @@ def stance_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> St
     return next(plainest_first(view, places_of(stroke, place_mm, about_mm)), None)
 
 
+def stands_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> bool:
+    """Whether there is such a stance: the first that is found will do."""
+    places = places_of(stroke, place_mm, ABOUT_WIDTHS * stroke.width_mm)
+    return any(_stance_at(view, place) is not None for place in places)
+
+
 def places_of(
     stroke: Stroke, start_mm: tuple[float, float] | None, about_mm: float = 0.0
 ) -> Array:

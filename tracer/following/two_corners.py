@@ -70,7 +70,7 @@ class _Over(NamedTuple):
 OVER_ARC, OVER_OTHER = _Over(0.0, 0.1), _Over(2.0, 1.0)
 # a way along what was felt cuts both corners of a step, and one out of a tangle may have one vertex for both;
 # where nothing was felt beyond them, other ink must not be taken for a side
-OVER_FELT, OVER_BEFORE = _Over(0.0, 0.05), _Over(1.2, 0.2, left=2.0)
+OVER_FELT, OVER_BEFORE = _Over(1.0, 0.05), _Over(1.2, 0.2, left=2.0)
 
 
 def or_two_corners(planner: Planner, felt: FeltCorner, plan: Plan | None) -> Plan | None:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.open_ends import stances_at
-from morfax.tracer.following.plain_places import stance_near, view_of
+from morfax.tracer.following.plain_places import stands_near, view_of
 from morfax.tracer.following.start import ENDS, ends_of
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.program.lines.selection import LETTER_MM, SHORT, Contour
@@ -77,8 +77,7 @@ def can_stand(setup: Setup, contour: Contour) -> bool:
     settings, stroke = setup.settings, contour.stroke
     width_mm = settings.line_width_mm or stroke.width_mm
     view = view_of(setup.sheet, settings.aperture_mm, width_mm)
-    stances = (stance_near(view, stroke, start_mm) for start_mm in contour.starts_mm())
-    return any(stance is not None for stance in stances)
+    return any(stands_near(view, stroke, start_mm) for start_mm in contour.starts_mm())
 
 
 def leads_on(junctions: Junctions, gap_mm: float) -> bool:
