@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 # mm; ISO 128-2 has lines of 0.13 to 2 mm, and a scan may give them somewhat thinner
 THINNEST_MM, BROADEST_MM = 0.1, 2.0
-# of a line's width: below it the head sees fewer than one pixel between the edges
 ALIKE = 0.007  # share by which the ratio of a format's sides is met: 2 mm on 297; by trial
 # share by which both sides are off: a scanner's margin, or a wrong scale; by trial
 SAME, NEAR = 0.012, 0.1

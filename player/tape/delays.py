@@ -34,7 +34,6 @@ from morfax.player.tape.phases import Phases
 
 WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2
-# standard errors of the difference of seven and three: beyond, the delay bends within seven
 NEAR = (1 / 3 - 1 / WINDOW) ** 0.5  # standard error of the difference, for one told delay of 1
 DEAD_ZONE_S = 0.5e-6  # noise of 26 dB tells 0.4; half a us is 0.003 cycle
 KEPT = 40  # delays: more than rows are held for
@@ -150,6 +149,7 @@ class Delay:
             return mean_s
         if at - first == HALF:
             near_s = sum(told[HALF - 1 : HALF + 2]) / 3
+            # standard errors of the difference of seven and three
             is_bent = abs(near_s - mean_s) > OUTLIERS * NEAR * max(self._errors_s)
             return near_s if is_bent else mean_s
         middle = float(np.mean(self._rows[first : first + WINDOW]))

@@ -55,7 +55,6 @@ UNSTEADY_CYCLES = 0.009
 # 0.0506 cycle off, at the limit of its acceleration where the speed jumps
 CALM_CYCLES = 0.0035
 REFERENCE_BAND = 0.1  # a tape's speed may be this much off
-# half of the half cycle at which a phase would be counted as another turn
 FEWEST_FRAMES = 8  # of which a spectrum has a peak between two other lines
 SPECTRUM_FRAMES = 16384  # 0.34 s at 48 kHz: lines of 2.9 Hz
 

@@ -30,7 +30,6 @@ from morfax.recorder.tape.tape import Tape, full_scale
 
 # of a tape that stands for so long nothing is known beforehand; the watch goes on
 SEARCHED_S = 20.0
-# a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
 MOST_AXES = 6  # whose orders are gone through
 
 
@@ -91,6 +90,7 @@ def _by_the_end(tape: Tape, reference: int, fault: TapeFault) -> tuple[int, ...]
         raise fault
     ended = _travelled(tape, reference, others)
     wanted = (np.array(fmt.end_mm) - np.array(fmt.start_mm)) * fmt.cycles_per_mm
+    # a cycle lost is four times as much, and a drive at rest stands a hundred times nearer
     fitting = [
         order
         for order in permutations(range(len(others)))

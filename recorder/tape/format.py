@@ -34,9 +34,8 @@ VERSION = 3  # the latest
 _NEW_ENTRIES = {"pickup": 2, "still": 3, "alike": 3}  # the first version that has it
 LARGEST_TEXT_BYTES = 2000  # libsndfile 1.2 reads no text chunk of a WAV from 2048 bytes on
 LARGEST_DEVIATION = 1.0 / 3.0  # of the reference
-SURE_CYCLES = (
-    0.25  # a phase that is off by less is miscounted by no cycle: half of the way to the next
-)
+# a phase that is off by less is miscounted by no cycle: half of the way to the next
+SURE_CYCLES = 0.25
 LEAST_CHECKED_HZ = 5000.0  # of the reference: a frame of the check signal is then 0.58 s
 CHECK_SHARE = 0.2  # of the carrier: the amplitude of the check signal, 14 dB down
 _MOST_AXES = 15  # with the reference sixteen tracks; chosen here

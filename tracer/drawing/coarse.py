@@ -33,7 +33,8 @@ from morfax.tracer.drawing.contrast import DARKER
 
 Darkness = NDArray[np.float32]
 
-FEWEST_PX = 3.0  # of the line's width: see `jobs.remarks.scale_doubts`
+# of a line's width: below, the head sees fewer than one pixel between the edges
+FEWEST_PX = 3.0
 TIMES = 2  # three times finer is no better: the same details, 1 um more RMS
 # of a pixel: standard deviation of the aperture; at 0.35 the gaps of small engravings stay open; by trial
 APERTURE_PX = 0.6

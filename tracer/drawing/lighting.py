@@ -38,7 +38,6 @@ LEAST = 0.5  # a place is made at most twice as bright: its noise is, too
 NOISE = 0.02  # of the brightest paper: by so much a paper's level differs from place to place
 LINES = 0.4  # of the ink's darkness: so dark a line of a few tenths of a millimetre is on the reduced picture
 FEW = 0.002  # of an area: specks; a single line across 50 mm covers more
-# a pixel of the reduced picture may be half on a shape's edge
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +88,7 @@ class Lighting:
 
     def _beneath(self, dark: NDArray[np.uint8]) -> Lighting:
         """The same with the light at the nearest place beside dark areas beneath them."""
+        # a pixel of the reduced picture may be half on a shape's edge
         grown = np.asarray(cv2.dilate(dark, ABOUT), np.uint8)
         if not grown.any() or grown.all():
             return self

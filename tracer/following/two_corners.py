@@ -48,7 +48,6 @@ from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, TIP_RAD
 from morfax.tracer.sensing.leg import STRAIGHT, Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.seen_ink import STEPS
 
 # Chosen by trial on racks of teeth and on rounds, drawn with known truth.
 PLACES = 8  # of a leg, which bends little
@@ -208,6 +207,7 @@ def _better(planner: Planner, sides: _Sides, round_mm: Array, over: _Over) -> _T
     """The two corners in place of a way (n, 2) round; None if they do not go before it."""
     from morfax.tracer.tangles.least_squares import fitted
     from morfax.tracer.tangles.likeness import Patch, Pen
+    from morfax.tracer.tangles.seen_ink import STEPS
 
     # 1. the ink about the round
     view, pen = planner.view, Pen.of(planner.view, sides.incoming)

@@ -34,7 +34,6 @@ from morfax.tracer.sensing.side import Side
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
-# two legs within this of one line are the line that the head comes to
 BESIDE = 0.35  # of the width: they lie on one line
 # widths ahead where a line is sought that turns back to a side: at first its ink runs along with the way in
 SIDEWAYS_WIDTHS = (0.0, 1.0, 2.0)

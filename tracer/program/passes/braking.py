@@ -32,7 +32,6 @@ from morfax.motion.plane import CORNER_RAD, NOTHING_MM
 from morfax.motion.polyline import at_lengths, at_places, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
 
-# a sharper turn is a corner, at which the head stops to swivel; by trial
 RUN_MM = 0.1  # from node to node of a way that is run from memory
 BRAKED_ROWS = 600  # looked at first, back from a halt: from 10 mm/s the axis brakes in 120
 SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
@@ -84,6 +83,7 @@ def _corners(places: Array) -> list[int]:
     steps = np.diff(places, axis=0)
     turned = np.diff(np.arctan2(steps[:, 1], steps[:, 0]))
     turned = np.abs(np.remainder(turned + np.pi, 2 * np.pi) - np.pi)
+    # at a corner the head stops to swivel
     return [int(i) + 1 for i in np.flatnonzero(turned > CORNER_RAD)]
 
 

@@ -40,7 +40,6 @@ MOVED_SHARE = 0.25  # of its share of the line: neighbours stay half a share apa
 CLEAR_MM = 1.0  # from a tab to a corner, a halt, the beginning of the line
 APART_MM = 0.1  # between the places that are tried
 FELT_MM = 0.5  # to either side of a place: shows the heading there
-# turned over twice that: a corner, or a bend of less than 3 mm radius
 # turned over a tab: the first of these that it stays in counts
 STRAIGHT_RAD = np.radians([20, 45, 90])
 BESIDE_MM = 0.2  # beside the cut: there must be something that the tab can hold
@@ -166,7 +165,7 @@ def _places(
     felt = 2 * round(FELT_MM / APART_MM) + 1
     bend = maximum_filter1d(heading, felt) - minimum_filter1d(heading, felt)
     sharpest = maximum_filter1d(bend, clear)
-    # 3. clear of the ends of the loop and of the halts on it
+    # 3. clear of corners and of bends of less than 3 mm radius, of the ends of the loop and the halts on it
     half_mm = 0.5 * long_mm + CLEAR_MM
     ok = (turned <= STRAIGHT_RAD[-1]) & (sharpest <= CORNER_RAD)
     ok &= (at_mm >= half_mm) & (at_mm <= loop.length_mm - half_mm)
