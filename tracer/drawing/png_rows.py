@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 Bytes = NDArray[np.uint8]
 
+AT_ONCE = FEW_PX  # bytes that are unpacked at a time: a byte is a pixel of grey
 BARE, BEFORE, ABOVE, MEAN = 0, 1, 2, 3  # filters of a line; the fourth is Paeth's
 CHANNELS = {0: 1, 2: 3, 3: 1}  # of a PNG: grey, colours, numbers of a palette
 
@@ -84,7 +85,7 @@ def _unpacked(stream: BinaryIO) -> Iterator[bytes]:
         content = stream.read(length)
         stream.seek(4, io.SEEK_CUR)
         while content:
-            yield unpacker.decompress(content, FEW_PX)
+            yield unpacker.decompress(content, AT_ONCE)
             content = unpacker.unconsumed_tail
     yield unpacker.flush()
 

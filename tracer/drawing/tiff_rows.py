@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.tracer.drawing.png_rows import AT_ONCE
 from morfax.tracer.drawing.scan import darkest
-from morfax.tracer.limits import FEW_PX
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -77,7 +77,7 @@ def _strips(image: Image, stream: BinaryIO, tags: Any) -> Iterator[Bytes]:
     """Some strips at a time."""
     columns, rows = image.size
     high = int(tags.get(STRIP_ROWS, rows))
-    some = max(1, FEW_PX // (high * columns))
+    some = max(1, AT_ONCE // (high * columns))
     begins, sizes = tags[STRIPS], tags[STRIP_BYTES]
     for first in range(0, len(begins), some):
         strips = _read(stream, begins[first : first + some], sizes[first : first + some])

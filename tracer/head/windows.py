@@ -24,7 +24,6 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.head.state import Tuning
-from morfax.tracer.head.trail import CHORD
 from morfax.tracer.head.tuning import LEAD_SWEEPS, TIGHTEST_RAD
 from morfax.tracer.sensing.leg import turn
 
@@ -33,6 +32,7 @@ from morfax.tracer.sensing.leg import turn
 WINDOW_STEADY, WINDOW = 1.3, 0.75
 STEADY = 0.2  # of the bend: an arc's changes by less from one half of a stretch to the other
 SIZES = 5  # of windows, from the fast cell's half window to the narrowest
+CHORDS = 4  # places of a way to half a window, between which its headings are taken
 # that a way may turn from one half of a window to the other: half as much again as what stops a fast cell,
 # for a part of what stations feel on few pixels is noise. Twice as much takes a corner of 30 degrees, which
 # stations feel as a turn of 0.45, for a bend: the widest window cuts it by 37 um at 300 dpi
@@ -109,14 +109,14 @@ def _joined(lengths_mm: list[float], halves_mm: list[float]) -> list[Window]:
 
 def bends_rad(way: Array, half_mm: float) -> tuple[Array, Array]:
     """Places along a way (n, 2) mm, and how far it turns at each from one half of a window to the other."""
-    step_mm = half_mm / CHORD
+    step_mm = half_mm / CHORDS
     places = at_lengths(way, np.arange(0.0, length_mm(way), step_mm))
-    if len(places) <= 2 * CHORD:
+    if len(places) <= 2 * CHORDS:
         return np.empty(0), np.empty(0)
-    dx, dy = (places[CHORD:] - places[:-CHORD]).T
+    dx, dy = (places[CHORDS:] - places[:-CHORDS]).T
     headings = np.unwrap(np.arctan2(dy, dx))
-    turns = np.abs(headings[CHORD:] - headings[:-CHORD])
-    at_mm = step_mm * np.arange(CHORD, CHORD + len(turns))
+    turns = np.abs(headings[CHORDS:] - headings[:-CHORDS])
+    at_mm = step_mm * np.arange(CHORDS, CHORDS + len(turns))
     return np.asarray(at_mm, float), np.asarray(turns, float)
 
 

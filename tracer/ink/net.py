@@ -117,9 +117,8 @@ def _add_beside(net: Net, sheet: FeltSheet, n: int, same: _Same) -> None:
     """Add the lines of a stretch in part of which two run beside each other; where one ends no other does."""
     at, felt_mm = _junctions(sheet, n, same), sheet.felt[n].widths_mm
     for line in sheet.beside[n]:
-        alone = (
-            -1 - len(sheet.felt) - 2 * len(net.lines)
-        )  # no node has such a number, and no ring
+        # no node has such a number, and no ring
+        alone = -1 - len(sheet.felt) - 2 * len(net.lines)
         first = at[0] if line.ends_mm[0] is None else alone
         last = at[1] if line.ends_mm[1] is None else alone - 1
         width_mm, long_mm = line.runs[0].view.width_mm, sum(run.length_mm for run in line.runs)

@@ -78,9 +78,8 @@ class FeltSheet:
     doubled: Doubled = field(default_factory=Doubled)
     # the lines of each stretch in part of which two run beside each other
     beside: dict[int, list[Beside]] = field(default_factory=dict)
-    together: set[int] = field(
-        default_factory=set
-    )  # stretches that have turned out to be two lines
+    # stretches that have turned out to be two lines
+    together: set[int] = field(default_factory=set)
     _taken: dict[tuple[int, float], Taken] = field(default_factory=dict)
 
     def taken(self, number: int) -> Taken:

@@ -217,9 +217,11 @@ class _Bays:
             return Bay(seen.first * step_mm, seen.last * step_mm, rule, gain)
         if not suspect.is_beside_itself and not len(suspect.beyond_mm):
             return None
-        tried = (self._seen(way, step_mm, suspect, round(leg / STEP_WIDTHS)) for leg in LEGS)
-        bays = (self._rim_bay(each, step_mm, suspect) for each in tried if each is not None)
-        return next((bay for bay in bays if bay is not None), None)
+        bay = self._rim_bay(seen, step_mm, suspect)
+        longer = None
+        if bay is None:
+            longer = self._seen(way, step_mm, suspect, round(LEGS[1] / STEP_WIDTHS))
+        return bay if longer is None else self._rim_bay(longer, step_mm, suspect)
 
     def _seen(self, way: Array, step_mm: float, suspect: Suspect, leg: int) -> Stretch | None:
         """The stretch of the way that may be a bay, with legs, and the ink about it; None if it is too long,
