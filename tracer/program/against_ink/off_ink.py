@@ -2,8 +2,8 @@
 
     wrong = sum of ((drawn - seen)² - noise²) over the pixels about a place · area of a pixel / width²
 
-Each pixel counts for that place of the way which is nearest to it, and so for those about that. What one pixel alone has too much or too
-little is a speck, and left out.
+Each pixel counts for that place of the way which is nearest to it, and so for those about that. What one
+pixel alone has too much or too little is a speck, and left out.
 
 Signals: the drawing and ways in; the ink about a stretch, and what is wrong about each of its places, out.
 

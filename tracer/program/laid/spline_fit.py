@@ -33,6 +33,7 @@ CORNERS_APART = 0.4
 TURNS_OVER = 0.25  # on either side of a place, by how much the way turns there
 # of that: more is a corner; less may be one
 CORNER_RAD, MAYBE_RAD = math.radians(30), math.radians(12)
+FOLDED_RAD = math.radians(165)  # a corner that turns by more is no tip, but a way out and back
 MOST_CORNERS = 5  # are tried at a time
 ROUNDS = 3  # of corners more or fewer
 PRICE = 0.001  # of a figure more, as misfit
@@ -71,7 +72,8 @@ def explained(ink: SeenInk, own: Array, step_mm: float, limit: float) -> Spline:
         first, last = np.sort(crossings[0]).astype(int).tolist()
         turned = own[first + 1 : last + 1][::-1]
         starts.append(np.vstack([own[: first + 1], turned, own[last + 1 :]]))
-    fits = [_Fit(ink, start, step_mm, limit).best() for start in starts]
+    crosses = len(starts) > 1
+    fits = [_Fit(ink, start, step_mm, limit, crosses).best() for start in starts]
     return min(fits, key=lambda spline: spline.cost)
 
 
@@ -81,8 +83,14 @@ def turns_rad(way: Array) -> Array:
     at = np.arange(count)
     before = way - way[np.maximum(at - over, 0)]
     after = way[np.minimum(at + over, count - 1)] - way
-    turned = np.arctan2(after[:, 1], after[:, 0]) - np.arctan2(before[:, 1], before[:, 0])
+    turned = _turned_rad(before, after)
     turned[[0, -1]] = 0.0
+    return turned
+
+
+def _turned_rad(before: Array, after: Array) -> Array:
+    """By how much each of some steps (n, 2) turns to those after them, (n,)."""
+    turned = np.arctan2(after[:, 1], after[:, 0]) - np.arctan2(before[:, 1], before[:, 0])
     return np.asarray(np.abs(turned - math.tau * np.round(turned / math.tau)))
 
 
@@ -99,12 +107,15 @@ def corners_of(turned_rad: Array) -> list[int]:
 
 @dataclass(frozen=True)
 class _Fit:
-    """What splines along a stretch (n, 2) mm are fitted to: the ink about it, and what may be left."""
+    """What splines along a stretch (n, 2) mm are fitted to: the ink about it, what may be left, and whether
+    the head's way there crosses itself.
+    """
 
     ink: SeenInk
     own: Array
     step_mm: float
     limit: float
+    crosses: bool
 
     @cached_property
     def turned_rad(self) -> Array:
@@ -126,6 +137,15 @@ class _Fit:
         closer = self._settled(best.corners, EVERY[1])
         return min(best, closer, key=lambda spline: spline.cost)
 
+    def _folds(self, way: Array, corners: tuple[int, ...]) -> bool:
+        """Whether a way (m, 2) mm crosses itself, or turns back at a corner, as the stretch does not."""
+        if not self.crosses and len(crossings_of(way, np.arange(len(way) - 1))):
+            return True
+        at = np.array(corners, int)
+        before, after = way[at] - way[at - 1], way[at + 1] - way[at]
+        turned = _turned_rad(before, after)
+        return bool(np.any(turned > max(FOLDED_RAD, float(self.turned_rad.max()))))
+
     def _changed(self, corners: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
         """Some corners with one more, where the way turns most, or one fewer."""
         apart, more = round(CORNERS_APART / STEP_WIDTHS), list[int]()
@@ -146,5 +166,7 @@ class _Fit:
         strip = Strip.along(self.own, self.step_mm, weights, PLACES_WIDTHS * ink.width_mm)
         way = strip.settled(ink)
         misfit = ink.misfit(ink.drawn_along(way, ink.half_mm))
+        if self._folds(way, strip.corners):
+            misfit = math.inf
         worst = float(wrong_about(ink, way, PLACES_WIDTHS).max())
         return Spline(way, strip.corners, corners, strip.figures, misfit, worst)
