@@ -64,13 +64,13 @@ class Weights(NamedTuple):
 
 
 class Strip(NamedTuple):
-    """A strip's way (m, 2) mm as its weights lie, how far each figure moves its places, (m, f, 2), and the
-    places at which it is broken.
+    """A strip's way (m, 2) mm as its weights lie, how far each figure moves its places, (m, f, 2), and at
+    which of its places (m,) it is broken.
     """
 
     way_mm: Array
     moves: Array
-    corners: tuple[int, ...]
+    sharp: NDArray[np.bool_]
 
     @classmethod
     def along(cls, own: Array, step_mm: float, weights: Weights, apart_mm: float) -> Strip:
@@ -101,7 +101,8 @@ class Strip(NamedTuple):
         heading /= np.hypot(*heading.T)[:, None]
         share = np.vstack(shares)
         way = share @ lie + np.vstack(slopes) @ heading
-        return cls(way, _moves(own, weights, share), tuple(corners[:-1]))
+        broken = np.isin(np.arange(len(way)), corners[:-1])
+        return cls(way, _moves(own, weights, share), broken)
 
     @property
     def figures(self) -> int:
@@ -117,13 +118,11 @@ class Strip(NamedTuple):
         seen = ink.for_kernel()
 
         def wrong(figures: Array) -> Array:
-            out = np.empty(len(seen.places_mm))
-            _wrong(seen, self.moved(figures), out)
-            return out
+            return wrong_along(ink, self.moved(figures), self.sharp)
 
         def changes(figures: Array) -> Array:
             out = np.empty((len(seen.places_mm), self.figures))
-            _changes(seen, self.moved(figures), self.moves, out)
+            _changes(seen, self.moved(figures), self.sharp, self.moves, out)
             return out
 
         if not self.figures:
@@ -205,17 +204,37 @@ def nearest_pieces(places, way, out):  # type: ignore[no-untyped-def]
         out[k, 0], out[k, 1] = away_mm, piece + share
 
 
+def wrong_along(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
+    """What a pen along a way (m, 2) mm draws too dark at each place of an ink, (n,); `sharp` are its corners.
+
+    A pen's ink is round at a corner, a plotting program's may come to a point: neither is too little.
+    """
+    out = np.empty(len(ink.places_mm))
+    _wrong(ink.for_kernel(), np.ascontiguousarray(way), sharp, out)
+    return out
+
+
+@njit(cache=True)
+def _at_corner(piece, share, sharp):  # type: ignore[no-untyped-def]
+    """Whether a place on a piece of a way is one of its corners."""
+    if sharp[piece] and (share <= 0 or sharp[piece + 1]):
+        return True
+    return sharp[piece + 1] and share >= 1
+
+
 @njit(cache=True, _nrt=False)
-def _wrong(ink, way, out):  # type: ignore[no-untyped-def]
+def _wrong(ink, way, sharp, out):  # type: ignore[no-untyped-def]
     """Fill `out` (n,) with what a pen along a way (m, 2) mm draws too dark at each place of the ink."""
     for k in range(len(ink.places_mm)):
-        _, _, away_mm = _nearest(way, ink.places_mm[k, 0], ink.places_mm[k, 1])
-        away_mm = min(away_mm, ink.known_mm[k])
-        out[k] = pen.ink_at(away_mm, ink.half_mm, ink.softness_mm) - ink.darkness[k]
+        i, t, away_mm = _nearest(way, ink.places_mm[k, 0], ink.places_mm[k, 1])
+        drawn = pen.ink_at(min(away_mm, ink.known_mm[k]), ink.half_mm, ink.softness_mm)
+        out[k] = drawn - ink.darkness[k]
+        if out[k] < 0 and _at_corner(i, t, sharp):
+            out[k] = 0.0
 
 
 @njit(cache=True, _nrt=False)
-def _changes(ink, way, moves, out):  # type: ignore[no-untyped-def]
+def _changes(ink, way, sharp, moves, out):  # type: ignore[no-untyped-def]
     """Fill `out` (n, f) with by how much each figure of a strip darkens each place of the ink, per mm."""
     for k in range(len(ink.places_mm)):
         x, y = ink.places_mm[k, 0], ink.places_mm[k, 1]
@@ -223,6 +242,9 @@ def _changes(ink, way, moves, out):  # type: ignore[no-untyped-def]
         out[k, :] = 0.0
         u = (away_mm - ink.half_mm) / ink.softness_mm
         if away_mm > ink.known_mm[k] or abs(u) > STEEP or away_mm < NOT_ZERO:
+            continue
+        is_less = pen.ink_at(away_mm, ink.half_mm, ink.softness_mm) < ink.darkness[k]
+        if is_less and _at_corner(i, t, sharp):
             continue
         # the ink fades along the line from the way's nearest place
         fades = math.exp(-0.5 * u * u) / (math.sqrt(math.tau) * ink.softness_mm) / away_mm

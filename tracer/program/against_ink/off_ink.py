@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
@@ -25,7 +26,7 @@ from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.felt_pen import FAR, FeltPen
 from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
 from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
-from morfax.tracer.tangles.spline import nearest_pieces
+from morfax.tracer.tangles.spline import nearest_pieces, wrong_along
 
 REACH = 1.6  # widths from the way, the ink is looked at; chosen
 MOST_PLACES = 1500  # of ink, enough to place a corner within 10 um
@@ -87,16 +88,18 @@ def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | 
     dark = np.concatenate([ink.darkness for ink in inks])
     pen = FeltPen.of(np.concatenate(away), inks[0]._replace(darkness=dark))
     left = [
-        wrong_about(pen.sees(ink), own, STEP_WIDTHS)[around]
+        wrong_about(pen.sees(ink), own, np.zeros(len(own), bool), STEP_WIDTHS)[around]
         for ink, own in zip(inks, owns, strict=True)
     ]
     return Felt(pen, float(np.median(left)))
 
 
-def wrong_about(ink: SeenInk, way: Array, apart_widths: float) -> Array:
-    """How much is wrong about each place of a way (n, 2) mm, some widths apart, (n,)."""
+def wrong_about(
+    ink: SeenInk, way: Array, sharp: NDArray[np.bool_], apart_widths: float
+) -> Array:
+    """How much is wrong about each place of a way (n, 2) mm with some corners, some widths apart, (n,)."""
     near = _nearest(ink.places_mm, way)
-    wrong = ink.drawn_along(way, ink.half_mm) - ink.darkness
+    wrong = wrong_along(ink, way, sharp)
     noise = ink.noise / max(len(wrong), 1)
     over = np.minimum(wrong**2, MOST) - noise
     at = np.round(near[:, 1]).astype(int)

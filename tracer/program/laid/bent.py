@@ -41,7 +41,13 @@ from morfax.tracer.program.against_ink.off_ink import (
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.line_parts import is_clear, is_plain
 from morfax.tracer.program.laid.rim_bays import RimBay
-from morfax.tracer.program.laid.spline_fit import corners_of, explained, turns_rad
+from morfax.tracer.program.laid.spline_fit import (
+    about_corners,
+    corners_of,
+    explained,
+    left_by,
+    turns_rad,
+)
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -135,7 +141,7 @@ class _Way:
             for begin in range(first, last + 1, round(LONGEST / STEP_WIDTHS)):
                 end = min(begin + round(LONGEST / STEP_WIDTHS), last + 1)
                 ink, own = self._seen(begin - leg, end + leg, felt)
-                wrong = wrong_about(ink, own, STEP_WIDTHS)[leg:-leg]
+                wrong = wrong_about(ink, own, about_corners(own), STEP_WIDTHS)[leg:-leg]
                 off[np.arange(begin, end + 1) % len(off)] |= wrong > limit
         yield from _runs(off, leg) if off.any() else ()
 
@@ -162,7 +168,7 @@ class _Way:
             return None
         ink, own = self._seen(first, last, felt)
         spline = explained(ink, own, self.step_mm, _limit(felt))
-        left = ink.misfit(ink.drawn_along(own, ink.half_mm))
+        left = left_by(ink, own, about_corners(own))
         if spline.worst > _limit(felt) and spline.misfit > STILL_LEFT * left:
             return None
         gain = left - spline.cost

@@ -19,13 +19,14 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
 from morfax.tracer.program.against_ink.off_ink import wrong_about
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.seen_ink import SeenInk
-from morfax.tracer.tangles.spline import PLACES_WIDTHS, Strip, Weights
+from morfax.tracer.tangles.spline import PLACES_WIDTHS, Strip, Weights, wrong_along
 
 # In widths of the line, chosen by trial on parts with reliefs and on racks of teeth, drawn with known truth:
 EVERY = 0.75, 0.45  # between weights: the second where the first explains too little
@@ -40,12 +41,12 @@ PRICE = 0.001  # of a figure more, as misfit
 
 
 class Spline(NamedTuple):
-    """A spline along a stretch: its way (m, 2) mm with the numbers of the places at which it is broken, the
-    corners of the stretch that these are; what it leaves unexplained, in all and about the worst place.
+    """A spline along a stretch: its way (m, 2) mm and at which of its places (m,) it is broken, the corners
+    of the stretch that these are; what it leaves unexplained, in all and about the worst place.
     """
 
     way: Array
-    broken: tuple[int, ...]
+    sharp: NDArray[np.bool_]
     corners: tuple[int, ...]
     figures: int
     misfit: float
@@ -58,7 +59,7 @@ class Spline(NamedTuple):
 
     def stretches(self) -> tuple[Array, ...]:
         """Its way as stretches between corners."""
-        ends = pairwise([0, *self.broken, len(self.way) - 1])
+        ends = pairwise([0, *np.flatnonzero(self.sharp).tolist(), len(self.way) - 1])
         return tuple(self.way[first : last + 1] for first, last in ends)
 
 
@@ -75,6 +76,20 @@ def explained(ink: SeenInk, own: Array, step_mm: float, limit: float) -> Spline:
     crosses = len(starts) > 1
     fits = [_Fit(ink, start, step_mm, limit, crosses).best() for start in starts]
     return min(fits, key=lambda spline: spline.cost)
+
+
+def left_by(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> float:
+    """How much a pen along a way (n, 2) mm with some corners leaves, in squares of the line's width."""
+    wrong = wrong_along(ink, way, sharp)
+    return (float(wrong @ wrong) - ink.noise) * ink.area_mm2 / ink.width_mm**2
+
+
+def about_corners(way: Array) -> NDArray[np.bool_]:
+    """Which places (n,) of a way, a step apart, are at one of its corners, or next to it."""
+    sharp = np.zeros(len(way), bool)
+    for at in corners_of(turns_rad(way)):
+        sharp[max(at - 1, 0) : at + 2] = True
+    return sharp
 
 
 def turns_rad(way: Array) -> Array:
@@ -137,11 +152,10 @@ class _Fit:
         closer = self._settled(best.corners, EVERY[1])
         return min(best, closer, key=lambda spline: spline.cost)
 
-    def _folds(self, way: Array, corners: tuple[int, ...]) -> bool:
-        """Whether a way (m, 2) mm crosses itself, or turns back at a corner, as the stretch does not."""
+    def _folds(self, way: Array, at: NDArray[np.int64]) -> bool:
+        """Whether a way (m, 2) mm crosses itself, or turns back at one of its corners, as the stretch does not."""
         if not self.crosses and len(crossings_of(way, np.arange(len(way) - 1))):
             return True
-        at = np.array(corners, int)
         before, after = way[at] - way[at - 1], way[at + 1] - way[at]
         turned = _turned_rad(before, after)
         return bool(np.any(turned > max(FOLDED_RAD, float(self.turned_rad.max()))))
@@ -165,8 +179,7 @@ class _Fit:
         weights = Weights.apart(len(self.own), corners, every_widths / STEP_WIDTHS)
         strip = Strip.along(self.own, self.step_mm, weights, PLACES_WIDTHS * ink.width_mm)
         way = strip.settled(ink)
-        misfit = ink.misfit(ink.drawn_along(way, ink.half_mm))
-        if self._folds(way, strip.corners):
-            misfit = math.inf
-        worst = float(wrong_about(ink, way, PLACES_WIDTHS).max())
-        return Spline(way, strip.corners, corners, strip.figures, misfit, worst)
+        folds = self._folds(way, np.flatnonzero(strip.sharp))
+        misfit = math.inf if folds else left_by(ink, way, strip.sharp)
+        worst = float(wrong_about(ink, way, strip.sharp, PLACES_WIDTHS).max())
+        return Spline(way, strip.sharp, corners, strip.figures, misfit, worst)
