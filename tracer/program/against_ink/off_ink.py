@@ -20,6 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -33,6 +35,9 @@ MOST_PLACES = 1500  # of ink, enough to place a corner within 10 um
 ABOUT = 0.75  # widths on either side of a place, what is wrong counts as there; by trial
 # darkness: so much by itself, with less than half of it within so many pixels, is a speck
 SPECK, BESIDE_PX = 0.35, 1.6
+# at the edge of what is looked at, half as much ink as a line has there, so far from all lines, goes on;
+# less is specks
+EDGE, OWN = 0.2, 0.8
 MOST = 1.0  # that a pixel is wrong, squared
 CLEAN_PLACES = 40  # of some lines, about which their pen is felt
 ALONG = 0.8  # widths of way on either side of such a place
@@ -91,7 +96,7 @@ def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | 
         wrong_about(pen.sees(ink), own, np.zeros(len(own), bool), STEP_WIDTHS)[around]
         for ink, own in zip(inks, owns, strict=True)
     ]
-    return Felt(pen, float(np.median(left)))
+    return Felt(pen, median(left))
 
 
 def wrong_about(
@@ -109,6 +114,18 @@ def wrong_about(
     place = np.arange(len(way))
     last, first = np.minimum(place + around + 1, len(way)), np.maximum(place - around, 0)
     return np.asarray(sums[last] - sums[first])
+
+
+def goes_on(ink: SeenInk, about: Array, reach_widths: float) -> bool:
+    """Whether ink beside all lines goes on beyond what is looked at about some places (n, 2) mm.
+
+    It is another line's then, or a longer bar's.
+    """
+    beside = (ink.darkness > INK) & (ink.known_mm > OWN * ink.width_mm)
+    away_mm = away_from(ink.places_mm[beside], about)
+    far = np.count_nonzero(away_mm > (reach_widths - EDGE) * ink.width_mm)
+    # one place alone is a speck
+    return bool(far > 1 and far * ink.area_mm2 > 0.5 * EDGE * ink.width_mm**2)
 
 
 def without_specks(ink: SeenInk, way: Array, pitch_mm: float) -> SeenInk:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
+from morfax.motion.polyline import evenly, length_mm, lengths_mm, nearest_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
@@ -34,6 +34,7 @@ from morfax.tracer.program.against_ink.off_ink import (
     Clean,
     Felt,
     felt_at,
+    goes_on,
     ink_about,
     without_specks,
     wrong_about,
@@ -42,6 +43,7 @@ from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.line_parts import is_clear, is_plain
 from morfax.tracer.program.laid.rim_bays import RimBay
 from morfax.tracer.program.laid.spline_fit import (
+    CORNER_RAD,
     about_corners,
     corners_of,
     explained,
@@ -56,6 +58,8 @@ from morfax.tracer.tangles.seen_ink import SeenInk
 LEG = 1.5  # of the way on either side of what is wrong
 LONGEST = 18.0  # a stretch is no longer, legs apart
 OF_LOOP = 0.7  # of its line is no stretch
+LONGER = 0.4  # than a way that does not turn: it goes out along a burr and comes back
+TURNS_OVER = 1.0  # on either side of a place, by how much the way turns there
 MOST_ASIDE = 0.5  # that a spline lies off the way: further is out along a tick, or round a bay
 # misfit: of what is wrong about a place noise is a quarter of that; 15 um of a line of 0.35 mm are as much
 OFF = 0.006
@@ -167,14 +171,19 @@ class _Way:
         if last - first > min(2 * leg + LONGEST / STEP_WIDTHS, OF_LOOP * count):
             return None
         ink, own = self._seen(first, last, felt)
+        if goes_on(ink, own, REACH):
+            return None
         spline = explained(ink, own, self.step_mm, _limit(felt))
         if spline is None:
             return None
         left = left_by(ink, own, about_corners(own))
         if spline.worst > _limit(felt) and spline.misfit > STILL_LEFT * left:
             return None
-        gain = left - spline.cost
-        if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * self.line.width_mm:
+        gain, width_mm = left - spline.cost, self.line.width_mm
+        longer_mm = length_mm(spline.way) - length_mm(own)
+        if longer_mm > LONGER * width_mm and turns_rad(own, TURNS_OVER).max() < CORNER_RAD:
+            return None
+        if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
             return None
         rule = RimBay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
         return Bay(first * self.step_mm, last * self.step_mm, rule, gain)

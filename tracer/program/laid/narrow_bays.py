@@ -29,6 +29,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.limits import MANY
 from morfax.tracer.program.against_ink.bars import bar_at, reaches
+from morfax.tracer.program.against_ink.off_ink import goes_on
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
     beside_ink,
@@ -53,8 +54,6 @@ LEGS = 1.5, 4.0
 MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
 REACH = 2.2  # of the ink about the way that is looked at
-# at the edge of that, half as much ink as a line has there, so far from all lines, goes on; less is specks
-EDGE, OWN = 0.2, 0.8
 LONGEST = 80.0  # a longer stretch is no bay
 OF_LOOP = 0.8  # nor is one that is so much of its line
 MOST_PLACES = 1500  # of ink: enough to place a corner within 10 um
@@ -235,7 +234,7 @@ class _Bays:
         rest = way[np.arange(last, first + len(way) + 1) % len(way)]
         about = np.vstack([own, suspect.beyond_mm])
         ink = self._ink(about, rest)
-        return None if self._goes_on(ink, about) else Stretch(first, last, own, ink)
+        return None if goes_on(ink, about, REACH) else Stretch(first, last, own, ink)
 
     def _rim_bay(self, seen: Stretch, step_mm: float, suspect: Suspect) -> Bay | None:
         """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
@@ -271,14 +270,6 @@ class _Bays:
         if key not in kept:
             kept[key] = folding_rule.explained(ink, rules)
         return kept[key]
-
-    def _goes_on(self, ink: SeenInk, about: Array) -> bool:
-        """Whether ink beside all lines goes on beyond what is looked at: another line, or a longer bar."""
-        beside = (ink.darkness > 0.5) & (ink.known_mm > OWN * self.line.width_mm)
-        away_mm = pen.away_from(ink.places_mm[beside], about)
-        far = np.count_nonzero(away_mm > (REACH - EDGE) * self.line.width_mm)
-        # one place alone is a speck
-        return bool(far > 1 and far * ink.area_mm2 > 0.5 * EDGE * self.line.width_mm**2)
 
     def _ink(self, about: Array, rest: Array) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
