@@ -5,9 +5,9 @@
 Drawings are made with known truth (`net_drawings`): chords, circles laid over each other, Voronoi cells,
 grids, trees, Lissajous figures and text in one-stroke letters, as a pen of 0.4 mm draws them, scanned at
 300 dpi with noise. For each kind: the share of the true lines that strokes run along (all, and the worst
-drawing), the length that is run more than once, strokes against the least that a pen needs which goes straight
-on where lines cross, the distance of strokes from the true lines outside of junctions and at them, how often a
-true line that passes a junction is one stroke there, and processor time; at the end the worst drawing of
+drawing), the length that is run more than once, strokes against the least of a pen that goes straight on
+where lines cross, the distance of strokes from the true lines outside of junctions and at them, how often
+a true line that passes a junction is one stroke there, and processor time; at the end the worst drawing of
 each figure, by which it can be made again, and by how much the ledger told too much of one. Beside it the
 pieces into which scikit-image's skeleton falls at its junctions, and, where `pyautotrace` is installed, the
 paths that autotrace makes of the middle lines.
@@ -38,7 +38,7 @@ from morfax.tracer.program.trace_ink import trace_ink
 PEN_MM, DPI, FINER, NOISE = 0.4, 300.0, 4, 4.0
 ON_IT_MM = 0.5 * PEN_MM  # a true place is followed if a stroke comes as near
 AT_JUNCTION_MM = 2.0  # places nearer to a junction are left out of the RMS
-# pens: ends of true lines so near to each other have one ink, or paper of a pixel between: there it is a junction
+# pens: ends of true lines so near to each other share their ink, or have a pixel of paper between
 MET_WIDTHS = 1.5
 STEP_MM = 0.05
 PASSED_MM = 2.0  # before and behind a junction, where the partners are looked up

@@ -240,8 +240,9 @@ class Drawing:
         # 2. pale lines
         lines, pale_mm = within(darkness, paper_noise), 0.0
         drawn_grain = lines.grain
+        is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
-            pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes)
+            pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
         if pale_mm:
             lines = within(darkness, paper_noise)
         notes += _of_few_pixels(lines, drawn_grain, pitch_mm)
