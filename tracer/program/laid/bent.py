@@ -56,7 +56,7 @@ from morfax.tracer.tangles.seen_ink import SeenInk
 LEG = 1.5  # of the way on either side of what is wrong
 LONGEST = 18.0  # a stretch is no longer, legs apart
 OF_LOOP = 0.7  # of its line is no stretch
-MOST_ASIDE = 0.8  # that a spline lies off the way
+MOST_ASIDE = 0.5  # that a spline lies off the way: further is out along a tick, or round a bay
 # misfit: of what is wrong about a place noise is a quarter of that; 15 um of a line of 0.35 mm are as much
 OFF = 0.006
 OF_USUAL = 4.0  # times what most of the clean places of the line leave
@@ -168,6 +168,8 @@ class _Way:
             return None
         ink, own = self._seen(first, last, felt)
         spline = explained(ink, own, self.step_mm, _limit(felt))
+        if spline is None:
+            return None
         left = left_by(ink, own, about_corners(own))
         if spline.worst > _limit(felt) and spline.misfit > STILL_LEFT * left:
             return None

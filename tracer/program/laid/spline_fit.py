@@ -63,10 +63,12 @@ class Spline(NamedTuple):
         return tuple(self.way[first : last + 1] for first, last in ends)
 
 
-def explained(ink: SeenInk, own: Array, step_mm: float, limit: float) -> Spline:
+def explained(ink: SeenInk, own: Array, step_mm: float, limit: float) -> Spline | None:
     """The spline along a stretch (n, 2) mm of places a step apart that explains the ink best; what it leaves
-    about a place below a limit is noise.
+    about a place below a limit is noise. None if the stretch goes out and back, as along a tick.
     """
+    if turns_rad(own).max() > FOLDED_RAD:
+        return None
     starts = [own]
     crossings = crossings_of(own, np.arange(len(own) - 1))
     if len(crossings):
@@ -153,12 +155,11 @@ class _Fit:
         return min(best, closer, key=lambda spline: spline.cost)
 
     def _folds(self, way: Array, at: NDArray[np.int64]) -> bool:
-        """Whether a way (m, 2) mm crosses itself, or turns back at one of its corners, as the stretch does not."""
+        """Whether a way (m, 2) mm crosses itself, or as the stretch does not, or turns back at a corner."""
         if not self.crosses and len(crossings_of(way, np.arange(len(way) - 1))):
             return True
         before, after = way[at] - way[at - 1], way[at + 1] - way[at]
-        turned = _turned_rad(before, after)
-        return bool(np.any(turned > max(FOLDED_RAD, float(self.turned_rad.max()))))
+        return bool(np.any(_turned_rad(before, after) > FOLDED_RAD))
 
     def _changed(self, corners: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
         """Some corners with one more, where the way turns most, or one fewer."""
