@@ -18,6 +18,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import unit
 from morfax.motion.polyline import evenly
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import TIP_RAD
@@ -35,8 +36,8 @@ def points_of(line: Line) -> Iterator[Array]:
     if len(way) <= 2 * LEG:
         return
     # 1. the directions in which both sides of each place come to it, and how much they turn there
-    come = _directions(way - np.roll(way, LEG, axis=0))
-    back = _directions(way - np.roll(way, -LEG, axis=0))
+    come = unit(way - np.roll(way, LEG, axis=0))
+    back = unit(way - np.roll(way, -LEG, axis=0))
     turn = np.arccos(np.clip(-np.sum(come * back, axis=1), -1, 1))
     # 2. the tips that no pen cuts off, and how far their points reach
     is_tip = (turn > TIP_RAD) & (np.cos(0.5 * turn) > 1 / MITRE_LIMIT)
@@ -47,8 +48,3 @@ def points_of(line: Line) -> Iterator[Array]:
         on_mm = np.arange(0.0, long_mm, STEP_WIDTHS * width_mm)[:, None]
         yield way[k] + on_mm * come[k]
         yield way[k] + on_mm * back[k]
-
-
-def _directions(steps: Array) -> Array:
-    """Steps (n, 2) as long as one."""
-    return np.asarray(steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None])
