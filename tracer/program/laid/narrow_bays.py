@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly, nearest_mm
+from morfax.motion.polyline import broad_mm, evenly, nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.limits import MANY
@@ -40,7 +40,6 @@ from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.line_parts import is_clear
 from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, rim_bays
-from morfax.tracer.program.laid.rim_loops import broad_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
