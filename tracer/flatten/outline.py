@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST
-from morfax.motion.plane import unit
+from morfax.motion.plane import left_of, unit
 from morfax.tracer.flatten.edges import Picture, crossings, light_at
 from morfax.tracer.flatten.fit import Sightings
 from morfax.tracer.limits import ROUNDS
@@ -232,7 +232,7 @@ def _straight(places: Array) -> Array:
     """The straight line through places: normal and offset, so that normal · place = offset."""
     middle = places.mean(axis=0)
     _, _, ways = np.linalg.svd(places - middle, full_matrices=False)
-    normal = np.array([-ways[0][1], ways[0][0]])
+    normal = left_of(ways[0])
     return np.array([*normal, normal @ middle])
 
 
