@@ -108,7 +108,7 @@ def test_ink_that_is_changed_ahead_does_not_begin_the_run_anew(
 
 
 def test_what_the_operator_changed_lies_in_boxes_on_the_sheet() -> None:
-    """With 8 pixels about them, half of what parts two changes. Drawings of other sizes are two altogether."""
+    """With 8 pixels about them, half of what parts two changes. Other sizes are two drawings."""
     blank = np.zeros((200, 300), np.float32)
     changed = blank.copy()
     changed[50:60, 100:140] = changed[150, 20] = 1.0
