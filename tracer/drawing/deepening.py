@@ -28,7 +28,7 @@ from morfax.motion.median import percentile
 from morfax.tracer.drawing.components import INK, Mask, strips
 from morfax.tracer.drawing.contrast import DARKER, LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.noise import measured
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 Darkness = NDArray[np.float32]
 

@@ -24,9 +24,9 @@ from morfax.motion.median import median
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.motion.polyline import lengths_mm
 from morfax.motion.usual import THINNED
+from morfax.tracer.effort import MANY
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
-from morfax.tracer.limits import MANY
 from morfax.tracer.sensing.edge_scout import CIRCLE_PX
 from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import View

@@ -27,8 +27,8 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import CORNER_RAD, SAME_MM, left_of, left_of_headings, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
+from morfax.tracer.effort import EVERY_MM, ROUNDS
 from morfax.tracer.ink.run import Run
-from morfax.tracer.limits import EVERY_MM, ROUNDS
 from morfax.tracer.sensing.parabola import FEWEST
 
 # All limits below were chosen by trial on drawings of nets.

@@ -25,9 +25,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
-from morfax.tracer.limits import MANY
 from morfax.tracer.program.against_ink.bars import bar_at, reaches
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
