@@ -18,7 +18,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST, median
-from morfax.tracer.limits import ROUNDS
+from morfax.tracer.effort import ROUNDS
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.seen_ink import SeenInk
 

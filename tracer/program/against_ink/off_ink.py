@@ -52,19 +52,23 @@ class Clean(NamedTuple):
 
 
 def ink_about(
-    drawing: Drawing, own: Array, others: Sequence[Array], width_mm: float
+    drawing: Drawing,
+    about: Array,
+    width_mm: float,
+    reach_widths: float,
+    others: Sequence[Array] = (),
 ) -> SeenInk:
-    """The ink about a stretch (n, 2) mm of a line of a width; other ways (m, 2) mm are drawn there anyway."""
-    i, j = Window.about(drawing, own, REACH * width_mm).grid()
-    places = middles_mm(drawing, i, j)
-    within = np.flatnonzero(away_from(places, own) < REACH * width_mm)
+    """The ink about some places (n, 2) mm of a line of a width; other ways (m, 2) mm are drawn there anyway."""
+    reach_mm = reach_widths * width_mm
+    i, j = Window.about(drawing, about, reach_mm).grid()
+    within = np.flatnonzero(away_from(middles_mm(drawing, i, j), about) < reach_mm)
     every = 1 + len(within) // MOST_PLACES
-    within = within[::every]
-    known_mm = np.full(len(within), NOWHERE_MM)
+    i, j = i[within[::every]], j[within[::every]]
+    places, known_mm = middles_mm(drawing, i, j), np.full(len(i), NOWHERE_MM)
     for other in others:
         if len(other) > 1:
-            known_mm = np.minimum(known_mm, away_from(places[within], other))
-    return SeenInk.of(drawing, (i[within], j[within]), known_mm, width_mm, every)
+            known_mm = np.minimum(known_mm, away_from(places, other))
+    return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
 
 
 class Felt(NamedTuple):
@@ -82,7 +86,7 @@ def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | 
     for clean in ways:
         for at in clean.places[every // 2 :: every].tolist():
             own = clean.way[np.arange(at - around, at + around + 1) % len(clean.way)]
-            ink = ink_about(drawing, own, (), width_mm)
+            ink = ink_about(drawing, own, width_mm, REACH)
             away_mm, place = _nearest(ink.places_mm, own).T
             beside = (place > 0) & (place < len(own) - 1) & (away_mm < FAR * width_mm)
             owns.append(own)
