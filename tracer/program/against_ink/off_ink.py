@@ -58,7 +58,7 @@ def ink_about(
     reach_widths: float,
     others: Sequence[Array] = (),
 ) -> SeenInk:
-    """The ink about some places (n, 2) mm of a line of a width; other ways (m, 2) mm are drawn there anyway."""
+    """The ink about some places (n, 2) mm of a line; other ways (m, 2) mm are drawn there anyway."""
     reach_mm = reach_widths * width_mm
     i, j = Window.about(drawing, about, reach_mm).grid()
     within = np.flatnonzero(away_from(middles_mm(drawing, i, j), about) < reach_mm)
