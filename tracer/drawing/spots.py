@@ -32,8 +32,8 @@ PART_PX = 96  # of the sheet: light and noise change little over it
 # percentiles a standard deviation apart on the bright side; 1.35 where pale lines cover a quarter of a part
 BRIGHT = 2.28, 15.87
 LEAST_PAPER = 0.2  # of a part: less paper tells no noise
-# of ink's darkness, behind a spot: half of a scan's noise. Quieter paper counts as noisy as that: what differs
-# on it is shade, and rims that a JPEG leaves
+# of ink's darkness, behind a spot: half of a scan's noise. Quieter paper counts as so noisy: what differs
+# there is shade, and rims that a JPEG leaves
 QUIET = 0.005
 
 
