@@ -36,7 +36,7 @@ from morfax.tracer.drawing.spots import (
     of_pixels,
     times_as_noisy,
 )
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 SURELY = 0.6  # of ink's darkness: paler ink is that of a pale line in noise
 # of ink's darkness behind that spot. Paler are what shines through a sheet and a JPEG's rims; chosen

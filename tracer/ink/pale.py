@@ -28,7 +28,7 @@ from morfax.tracer.drawing.deepening import LEAST, shaded
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.spots import SPARSE, SPOT_PX, STRIPS, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
 # of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial

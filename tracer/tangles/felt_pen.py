@@ -11,18 +11,20 @@ Source: our own.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import ROBUST, median
+from morfax.tracer.effort import ROUNDS
 from morfax.tracer.tangles import pen
-from morfax.tracer.tangles.least_squares import fitted
-from morfax.tracer.tangles.seen_ink import STEPS, SeenInk
+from morfax.tracer.tangles.seen_ink import SeenInk
 
 FAR = 1.25  # widths from a line, the ink is another line's; chosen
 PAPER_FROM = 1.0  # widths from a line there is paper
-DEVIATIONS = 1.4826  # of a normal distribution, to the median of what it strays
+LEAST = 0.1  # of the softness that was felt: the fit's, at the least
 
 
 class FeltPen(NamedTuple):
@@ -39,19 +41,17 @@ class FeltPen(NamedTuple):
     @classmethod
     def of(cls, away_mm: Array, seen: SeenInk) -> FeltPen:
         """The pen that explains the ink at places that are so far (n,) from a clean line."""
-        dark, drawn = seen.darkness, np.empty(len(away_mm))
-        paper = float(np.median(dark[away_mm > PAPER_FROM * seen.width_mm]))
-
-        def wrong(figures: Array) -> Array:
-            half_mm, softness_mm, ink = figures.tolist()
-            pen.ink(away_mm, half_mm, abs(softness_mm), drawn)
-            return paper + (ink - paper) * drawn - dark
-
-        figures = fitted(wrong, np.array([seen.half_mm, seen.softness_mm, 1.0]), STEPS)
+        dark = seen.darkness
+        paper = median(dark[away_mm > PAPER_FROM * seen.width_mm])
+        figures = np.array([seen.half_mm, seen.softness_mm, 1.0 - paper])
+        for _ in range(ROUNDS):
+            wrong, changes = _wrong(away_mm, dark - paper, figures)
+            figures -= np.linalg.lstsq(changes, wrong, None)[0]
+            figures[1] = max(figures[1], LEAST * seen.softness_mm)
         half_mm, softness_mm, ink = figures.tolist()
-        left = wrong(figures) / (ink - paper)
-        noise = DEVIATIONS * float(np.median(np.abs(left - np.median(left))))
-        return cls(half_mm, abs(softness_mm), paper, ink, noise)
+        left = _wrong(away_mm, dark - paper, figures)[0] / ink
+        noise = ROBUST * median(np.abs(left - median(left)))
+        return cls(half_mm, softness_mm, paper, paper + ink, noise)
 
     def sees(self, seen: SeenInk) -> SeenInk:
         """The same ink as this pen's: 0 for its paper, 1 for its ink."""
@@ -61,3 +61,15 @@ class FeltPen(NamedTuple):
             softness_mm=self.softness_mm,
             noise=len(seen.darkness) * self.noise**2,
         )
+
+
+def _wrong(away_mm: Array, dark: Array, figures: Array) -> tuple[Array, Array]:
+    """What a pen of some figures draws too dark at places so far (n,) from its way, and by how much each of
+    the figures changes that, (n, 3).
+    """
+    half_mm, softness_mm, ink = figures.tolist()
+    drawn = np.empty(len(away_mm))
+    pen.ink(away_mm, half_mm, softness_mm, drawn)
+    u = (away_mm - half_mm) / softness_mm
+    fades = ink * np.exp(-0.5 * u * u) / (math.sqrt(math.tau) * softness_mm)
+    return ink * drawn - dark, np.column_stack([fades, fades * u, drawn])

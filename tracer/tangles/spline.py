@@ -29,14 +29,14 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
-from morfax.motion.plane import left_of
+from morfax.motion.plane import left_of, unit
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import SeenInk
 
 PLACES_WIDTHS = 0.12  # between the places that a strip is drawn with
 ASIDE = 3  # places on either side of one: they show across what its weight moves
-ENDS = 6  # places that show the heading at an end
+ENDS = 3  # places from an end, and as many on, show its heading
 MOST_STEPS = (
     12  # times that the ink is drawn: weights that lie 0.3 widths off settle within six
 )
@@ -97,8 +97,7 @@ class Strip(NamedTuple):
         # 2. where the weights lie, and what moves them
         number = np.arange(len(own))
         lie = np.column_stack([np.interp(at, number, column) for column in own.T])
-        heading = np.array([own[ENDS] - own[0], own[-1] - own[-1 - ENDS]])
-        heading /= np.hypot(*heading.T)[:, None]
+        heading = unit(np.array([_leaves(own), -_leaves(own[::-1])]))
         share = np.vstack(shares)
         way = share @ lie + np.vstack(slopes) @ heading
         broken = np.isin(np.arange(len(way)), corners[:-1])
@@ -128,6 +127,11 @@ class Strip(NamedTuple):
         if not self.figures:
             return self.way_mm
         return self.moved(fitted(wrong, np.zeros(self.figures), MOST_STEPS, changes))
+
+
+def _leaves(own: Array) -> Array:
+    """Along which way (x, y) a stretch (n, 2) leaves its first place, if it bends evenly there."""
+    return np.asarray(4 * (own[ENDS] - own[0]) - (own[2 * ENDS] - own[0]))
 
 
 def _moves(own: Array, weights: Weights, share: Array) -> Array:

@@ -20,6 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -33,6 +35,9 @@ MOST_PLACES = 1500  # of ink, enough to place a corner within 10 um
 ABOUT = 0.75  # widths on either side of a place, what is wrong counts as there; by trial
 # darkness: so much by itself, with less than half of it within so many pixels, is a speck
 SPECK, BESIDE_PX = 0.35, 1.6
+# at the edge of what is looked at, half as much ink as a line has there, so far from all lines, goes on;
+# less is specks
+EDGE, OWN = 0.2, 0.8
 MOST = 1.0  # that a pixel is wrong, squared
 CLEAN_PLACES = 40  # of some lines, about which their pen is felt
 ALONG = 0.8  # widths of way on either side of such a place
@@ -47,19 +52,23 @@ class Clean(NamedTuple):
 
 
 def ink_about(
-    drawing: Drawing, own: Array, others: Sequence[Array], width_mm: float
+    drawing: Drawing,
+    about: Array,
+    width_mm: float,
+    reach_widths: float,
+    others: Sequence[Array] = (),
 ) -> SeenInk:
-    """The ink about a stretch (n, 2) mm of a line of a width; other ways (m, 2) mm are drawn there anyway."""
-    i, j = Window.about(drawing, own, REACH * width_mm).grid()
-    places = middles_mm(drawing, i, j)
-    within = np.flatnonzero(away_from(places, own) < REACH * width_mm)
+    """The ink about some places (n, 2) mm of a line; other ways (m, 2) mm are drawn there anyway."""
+    reach_mm = reach_widths * width_mm
+    i, j = Window.about(drawing, about, reach_mm).grid()
+    within = np.flatnonzero(away_from(middles_mm(drawing, i, j), about) < reach_mm)
     every = 1 + len(within) // MOST_PLACES
-    within = within[::every]
-    known_mm = np.full(len(within), NOWHERE_MM)
+    i, j = i[within[::every]], j[within[::every]]
+    places, known_mm = middles_mm(drawing, i, j), np.full(len(i), NOWHERE_MM)
     for other in others:
         if len(other) > 1:
-            known_mm = np.minimum(known_mm, away_from(places[within], other))
-    return SeenInk.of(drawing, (i[within], j[within]), known_mm, width_mm, every)
+            known_mm = np.minimum(known_mm, away_from(places, other))
+    return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
 
 
 class Felt(NamedTuple):
@@ -77,7 +86,7 @@ def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | 
     for clean in ways:
         for at in clean.places[every // 2 :: every].tolist():
             own = clean.way[np.arange(at - around, at + around + 1) % len(clean.way)]
-            ink = ink_about(drawing, own, (), width_mm)
+            ink = ink_about(drawing, own, width_mm, REACH)
             away_mm, place = _nearest(ink.places_mm, own).T
             beside = (place > 0) & (place < len(own) - 1) & (away_mm < FAR * width_mm)
             owns.append(own)
@@ -91,7 +100,7 @@ def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | 
         wrong_about(pen.sees(ink), own, np.zeros(len(own), bool), STEP_WIDTHS)[around]
         for ink, own in zip(inks, owns, strict=True)
     ]
-    return Felt(pen, float(np.median(left)))
+    return Felt(pen, median(left))
 
 
 def wrong_about(
@@ -109,6 +118,18 @@ def wrong_about(
     place = np.arange(len(way))
     last, first = np.minimum(place + around + 1, len(way)), np.maximum(place - around, 0)
     return np.asarray(sums[last] - sums[first])
+
+
+def goes_on(ink: SeenInk, about: Array, reach_widths: float) -> bool:
+    """Whether ink beside all lines goes on beyond what is looked at about some places (n, 2) mm.
+
+    It is another line's then, or a longer bar's.
+    """
+    beside = (ink.darkness > INK) & (ink.known_mm > OWN * ink.width_mm)
+    away_mm = away_from(ink.places_mm[beside], about)
+    far = np.count_nonzero(away_mm > (reach_widths - EDGE) * ink.width_mm)
+    # one place alone is a speck
+    return bool(far > 1 and far * ink.area_mm2 > 0.5 * EDGE * ink.width_mm**2)
 
 
 def without_specks(ink: SeenInk, way: Array, pitch_mm: float) -> SeenInk:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
+from morfax.motion.polyline import evenly, length_mm, lengths_mm, nearest_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
@@ -34,14 +34,16 @@ from morfax.tracer.program.against_ink.off_ink import (
     Clean,
     Felt,
     felt_at,
+    goes_on,
     ink_about,
     without_specks,
     wrong_about,
 )
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
-from morfax.tracer.program.laid.line_parts import is_clear, is_plain
+from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_clear, is_plain
 from morfax.tracer.program.laid.rim_bays import RimBay
 from morfax.tracer.program.laid.spline_fit import (
+    CORNER_RAD,
     about_corners,
     corners_of,
     explained,
@@ -53,9 +55,9 @@ from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.seen_ink import SeenInk
 
 # In widths of the line, chosen by trial on parts with reliefs and on racks of teeth, drawn with known truth:
-LEG = 1.5  # of the way on either side of what is wrong
 LONGEST = 18.0  # a stretch is no longer, legs apart
-OF_LOOP = 0.7  # of its line is no stretch
+LONGER = 0.4  # than a way that does not turn: it goes out along a burr and comes back
+TURNS_OVER = 1.0  # on either side of a place, by how much the way turns there
 MOST_ASIDE = 0.5  # that a spline lies off the way: further is out along a tick, or round a bay
 # misfit: of what is wrong about a place noise is a quarter of that; 15 um of a line of 0.35 mm are as much
 OFF = 0.006
@@ -113,7 +115,7 @@ class _Way:
     @cached_property
     def corners(self) -> list[int]:
         """The places at which it turns sharply, and those a round before and behind."""
-        count, over = len(self.places), round(LEG / STEP_WIDTHS)
+        count, over = len(self.places), round(LEGS[0] / STEP_WIDTHS)
         on = self.places[np.arange(-over, count + over) % count]
         found = corners_of(turns_rad(on)[over:-over])
         return [at + k * count for at in found for k in (-1, 0, 1)]
@@ -122,7 +124,7 @@ class _Way:
     def may_be_off(self) -> bool:
         """Whether it is a plain line along which the swinging cell did not lead all along."""
         line = self.line
-        if not is_plain(line) or line.as_told or line.length_mm < 4 * LEG * line.width_mm:
+        if not is_plain(line) or line.as_told or line.length_mm < 4 * LEGS[0] * line.width_mm:
             return False
         return not self.by_cell.all()
 
@@ -135,7 +137,7 @@ class _Way:
 
     def _off(self, felt: Felt) -> Iterator[tuple[int, int]]:
         """The stretches that are off their ink, from which place to which."""
-        leg, limit = round(LEG / STEP_WIDTHS), _limit(felt)
+        leg, limit = round(LEGS[0] / STEP_WIDTHS), _limit(felt)
         off = np.zeros(len(self.places), bool)
         for first, last in _runs(~self.by_cell, leg):
             for begin in range(first, last + 1, round(LONGEST / STEP_WIDTHS)):
@@ -156,25 +158,30 @@ class _Way:
         for line in self.lines:
             if line is not self.line and reaches(line.places_mm, low, high):
                 near += _within(line.places_mm, low, high)
-        ink = felt.pen.sees(ink_about(drawing, own, near, self.line.width_mm))
+        ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_specks(ink, own, drawing.pitch_mm), own
 
     def _bay(self, first: int, last: int, felt: Felt) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""
-        count, leg = len(self.places), round(LEG / STEP_WIDTHS)
+        count, leg = len(self.places), round(LEGS[0] / STEP_WIDTHS)
         first = _off_corners(first - leg, self.corners, -1)
         last = _off_corners(last + leg, self.corners, 1)
         if last - first > min(2 * leg + LONGEST / STEP_WIDTHS, OF_LOOP * count):
             return None
         ink, own = self._seen(first, last, felt)
+        if goes_on(ink, own, REACH):
+            return None
         spline = explained(ink, own, self.step_mm, _limit(felt))
         if spline is None:
             return None
         left = left_by(ink, own, about_corners(own))
         if spline.worst > _limit(felt) and spline.misfit > STILL_LEFT * left:
             return None
-        gain = left - spline.cost
-        if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * self.line.width_mm:
+        gain, width_mm = left - spline.cost, self.line.width_mm
+        longer_mm = length_mm(spline.way) - length_mm(own)
+        if longer_mm > LONGER * width_mm and turns_rad(own, TURNS_OVER).max() < CORNER_RAD:
+            return None
+        if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
             return None
         rule = RimBay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
         return Bay(first * self.step_mm, last * self.step_mm, rule, gain)
@@ -212,7 +219,7 @@ def _within(way: Array, low: Array, high: Array) -> Iterator[Array]:
 
 def _off_corners(at: int, corners: Sequence[int], away: int) -> int:
     """A place moved away from corners, so that the way there is clean."""
-    leg = round(LEG / STEP_WIDTHS)
+    leg = round(LEGS[0] / STEP_WIDTHS)
     for corner in sorted(corners, reverse=away < 0):
         if abs(at - corner) < 0.5 * leg:
             at = corner + away * leg

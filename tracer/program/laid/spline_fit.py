@@ -94,9 +94,9 @@ def about_corners(way: Array) -> NDArray[np.bool_]:
     return sharp
 
 
-def turns_rad(way: Array) -> Array:
+def turns_rad(way: Array, over_widths: float = TURNS_OVER) -> Array:
     """By how much a way turns about each of its places (n, 2), which are a step apart."""
-    over, count = round(TURNS_OVER / STEP_WIDTHS), len(way)
+    over, count = round(over_widths / STEP_WIDTHS), len(way)
     at = np.arange(count)
     before = way - way[np.maximum(at - over, 0)]
     after = way[np.minimum(at + over, count - 1)] - way
