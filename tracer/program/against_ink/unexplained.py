@@ -34,9 +34,10 @@ from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.sharpening import turned_at
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
-from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, EVERY_MM, PAPER, TIP_RAD
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER, TIP_RAD
 from morfax.tracer.program.against_ink.own_ink import beside
 from morfax.tracer.program.against_ink.pointed import points_of
 from morfax.tracer.program.against_ink.redrawn import most_astray

@@ -29,13 +29,14 @@ from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.limits import ABOUT_WIDTHS, MANY, WIDER
+from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
 from morfax.tracer.program.laid.loop_ink import ink_of, is_drawn, is_single, leaves_none
 from morfax.tracer.program.laid.rim_loops import (
     BROAD,
