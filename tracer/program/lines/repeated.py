@@ -17,8 +17,9 @@ import numpy as np
 
 from morfax.motion.arrays import bounds
 from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.line import Line
-from morfax.tracer.limits import EVERY_MM, NEAR
+from morfax.tracer.limits import NEAR
 
 ALIKE = 0.9  # the shorter of two to the longer
 BOX_MM = 5.0  # between the edges of their boxes, at the most: a spur is no longer
