@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.player.tape.discriminator import turn
-from morfax.recorder.tape.carrier import _sine
+from morfax.recorder.tape.carrier import sine
 from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER
 from morfax.recorder.tape.tape import Stored
 
@@ -245,7 +245,7 @@ def _turn_back(halves, clock, state, theta, points):  # type: ignore[no-untyped-
         turns[k] = (nominal + place) / CYCLES_PER_SUBCARRIER
     # 3. the subcarriers, turned back by a sixth of it
     for k in range(count):
-        back = complex(_sine(0.25 + turns[k]), -_sine(turns[k]))
+        back = complex(sine(0.25 + turns[k]), -sine(turns[k]))
         for track in range(tracks):
             along = float(halves[track, 0, k]) + halves[track, 2, k + 1]
             across = float(halves[track, 1, k]) + halves[track, 3, k + 1]

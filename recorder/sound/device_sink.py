@@ -22,7 +22,7 @@ from morfax.motion.ending import Ending
 from morfax.motion.faults import DeviceFault
 from morfax.recorder.sound import device as portaudio
 from morfax.recorder.sound.device import Device
-from morfax.recorder.sound.source import Frames
+from morfax.recorder.sound.source import Frames, SampleType, Stored
 
 AHEAD_S = 2.0  # of sound held for a device, and made before it starts: a stall of the machine is shorter
 # of the device's own buffer; chosen by trial: beside other work 0.2 ran out of samples on the way out
@@ -37,6 +37,8 @@ PIECE_FRAMES = 8192  # of frames put in one piece into the queue, 0.17 s
 
 class DeviceSink(Ending):
     """Frames put out to a device; a context manager. Raises DeviceFault for an underrun or a lost device."""
+
+    takes: SampleType = np.float32
 
     def __init__(self, device: Device, rate_hz: int, tracks: int) -> None:
         self._device, self._rate_hz, self._tracks = device, rate_hz, tracks
@@ -64,7 +66,7 @@ class DeviceSink(Ending):
                 self._stream.abort() if error is not None or self._fault else self._stream.stop()
                 self._stream.close()
 
-    def put(self, frames: Frames) -> None:
+    def put(self, frames: Stored) -> None:
         """Take the next frames; waits while the device has enough of them."""
         for first in range(0, len(frames), PIECE_FRAMES):
             piece = np.ascontiguousarray(frames[first : first + PIECE_FRAMES], np.float32)

@@ -25,12 +25,12 @@ from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
 from morfax.motion.usual import SAMPLE_RATE_HZ
 from morfax.recorder.sound.riff import UNKNOWN
-from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, Stored
+from morfax.recorder.sound.sixteen_bit import in_16_bit
+from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, SampleType, Stored
 
 LARGEST_CHUNK_BYTES = 1 << 20  # of a header: more is no tape
 FEWEST_TRACKS, MOST_TRACKS = 3, 64  # reference, X, Y; more is no tape
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
-_FULL_SCALE = 32767  # of 16 bit, as libsndfile writes
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +108,8 @@ class PipeSource:
 class PipeSink(Ending):
     """A WAV of 16 bit put into a pipe; its header states no length, and its text stands in front."""
 
+    takes: SampleType = np.int16
+
     def __init__(self, stream: BinaryIO, rate_hz: int, tracks: int, text: str) -> None:
         self._stream = stream
         words = text.encode() + b"\0" * (1 + (len(text.encode()) + 1) % 2)
@@ -125,10 +127,9 @@ class PipeSink(Ending):
         if error is None:
             self._stream.flush()
 
-    def put(self, frames: Frames) -> None:
+    def put(self, frames: Stored) -> None:
         """Write frames; raises BrokenPipeError where nobody reads any more."""
-        whole = np.clip(np.rint(frames * _FULL_SCALE), -_FULL_SCALE - 1, _FULL_SCALE)
-        self._stream.write(whole.astype("<i2").tobytes())
+        self._stream.write(in_16_bit(frames).astype("<i2", copy=False).tobytes())
 
 
 def _whole(stream: BinaryIO, size: int) -> bytes:

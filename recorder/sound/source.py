@@ -35,6 +35,7 @@ _INT16_STEP = np.float32(1 / 32768)  # full scale 1
 
 Frames = NDArray[np.float32]
 Stored = NDArray[np.float32 | np.int16]
+SampleType = type[np.float32] | type[np.int16]
 
 
 class Source(Protocol):
@@ -61,7 +62,11 @@ class Source(Protocol):
 class Sink(Ending, Protocol):
     """Where frames go; it ends well only if all are there, and after an error nothing may look whole."""
 
-    def put(self, frames: Frames) -> None:
+    @property
+    def takes(self) -> SampleType:
+        """The kind of samples that it keeps; it takes float32, too."""
+
+    def put(self, frames: Stored) -> None:
         """Take the next frames."""
 
 

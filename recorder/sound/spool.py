@@ -15,13 +15,12 @@ from pathlib import Path as FilePath
 
 import numpy as np
 import soundfile
-from numpy.typing import NDArray
 
-from morfax.motion.compiled import njit
 from morfax.motion.ending import Ending
 from morfax.motion.faults import FileFault, TapeFault
 from morfax.motion.files import for_soundfile
-from morfax.recorder.sound.source import Frames
+from morfax.recorder.sound.sixteen_bit import in_16_bit
+from morfax.recorder.sound.source import SampleType, Stored
 
 CONTAINERS = {
     ".wav": "RF64",
@@ -73,13 +72,12 @@ class Spool(Ending):
                 ".rf64 or .w64"
             )
         self._file, self._name, self._container = file, name or file, container
-        self._subtype = subtype
         self._frame_bytes = tracks * _SAMPLE_BYTES[subtype]
         self._sound = soundfile.SoundFile(
             for_soundfile(file), "w", rate_hz, tracks, subtype, format=container
         )
         self.frames = 0
-        self._samples = np.empty((0, tracks), np.int16)
+        self.takes: SampleType = np.int16 if subtype == "PCM_16" else np.float32
         if text and container != "W64":
             self._sound.comment = text
 
@@ -89,7 +87,7 @@ class Spool(Ending):
         if error is None:
             self._check_whole()
 
-    def put(self, frames: Frames) -> None:
+    def put(self, frames: Stored) -> None:
         """Write frames; raises SoundFileRuntimeError on a full disk, TapeFault beyond an AIFF's size."""
         self.frames += len(frames)
         if self._container == "AIFF" and self.frames * self._frame_bytes > LARGEST_AIFF_BYTES:
@@ -97,17 +95,12 @@ class Spool(Ending):
                 f"cannot write {self._name}: an AIFF ends at 2 GiB; write a .wav, .rf64, .w64 or .flac"
             )
         try:
-            self._sound.write(self._in_16_bit(frames) if self._subtype == "PCM_16" else frames)
+            if self.takes is np.int16:
+                self._sound.buffer_write(in_16_bit(frames), "int16")
+            else:
+                self._sound.write(frames)
         except AssertionError:  # soundfile asserts that libsndfile wrote all of it
             raise soundfile.SoundFileRuntimeError("not all frames were written") from None
-
-    def _in_16_bit(self, frames: Frames) -> NDArray[np.int16]:
-        """Frames as clipped samples of 16 bit, in memory that the next ones take over."""
-        if len(self._samples) < len(frames):
-            self._samples = np.empty(frames.shape, np.int16)
-        samples = self._samples[: len(frames)]
-        _to_16_bit(frames, samples)
-        return samples
 
     def _check_whole(self) -> None:
         """Raise SoundFileError unless the last frame is there: a FLAC meets a full disk only on closing."""
@@ -117,13 +110,3 @@ class Spool(Ending):
             written.seek(self.frames - 1)
             if written.frames != self.frames or len(written.read(1)) != 1:
                 raise soundfile.SoundFileRuntimeError("the last frame is missing")
-
-
-@njit(cache=True, nogil=True)
-def _to_16_bit(frames, out):  # type: ignore[no-untyped-def]
-    """Make clipped 16-bit samples of frames of full scale 1; libsndfile takes six times as long."""
-    for i in range(frames.shape[0]):
-        for j in range(frames.shape[1]):
-            value = frames[i, j] * np.float32(32767)
-            value = min(max(value, np.float32(-32768)), np.float32(32767))
-            out[i, j] = np.int16(np.rint(value))

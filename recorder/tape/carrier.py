@@ -1,8 +1,8 @@
 """The pick-ups: displacement of the screws -> phase -> samples of the carrier tracks.
 
-Signals: positions in mm in, one row per sample of the motion (6 kHz); frames in float32 out, full scale 1,
-one row per sample of the tape (48 kHz), columns reference, X, Y, Z. Sample k of the motion stands at frame 8
-k of the carriers.
+Signals: positions in mm in, one row per sample of the motion (6 kHz); frames out, float32 of full scale 1 or
+16 bit, one row per sample of the tape (48 kHz), columns reference, X, Y, Z. Sample k of the motion stands at
+frame 8 k of the carriers.
 
     phase of the reference = reference · t                                    (cycles)
     phase of a track       = phase of the reference + (position - start) / q  (cycles), q = 1 / cycles per mm
@@ -31,21 +31,30 @@ equivalent, unless asked.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from morfax.motion.compiled import njit
+from morfax.motion.arrays import Array
+from morfax.motion.compiled import keeps_kinds, njit
 from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ, SAMPLES_PER_MOTION
+from morfax.recorder.sound.source import Stored
+from morfax.recorder.tape.lacing import (
+    BARE,
+    CHUNK_PERIODS,
+    Beneath,
+    Room,
+    finish,
+    lace,
+    words_of,
+)
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, SCREW, Sensor
+from morfax.recorder.tape.waiting_rows import WaitingRows
 
 FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate, as drawn above
-# samples that the next frames still need: the neighbour before, and two not yet played
-_HELD_BACK = 3
-ROWS_AT_ONCE = 8
-CHUNK_PERIODS = 64  # made at a time: they stay in the processor's first cache
-
-Frames = NDArray[np.float32]
+_HELD_BACK = 2  # samples behind the last frame that it needs: those that its cubic goes to
+_NO_BITS = np.empty((0, 0))  # of a bare tape
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,104 +74,140 @@ class PickUp:
         return self.reference_hz * self.samples_per_motion / self.sample_rate_hz
 
 
-class Carrier:
-    """The carriers of one tape, block by block; at `start_mm` the tracks have the phase of the reference."""
+class _Figures(NamedTuple):
+    reference_cycles: float
+    amplitudes: Array
+    by_speed: bool
 
-    def __init__(self, pick_up: PickUp, start_mm: ArrayLike) -> None:
-        self._pick_up = pick_up
-        self._start_mm = np.atleast_1d(np.asarray(start_mm, np.float64))
-        self._starts_mm = np.tile(self._start_mm, ROWS_AT_ONCE)
-        self._held = np.empty((0, len(self._start_mm)))  # displacement in cycles
-        self._periods = 0
+
+@keeps_kinds
+class _Wave(_Figures):
+    """The waves of the tracks: cycles of the reference in a period of the motion; amplitudes of the axes'
+    harmonics, and whether they grow with the speed.
+    """
+
+
+class Carrier:
+    """The carriers of one tape, block by block; at `start_mm` the tracks have the phase of the reference.
+
+    `samples`: float32 of full scale 1, or int16.
+    """
+
+    def __init__(
+        self, pick_up: PickUp, start_mm: ArrayLike, samples: type[np.generic] = np.float32
+    ) -> None:
+        self._pick_up, self._samples = pick_up, samples
+        start = np.atleast_1d(np.asarray(start_mm, np.float64))
+        self._axes = len(start)
+        self.rows = WaitingRows(start, pick_up.cycles_per_mm)
+        self.done = 0  # frames that are made
+        sensor = pick_up.sensor
         # a track stays above two thirds of the reference
         lowest = 0.5 * pick_up.reference_hz / pick_up.sample_rate_hz
-        self._harmonics = int((FADE_TO / lowest + 1) / 2)
+        harmonics = 1 if sensor.is_sine else int((FADE_TO / lowest + 1) / 2)
+        amplitudes = pick_up.level * sensor.amplitudes(harmonics)
+        self._wave = _Wave(pick_up.reference_cycles, amplitudes, sensor.by_speed)
+        self._room = Room.of(1 + self._axes, pick_up.samples_per_motion)
 
-    def frames(self, positions_mm: ArrayLike) -> Frames:
+    def frames(self, positions_mm: ArrayLike) -> Stored:
         """Frames (n, 1 + axes) from positions (n, axes) in mm; the last two samples are held back."""
-        return self.frames_of(self.displacements(positions_mm))
+        self.feed(positions_mm)
+        return self.ready()
 
-    def displacements(self, positions_mm: ArrayLike) -> NDArray[np.float64]:
-        """How far positions (n, axes) in mm are from the start, cycles."""
-        positions = np.ascontiguousarray(positions_mm, np.float64)
-        if positions.ndim != 2 or positions.shape[1] != len(self._start_mm):
+    def feed(self, positions_mm: ArrayLike) -> Array:
+        """Take positions (n, axes) in mm; how far they are from the start, cycles, until more come."""
+        positions = np.asarray(positions_mm, np.float64)
+        if positions.ndim != 2 or positions.shape[1] != self._axes:
             raise ValueError(
-                f"positions of shape {positions.shape} do not fit; give (n, {len(self._start_mm)}) mm"
+                f"positions of shape {positions.shape} do not fit; give (n, {self._axes}) mm"
             )
-        cycles = np.empty(positions.shape)
-        cycles_per_mm = self._pick_up.cycles_per_mm
-        _displace(positions.ravel(), self._starts_mm, cycles_per_mm, cycles.ravel())
-        return cycles
+        return self.rows.feed(positions)
 
-    def frames_of(self, cycles: NDArray[np.float64]) -> Frames:
-        """Frames as `frames` makes them, from displacements in cycles."""
-        if not len(self._held):
-            # the screws stood at the first position before
-            cycles = np.vstack([cycles[:1], cycles])
-        return self._synthesise(np.vstack([self._held, cycles]))
+    def ready(self) -> Stored:
+        """All frames that can be made by now, without a check signal."""
+        return self.until(self._frame_of(max(self.rows.end - _HELD_BACK, 0)))
 
-    def rest(self) -> Frames:
+    def rest(self) -> Stored:
         """The last frames: the screws stand at the last position."""
-        if not len(self._held):
-            return np.empty((0, 1 + len(self._start_mm)), np.float32)
-        return self._synthesise(np.vstack([self._held, self._held[-1:], self._held[-1:]]))
+        return self.until(self.whole)
 
-    def _synthesise(self, cycles: NDArray[np.float64]) -> Frames:
-        """Frames of all periods but the first and the last two samples, which are held."""
-        pick_up, tracks = self._pick_up, 1 + len(self._start_mm)
-        periods = max(0, len(cycles) - _HELD_BACK)
-        frames = np.empty((periods * pick_up.samples_per_motion, tracks), np.float32)
-        turning = self._periods, pick_up.reference_cycles
-        if periods and pick_up.sensor.is_sine:
-            _write(cycles, *turning, pick_up.level, frames)
-        elif periods:
-            amplitudes = pick_up.level * pick_up.sensor.amplitudes(self._harmonics)
-            _write_wave(cycles, *turning, amplitudes, pick_up.sensor.by_speed, frames)
-        self._held = cycles[periods:].copy()
-        self._periods += periods
+    @property
+    def whole(self) -> int:
+        """The frames of a tape that ends with the rows that have come."""
+        return self._frame_of(self.rows.end)
+
+    def _frame_of(self, row: int) -> int:
+        """The frame at which a row stands."""
+        return row * self._pick_up.samples_per_motion
+
+    def until(self, frame: int, beneath: Beneath = BARE, bits: Array = _NO_BITS) -> Stored:
+        """The frames from those that are made to one, with the check signal beneath the periods that they
+        are in, and what its tracks say there (symbols, tracks).
+        """
+        steps, tracks = self._pick_up.samples_per_motion, 1 + self._axes
+        first, end = self.done // steps, -(-frame // steps)
+        frames = np.empty(((end - first) * steps, tracks), self._samples)
+        if len(frames):
+            rows = self.rows.around(first - 1, end + _HELD_BACK)
+            words = words_of(frames)
+            _write(rows, first, self._wave, beneath, bits, self._room, frames, words)
+        frames = frames[self.done - first * steps :][: frame - self.done]
+        self.done = frame
+        self.rows.drop(frame // steps - 1)
         return frames
 
 
-@njit(cache=True, nogil=True)
-def _displace(positions_mm, start_mm, cycles_per_mm, cycles):  # type: ignore[no-untyped-def]
-    """Fill the displacements of positions, row after row; as many at once as `start_mm` is long."""
-    for first in range(0, len(positions_mm), len(start_mm)):
-        for k in range(min(len(start_mm), len(positions_mm) - first)):
-            cycles[first + k] = (positions_mm[first + k] - start_mm[k]) * cycles_per_mm
-
-
-@njit(cache=True, nogil=True)
-def _write(cycles, first_period, reference_cycles, level, frames):  # type: ignore[no-untyped-def]
+@njit(cache=True, nogil=True, _nrt=False)
+def _write(rows, first_period, wave, beneath, bits, room, frames, words):  # type: ignore[no-untyped-def]
     """Fill frames (periods · steps, 1 + axes) from displacements (periods + 3, axes) in cycles.
 
-    A track at a time, and in it one of the steps of many periods at a time: these lie side by side in memory,
-    so that the compiler makes several sines at once.
+    A track at a time, and in it one of the steps of many periods at a time (lacing.py).
     """
-    periods, axes = cycles.shape[0] - 3, cycles.shape[1]
-    steps = frames.shape[0] // periods
-    columns = np.empty((axes + 1, steps, CHUNK_PERIODS), np.float32)
-    is_even = (
-        np.floor(reference_cycles) == reference_cycles
-    )  # all periods of the reference are alike
-    turned = np.empty(CHUNK_PERIODS)
-    c0, c1 = np.empty(CHUNK_PERIODS), np.empty(CHUNK_PERIODS)
-    c2, c3 = np.empty(CHUNK_PERIODS), np.empty(CHUNK_PERIODS)
+    reference_cycles, amplitudes, by_speed = wave
+    periods, axes = rows.shape[0] - 3, rows.shape[1]
+    steps, in_16_bit = frames.shape[0] // periods, frames.itemsize == 2
+    columns, turned, cubics = room.columns, room.turned, room.cubics
+    c0, c1, c2, c3 = cubics[0], cubics[1], cubics[2], cubics[3]
+    as_they_are = not in_16_bit and len(beneath.waves) == 0
+    # all periods of the reference are alike, and so are those of an axis that stands
+    is_even = np.floor(reference_cycles) == reference_cycles
+    room.stands[:] = False
     for first in range(0, periods, CHUNK_PERIODS):
         count = min(CHUNK_PERIODS, periods - first)
         _turned(first_period + first, reference_cycles, turned)
         if first == 0 or not is_even:
             c1[:], c2[:], c3[:] = reference_cycles / steps, 0.0, 0.0
             for k in range(steps):
-                _sines(turned, c1, c2, c3, float(k), level, columns[0, k])
+                _sines(turned, c1, c2, c3, float(k), amplitudes[0], columns[0, k])
         for axis in range(axes):
-            c0[:] = turned
-            _cubics(cycles[first : first + count + 3, axis], reference_cycles, c0, c1, c2, c3)
+            places, stood = rows[first : first + count + 3, axis], room.stands[axis]
+            room.stands[axis] = is_even and _are_alike(places)
+            if stood and room.stands[axis]:
+                continue  # its columns are those of the periods before
+            _cubics(places, reference_cycles, turned, cubics)
             for k in range(steps):
-                _sines(c0, c1, c2, c3, k / steps, level, columns[1 + axis, k])
-        _lace(columns, frames[first * steps : (first + count) * steps])
+                column = columns[1 + axis, k]
+                if len(amplitudes) == 1 and not by_speed:
+                    _sines(c0, c1, c2, c3, k / steps, amplitudes[0], column)
+                else:
+                    _waves((c0, c1, c2, c3), k / steps, steps, wave, column)
+        if not as_they_are:
+            finish(room, first, count, beneath, bits, in_16_bit)
+        laced, span = columns if as_they_are else room.finished, first * steps
+        piece = slice(span, span + count * steps)
+        lace(laced, room.packed, frames[piece], words[piece])
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, _nrt=False)
+def _are_alike(places):  # type: ignore[no-untyped-def]
+    """Whether all are the same number."""
+    others = 0
+    for k in range(len(places)):
+        others += places[k] != places[0]
+    return others == 0
+
+
+@njit(cache=True, nogil=True, _nrt=False)
 def _turned(first_period, reference_cycles, turned):  # type: ignore[no-untyped-def]
     """The phase of the reference at the start of each period, 0 to 1 cycle."""
     for i in range(len(turned)):
@@ -180,66 +225,40 @@ def _cubic(p0, p1, p2, p3):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, nogil=True)
-def _cubics(cycles, reference_cycles, c0, c1, c2, c3):  # type: ignore[no-untyped-def]
-    """The phase of an axis in each period as a cubic; the phase of the reference is in `c0` already."""
+@njit(cache=True, nogil=True, _nrt=False)
+def _cubics(cycles, reference_cycles, turned, cubics):  # type: ignore[no-untyped-def]
+    """The phase of an axis in each period as a cubic, from its displacements and the reference's phase."""
+    c0, c1, c2, c3 = cubics[0], cubics[1], cubics[2], cubics[3]
     for i in range(len(cycles) - 3):
         p0, p1, p2, p3 = cycles[i], cycles[i + 1], cycles[i + 2], cycles[i + 3]
-        c0[i] += p1 - np.floor(p1)
+        c0[i] = turned[i] + (p1 - np.floor(p1))
         slope, c2[i], c3[i] = _cubic(p0, p1, p2, p3)
         c1[i] = slope + reference_cycles
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, _nrt=False)
 def _sines(c0, c1, c2, c3, u, level, column):  # type: ignore[no-untyped-def]
     """The samples of a track at the same place of each period."""
     for i in range(len(column)):
-        column[i] = level * _sine(c0[i] + u * (c1[i] + u * (c2[i] + u * c3[i])))
+        column[i] = level * sine(c0[i] + u * (c1[i] + u * (c2[i] + u * c3[i])))
 
 
-@njit(cache=True, nogil=True)
-def _lace(columns, frames):  # type: ignore[no-untyped-def]
-    """Put columns (tracks, steps, periods) beside each other as frames."""
-    tracks, steps = columns.shape[0], columns.shape[1]
-    for track in range(tracks):
-        for k in range(steps):
-            column = columns[track, k]
-            for i in range(len(frames) // steps):
-                frames[i * steps + k, track] = column[i]
-
-
-@njit(cache=True, nogil=True)
-def _write_wave(cycles, first_period, reference_cycles, amplitudes, by_speed, frames):  # type: ignore[no-untyped-def]
-    """Fill frames as `_write` does, the tracks of the axes with a wave of odd harmonics."""
-    periods, axes = cycles.shape[0] - 3, cycles.shape[1]
-    steps = frames.shape[0] // periods
-    for i in range(periods):
-        turned = (first_period + i) * reference_cycles
-        turned -= np.floor(turned)
-        for k in range(steps):
-            frames[i * steps + k, 0] = amplitudes[0] * _sine(
-                turned + k * (reference_cycles / steps)
-            )
-        for j in range(axes):
-            p0, p1, p2, p3 = cycles[i, j], cycles[i + 1, j], cycles[i + 2, j], cycles[i + 3, j]
-            c0 = turned + (p1 - np.floor(p1))
-            slope, c2, c3 = _cubic(p0, p1, p2, p3)
-            c1 = slope + reference_cycles
-            for k in range(steps):
-                u = k / steps
-                speed = c1 + u * (
-                    2.0 * c2 + u * 3.0 * c3
-                )  # cycles per period: the frequency of the track
-                wave = _wave(c0 + u * (c1 + u * (c2 + u * c3)), abs(speed) / steps, amplitudes)
-                frames[i * steps + k, 1 + j] = (
-                    wave * speed / reference_cycles if by_speed else wave
-                )
+@njit(cache=True, nogil=True, _nrt=False)
+def _waves(cubic, u, steps, wave, column):  # type: ignore[no-untyped-def]
+    """The same of a wave with harmonics, with so many steps in a period."""
+    (c0, c1, c2, c3), (reference_cycles, amplitudes, by_speed) = cubic, wave
+    for i in range(len(column)):
+        # cycles per period: the frequency of the track
+        speed = c1[i] + u * (2.0 * c2[i] + u * 3.0 * c3[i])
+        cycles = c0[i] + u * (c1[i] + u * (c2[i] + u * c3[i]))
+        sample = _wave(cycles, abs(speed) / steps, amplitudes)
+        column[i] = sample * speed / reference_cycles if by_speed else sample
 
 
 @njit(cache=True, inline="always")
 def _wave(cycles, frequency, amplitudes):  # type: ignore[no-untyped-def]
     """Sum of the odd harmonics at a phase; the frequency (over the sample rate) fades the high ones out."""
-    fundamental = _sine(cycles)
+    fundamental = sine(cycles)
     before, now = -fundamental, fundamental
     # of the doubled phase; sin((n + 2) x) = 2 cos 2x sin nx - ...
     twice_cosine = 2.0 - 4.0 * fundamental * fundamental
@@ -255,7 +274,7 @@ def _wave(cycles, frequency, amplitudes):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, inline="always")
-def _sine(cycles):  # type: ignore[no-untyped-def]
+def sine(cycles):  # type: ignore[no-untyped-def]
     """sin(2 pi cycles) within 1.1e-7, for a few cycles or fewer.
 
     x (1 - 4 x²) P(x²) on -1/2 ... 1/2, with P fitted at Chebyshev's points to sin(2 pi x) / (x (1 - 4 x²)):

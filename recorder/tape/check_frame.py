@@ -23,7 +23,6 @@ whitening: the sequence x^7 + x^4 + 1 of IEEE 802.11. Questions: a random frame 
 from __future__ import annotations
 
 import math
-import zlib
 from functools import cache
 from typing import NamedTuple
 
@@ -31,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import ROUNDED
-from morfax.motion.compiled import njit
+from morfax.motion.compiled import lasting, njit
 
 VERSION = 3
 SYMBOLS = 120  # of a frame
@@ -77,21 +76,10 @@ class CheckFrame(NamedTuple):
     @property
     def turn_cycles(self) -> float:
         """Cycles after which the counts begin again."""
-        return (1 << _COUNT_BITS - _middle_bits(self.version, self.track)) * self.grain_cycles
-
-    @property
-    def _count_word(self) -> int:
-        """The bits of the count, and of the middle where it is told."""
-        bits = _middle_bits(self.version, self.track)
-        word = self.counts % (1 << _COUNT_BITS - bits)
-        if not bits:
-            return word
-        middle = self.cycles if self.middle_cycles is None else self.middle_cycles
-        counts = round(middle * COUNTS_PER_CYCLE[self.version])
-        return word << bits | counts % (1 << bits)
+        return (1 << _COUNT_BITS - middle_bits(self.version, self.track)) * self.grain_cycles
 
 
-def _middle_bits(version: int, track: int) -> int:
+def middle_bits(version: int, track: int) -> int:
     """The bits of the count that tell where an axis is in the middle of the frame."""
     return _MIDDLE_BITS if version >= 3 and track else 0
 
@@ -114,37 +102,62 @@ def _crc_of_bytes() -> NDArray[np.uint32]:
     return crcs
 
 
-_WHITE = _whitening()
-_WHITE_WORD = int.from_bytes(np.packbits(_WHITE).tobytes(), "big")
-_SYMBOLS_OF_BYTE: Bits = (
-    np.unpackbits(np.arange(256, dtype=np.uint8)[:, None], axis=1).astype(np.int8) * 2 - 1
-)
-# the whitening, and the CRC-32 of each byte, for `tell`
-TABLES = (_WHITE, _crc_of_bytes())
 SYNC: Bits = np.array(
     [1 if _SYNC >> bit & 1 else -1 for bit in range(SYNC_SYMBOLS - 1, -1, -1)], np.int8
 )
+# the whitening, and the CRC-32 of each byte, for `tell`; the same with the sync word, for `send`
+TABLES = (_whitening(), _crc_of_bytes())
+SENT_BY = lasting((SYNC, *TABLES))
 
 
 def to_bits(frame: CheckFrame) -> Bits:
     """The frame as 120 symbols of +1 and -1; raises ValueError for a track that has no room."""
     if not 0 <= frame.track < MOST_TRACKS:
         raise ValueError(f"track {frame.track} has no room in a check frame")
-    told = frame.version
-    for value, bits in (
-        (int(frame.last), 1),
-        (frame.track, 4),
-        (frame.number % NUMBERS, 16),
-        (frame._count_word, _COUNT_BITS),
-        (to_code(frame.speed, LEAST_SPEED), _CODE_BITS),
-        (to_code(frame.acceleration, LEAST_ACCELERATION), _CODE_BITS),
-    ):
-        told = told << bits | value
-    crc = zlib.crc32(told.to_bytes(_TOLD_BYTES, "big"))
-    data = ((told << 8 * _CRC_BYTES | crc) ^ _WHITE_WORD).to_bytes(
-        _TOLD_BYTES + _CRC_BYTES, "big"
-    )
-    return np.concatenate([SYNC, _SYMBOLS_OF_BYTE[np.frombuffer(data, np.uint8)].ravel()])
+    middle = frame.cycles if frame.middle_cycles is None else frame.middle_cycles
+    counts = frame.counts, round(middle * COUNTS_PER_CYCLE[frame.version])
+    state = frame.version, frame.last, middle_bits(frame.version, frame.track)
+    word = word_of(frame[:2], state, counts, frame[3:5])
+    symbols = np.empty((SYMBOLS + 1, 1))
+    send(np.array([word]), SENT_BY, symbols)
+    return symbols[:SYMBOLS, 0].astype(np.int8)
+
+
+@njit(cache=True, nogil=True)
+def word_of(who, state, counts, most):  # type: ignore[no-untyped-def]
+    """The 64 bits that a track tells.
+
+    `who`: track and number; `state`: version, whether the tape ends, bits of a middle; `counts`: where it is
+    at the frame's first instant, and in its middle; `most`: speed and acceleration.
+    """
+    (track, number), (version, last, of_middle) = who, state
+    word = ((version << 1 | int(last)) << 4 | track) << 16 | int(number) % NUMBERS
+    word = word << _COUNT_BITS - of_middle | counts[0] & (1 << _COUNT_BITS - of_middle) - 1
+    word = word << of_middle | counts[1] & (1 << of_middle) - 1
+    word = word << _CODE_BITS | to_code(most[0], LEAST_SPEED)
+    return word << _CODE_BITS | to_code(most[1], LEAST_ACCELERATION)
+
+
+@njit(cache=True, nogil=True)
+def send(words, tables, symbols):  # type: ignore[no-untyped-def]
+    """Fill in the symbols, +1 and -1, of frames that are sent side by side (symbols, words): sync word, told
+    bits and check sum, and the first symbol of the frames that come next.
+    """
+    sync, white, byte_crcs = tables
+    for track in range(len(words)):
+        word, crc = words[track], 0xFFFFFFFF
+        for byte in range(_TOLD_BYTES):
+            value = word >> 8 * (_TOLD_BYTES - 1 - byte) & 0xFF
+            crc = int(byte_crcs[(crc ^ value) & 0xFF]) ^ crc >> 8
+        crc ^= 0xFFFFFFFF
+        for at in range(len(sync)):
+            symbols[at, track] = sync[at]
+        for at in range(len(white)):
+            told = at < 8 * _TOLD_BYTES
+            left = 8 * _TOLD_BYTES - 1 - at if told else 8 * (_TOLD_BYTES + _CRC_BYTES) - 1 - at
+            bit = (word if told else crc) >> left & 1
+            symbols[len(sync) + at, track] = 1.0 if bit != white[at] else -1.0
+        symbols[len(sync) + len(white), track] = sync[0]
 
 
 def from_bits(bits: Bits) -> list[CheckFrame | None]:
@@ -184,7 +197,7 @@ def said_by(told: int) -> CheckFrame | None:
     if version not in COUNTS_PER_CYCLE:
         return None
     track = told >> 56 & (MOST_TRACKS - 1)
-    bits = _middle_bits(version, track)
+    bits = middle_bits(version, track)
     codes = told & ((1 << 2 * _CODE_BITS) - 1)
     code_mask = (1 << _CODE_BITS) - 1
     word = told >> 2 * _CODE_BITS & ((1 << _COUNT_BITS) - 1)
@@ -203,12 +216,14 @@ def said_by(told: int) -> CheckFrame | None:
     )
 
 
-def to_code(value: float, least: float) -> int:
+@njit(cache=True, nogil=True)
+def to_code(value, least):  # type: ignore[no-untyped-def]
     """The code of a speed or acceleration, rounded up; the largest for all that is beyond it."""
     if not value > 0:
         return 0
-    octaves = math.log2(max(value / least, 1.0))
-    return min(1 + math.ceil(octaves * _PER_OCTAVE - ROUNDED), (1 << _CODE_BITS) - 1)
+    steps = math.log2(max(value / least, 1.0)) * _PER_OCTAVE - ROUNDED
+    most = (1 << _CODE_BITS) - 1
+    return most if steps > most - 2 else 1 + math.ceil(steps)
 
 
 @cache  # of 128 codes each

@@ -1,7 +1,7 @@
 """The check signal: a weak subcarrier beneath each track, which says which track it is and where its axis is.
 
-Signals in: the bare frames of the carriers (n, tracks) and the displacements of the axes in cycles, at the
-motion rate; out: the same frames with the check signal, a second and a half later.
+Signals in: the carriers of a tape, with the displacements of the axes in cycles, at the motion rate; out: the
+frames of the tape with the check signal beneath them, a second and a half later.
 
     subcarrier   a sixth of the reference (1 kHz), 14 dB below the carrier, in phase with it at the start
     symbol       24 cycles of the reference (4 ms), +1 or -1, passing over as a raised cosine
@@ -14,8 +14,9 @@ motion rate; out: the same frames with the check signal, a second and a half lat
            ╲_            _╱              all tracks change over at the same moments
              ╲__________╱
 
-What a frame tells of the time to come (check_frame.py) is known up to three frames later, so the frames of
-the tape wait for that. Symbols and subcarrier are counted in cycles of the reference, the tape's own clock.
+What a frame tells of the time to come (check_frame.py) is known up to three frames later, so the rows of the
+tape wait for that (waiting_rows.py), and its frames are made with the check signal beneath them (lacing.py).
+Symbols and subcarrier are counted in cycles of the reference, the tape's own clock.
 
 Source: our own; others of that time put time codes on tape the same way (IRIG B: a modulated carrier of 1
 kHz, 1960). Questions: 2 kHz would pass the player's band filter only 24 dB down and turn the phase by 2e-3
@@ -24,17 +25,30 @@ cycle; 1 kHz passes 82 dB down (docs/reference/tape-format.md).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.compiled import njit
-from morfax.motion.polyline import at_places
-from morfax.recorder.tape.carrier import Frames, _sine
-from morfax.recorder.tape.check_frame import SYMBOLS, SYNC, CheckFrame, to_bits
+from morfax.motion.compiled import keeps_kinds, njit
+from morfax.recorder.sound.source import Stored
+from morfax.recorder.tape.carrier import Carrier, sine
+from morfax.recorder.tape.check_frame import (
+    COUNTS_PER_CYCLE,
+    SENT_BY,
+    SYMBOLS,
+    VERSION,
+    middle_bits,
+    send,
+    word_of,
+)
 from morfax.recorder.tape.format import CHECK_SHARE, TapeFormat
+from morfax.recorder.tape.lacing import BARE, Beneath
+from morfax.recorder.tape.speed_gauge import widest_moves
 from morfax.recorder.tape.told_figures import Stated, frame_of
+from morfax.recorder.tape.waiting_rows import ROWS_AT_ONCE
 
 CYCLES_PER_SUBCARRIER = 6.0  # of the reference
 CYCLES_PER_SYMBOL = 24.0
@@ -44,163 +58,176 @@ GAUGE_S = 0.002
 
 
 class CheckWriter:
-    """Lays the check signal on the frames of one tape."""
+    """Has the carriers of one tape made with the check signal beneath them."""
 
-    def __init__(self, fmt: TapeFormat) -> None:
-        pick_up = fmt.carrier
-        self._stated = Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm)
-        self._tracks, self._amplitude = fmt.tracks, CHECK_SHARE * fmt.level
-        self._step = fmt.reference_hz / fmt.sample_rate_hz  # cycles of the reference in a frame
-        self._rows_per_frame = CYCLES_PER_FRAME / pick_up.reference_cycles
-        self._frames_per_row, self._rate_hz = fmt.samples_per_motion, fmt.motion_rate_hz
+    def __init__(self, fmt: TapeFormat, carrier: Carrier) -> None:
+        self._carrier, self._tracks = carrier, fmt.tracks
+        self._rows_per_frame = CYCLES_PER_FRAME / fmt.carrier.reference_cycles
+        self._frames_per_row = fmt.samples_per_motion
         self._gauge = max(round(GAUGE_S * fmt.motion_rate_hz), 1)  # rows
-        self._cycles = np.zeros((0, len(fmt.axes)))
-        self._first_row = 0  # of those that are held
-        self._held: list[Frames] = []
-        self._held_frames, self._done = 0, 0  # frames of the tape
+        self._teller = _teller(fmt, self._rows_per_frame, self._gauge)
         self._number = 0  # the next frame of the check signal
-        self._wave = _Wave(-1.0, 0, self._step, self._amplitude)
+        self._amplitude = CHECK_SHARE * fmt.level
+        self._step = fmt.reference_hz / fmt.sample_rate_hz  # cycles of the reference in a frame
+        self._begun, self._table = (0.0, 0), BARE  # how the table of the subcarrier begins
 
-    def positions(self, cycles: Array) -> None:
-        """Take the next displacements (n, axes), in cycles from the start."""
-        self._cycles = np.concatenate([self._cycles, cycles])
+    def frames(self) -> Iterator[Stored]:
+        """The frames of the tape that can be finished by now."""
+        while self._carrier.rows.end >= self._row(self._number + 3) + 2 * self._gauge:
+            yield self._finished(self._frame_at(self._number + 1), last=False)
 
-    def frames(self, frames: Frames) -> Iterator[Frames]:
-        """Take the next bare frames; those that can be finished by now."""
-        self._held.append(frames)
-        self._held_frames += len(frames)
-        while True:
-            known = self._first_row + len(self._cycles)
-            ready = self._frame_at(self._number + 1) - self._done
-            if (
-                known < self._row(self._number + 3) + 2 * self._gauge
-                or self._held_frames < ready
-            ):
-                return
-            yield from self._finished(ready, last=False)
-
-    def rest(self) -> Iterator[Frames]:
+    def rest(self) -> Iterator[Stored]:
         """The last frames; the last two whole frames of the check signal say that the tape ends."""
-        while self._held_frames:
-            ready = min(self._frame_at(self._number + 1) - self._done, self._held_frames)
-            after = self._frame_at(self._number + 3) - self._done
-            yield from self._finished(ready, last=after > self._held_frames)
+        whole = self._carrier.whole
+        while self._carrier.done < whole:
+            is_last = self._frame_at(self._number + 3) > whole
+            yield self._finished(min(self._frame_at(self._number + 1), whole), last=is_last)
 
     def _row(self, number: int) -> int:
         """The first row at or after the start of a frame of the check signal."""
-        return int(np.ceil(number * self._rows_per_frame))
+        return math.ceil(number * self._rows_per_frame)
 
     def _frame_at(self, number: int) -> int:
         """The first frame of the tape at or after that start."""
-        return int(np.ceil(number * self._rows_per_frame * self._frames_per_row))
+        return math.ceil(number * self._rows_per_frame * self._frames_per_row)
 
-    def _finished(self, count: int, *, last: bool) -> Iterator[Frames]:
-        """So many held frames, which are those of one frame of the check signal, with it."""
-        bits = np.empty((SYMBOLS + 1, self._tracks))
-        for track, said in enumerate(self._said(last)):
-            bits[:SYMBOLS, track], bits[SYMBOLS, track] = to_bits(said), SYNC[0]
-        first = self._done * self._step - self._number * CYCLES_PER_FRAME
-        if not self._wave.serves(first, count):
-            self._wave = _Wave(first, count, self._step, self._amplitude)
-        done = 0
-        for piece in self._taken(count):
-            _add(piece, done, self._wave.table, bits)
-            done += len(piece)
-            yield piece
-        self._done, self._held_frames = self._done + count, self._held_frames - count
+    def _finished(self, end: int, *, last: bool) -> Stored:
+        """The frames of one frame of the check signal, up to one, with it."""
+        beneath, bits = self._beneath(end), self._symbols(last)
         self._number += 1
-        gone = max(self._row(self._number) - 1 - self._first_row, 0)
-        self._cycles, self._first_row = self._cycles[gone:], self._first_row + gone
+        return self._carrier.until(end, beneath, bits)
 
-    def _taken(self, count: int) -> Iterator[Frames]:
-        """The first held frames, so many, in the pieces in which they came."""
-        while count:
-            piece = self._held.pop(0)
-            if len(piece) > count:
-                self._held.insert(0, piece[count:])
-                piece = piece[:count]
-            count -= len(piece)
-            yield piece
+    def _beneath(self, end: int) -> Beneath:
+        """The subcarrier beneath the periods of the next frames up to one; it is the same in each check frame
+        that begins as far before its frames.
+        """
+        done, steps = self._carrier.done, self._frames_per_row
+        skip = done % steps  # frames of the first period that were made before
+        begun = done * self._step - self._number * CYCLES_PER_FRAME, skip
+        periods = -(-end // steps) - done // steps
+        if begun != self._begun or periods > self._table.waves.shape[1]:
+            waves, shares = np.empty((2, steps, periods))
+            symbols = np.empty((steps, periods), np.int64)
+            _fill(begun, (self._step, self._amplitude), waves, shares, symbols)
+            same = (symbols == symbols[0]).all()
+            self._begun = begun
+            self._table = Beneath(waves, shares, symbols[:1] if same else symbols)
+        return self._table
 
-    def _said(self, last: bool) -> Iterator[CheckFrame]:
-        """What each track says in the next frame."""
-        yield frame_of(self._stated, self._number, last)
-        first = self._row(self._number) - self._first_row
-        ends = self._row(self._number + 2) - self._first_row + 2 * self._gauge
-        rows = self._cycles[max(first - self._gauge, 0) : ends]
-        # its first instant, and its middle
-        ats = (self._number + np.array([0, 0.5])) * self._rows_per_frame - self._first_row
-        places = at_places(self._cycles, ats)
-        fastest, hardest = np.zeros((2, self._tracks - 1))
-        _gauged(rows, (self._rate_hz, self._gauge), fastest, hardest)
-        for axis in range(self._tracks - 1):
-            yield CheckFrame(
-                axis + 1,
-                self._number,
-                float(places[0, axis]),
-                float(fastest[axis]),
-                float(hardest[axis]),
-                last,
-                middle_cycles=float(places[1, axis]),
-            )
+    def _symbols(self, last: bool) -> Array:
+        """What the tracks say in the next frame (symbols, tracks), and the first symbol of the one after."""
+        first = max(self._row(self._number) - 1, 0)
+        rows = self._carrier.rows.rows(first, self._row(self._number + 2) + 2 * self._gauge)
+        symbols = np.empty((SYMBOLS + 1, self._tracks))
+        _tell(rows, first, self._number, last, self._teller, SENT_BY, symbols)
+        return symbols
 
 
-# No place is nan: so the largest of many speeds is found in vectors.
-@njit(cache=True, nogil=True, fastmath={"nnan", "nsz"})
+class _Fields(NamedTuple):
+    version: int
+    middle_bits: int  # of an axis
+    counts_per_cycle: int
+    of_reference: tuple[int, float, float]
+    rows_per_frame: float
+    rate_hz: float  # of the rows
+    gauge: int  # rows
+
+
+@keeps_kinds
+class _Teller(_Fields):
+    """What the frames of one tape have in common; `of_reference`: counts, and what stands for speed and
+    acceleration; `gauge`: a change of speed is told over so many rows.
+    """
+
+
+def _teller(fmt: TapeFormat, rows_per_frame: float, gauge: int) -> _Teller:
+    """That of a tape."""
+    said = frame_of(Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm), 0)
+    of_reference = said.counts, said.speed, said.acceleration
+    per_cycle, rate_hz = COUNTS_PER_CYCLE[VERSION], fmt.motion_rate_hz
+    told = middle_bits(VERSION, 1)
+    return _Teller(VERSION, told, per_cycle, of_reference, rows_per_frame, rate_hz, gauge)
+
+
+@njit(cache=True, nogil=True)
+def _tell(rows, first, number, last, teller, sent_by, symbols):  # type: ignore[no-untyped-def]
+    """Fill in the symbols of all tracks in a frame of this number, of rows from one on."""
+    axes = rows.shape[1]
+    counts, most = np.zeros((2, axes)), np.zeros((2, axes))
+    # its first instant, and its middle
+    _count(rows, number * teller.rows_per_frame - first, teller.counts_per_cycle, counts[0])
+    _count(
+        rows, (number + 0.5) * teller.rows_per_frame - first, teller.counts_per_cycle, counts[1]
+    )
+    _gauged(rows, (teller.rate_hz, teller.gauge), most[0], most[1])
+    words, (of_reference, fast, hard) = np.empty(axes + 1, np.int64), teller.of_reference
+    state = teller.version, last
+    words[0] = word_of((0, number), (*state, 0), (of_reference, 0), (fast, hard))
+    for axis in range(axes):
+        where = int(counts[0, axis]), int(counts[1, axis])
+        most_of_axis = most[0, axis], most[1, axis]
+        words[axis + 1] = word_of(
+            (axis + 1, number), (*state, teller.middle_bits), where, most_of_axis
+        )
+    send(words, sent_by, symbols)
+
+
+@njit(cache=True, nogil=True)
+def _count(rows, at, per_cycle, counts):  # type: ignore[no-untyped-def]
+    """Fill in the counts of the axes at a row with shares."""
+    last = len(rows) - 1
+    at = min(max(at, 0.0), float(last))
+    before = int(at)
+    after, share = min(before + 1, last), at - before
+    for axis in range(rows.shape[1]):
+        come = (rows[after, axis] - rows[before, axis]) * share
+        counts[axis] = np.rint((come + rows[before, axis]) * per_cycle)
+
+
+@njit(cache=True, nogil=True)
 def _gauged(rows, how, fastest, hardest):  # type: ignore[no-untyped-def]
     """Raise each track's largest speed, cycles/s, and change of it over so many rows, cycles/s², to those of
     its rows.
     """
-    (rate_hz, gauge), moves = how, len(rows) - 1
-    speeds = np.empty(max(moves, 0))
-    for axis in range(rows.shape[1]):
-        fast, hard = fastest[axis], hardest[axis]
-        for k in range(moves):
-            speeds[k] = (rows[k + 1, axis] - rows[k, axis]) * rate_hz
-        for k in range(moves):
-            fast = max(fast, abs(speeds[k]))
-        for k in range(gauge, moves):
-            hard = max(hard, abs((speeds[k] - speeds[k - gauge]) * (rate_hz / gauge)))
-        fastest[axis], hardest[axis] = fast, hard
+    (rate_hz, gauge), axes = how, rows.shape[1]
+    along, moves = rows.ravel(), np.zeros(ROWS_AT_ONCE * axes)
+    changes = np.zeros_like(moves)
+    widest_moves(along, axes, moves)
+    _widest_changes(along, (axes, gauge * axes), rate_hz, changes)
+    for k in range(len(moves)):
+        fastest[k % axes] = max(fastest[k % axes], moves[k] * rate_hz)
+        hardest[k % axes] = max(hardest[k % axes], changes[k] * (rate_hz / gauge))
 
 
-class _Wave:
-    """The subcarrier over one check frame, which is the same in each that begins as far before its frames.
-
-    `table`: the subcarrier, the share of the next symbol, and the number of the symbol, of each frame.
+@njit(cache=True, nogil=True, _nrt=False)
+def _widest_changes(along, apart, rate_hz, widest):  # type: ignore[no-untyped-def]
+    """Make the widest changes of speed so far those of places, too; `apart`: from each to that which it goes
+    to, and to that whose speed its own is held against.
     """
-
-    def __init__(self, first: float, count: int, step: float, amplitude: float) -> None:
-        self._first, self._count = first, count
-        self.table = np.empty(count), np.empty(count), np.empty(count, np.int64)
-        _fill((first, step, amplitude), *self.table)
-
-    def serves(self, first: float, count: int) -> bool:
-        """Whether it serves frames whose first is so far behind the start, cycles of the reference."""
-        return first == self._first and count <= self._count
+    move, gauge = apart
+    count = max(len(along) - gauge - move, 0)
+    for begin in range(0, count, len(widest)):
+        end = min(begin + len(widest), count)
+        come, gone = along[begin:end], along[begin + move : end + move]
+        then_come = along[begin + gauge : end + gauge]
+        then_gone = along[begin + gauge + move : end + gauge + move]
+        for k in range(len(come)):
+            speed, then = (gone[k] - come[k]) * rate_hz, (then_gone[k] - then_come[k]) * rate_hz
+            widest[k] = max(widest[k], abs(then - speed))
 
 
 @njit(cache=True, nogil=True)
-def _fill(how, waves, shares, symbols):  # type: ignore[no-untyped-def]
-    """Fill a table; `how`: cycles of the reference since the check frame's start, those of a frame of the
-    tape, and the amplitude.
+def _fill(begun, how, waves, shares, symbols):  # type: ignore[no-untyped-def]
+    """Fill a table; `begun`: cycles of the reference from the check frame's start to its first frame of the
+    tape, and the frames of the period before that; `how`: the cycles of a frame, and the amplitude.
     """
-    first, step, amplitude = how
-    for i in range(len(waves)):
-        theta = first + i * step
-        place = max(theta, 0.0) / CYCLES_PER_SYMBOL
-        symbols[i] = min(int(place), SYMBOLS - 1)
-        # sin² of a quarter turn
-        shares[i] = 0.5 - 0.5 * _sine(0.25 + 0.5 * (place - symbols[i]))
-        waves[i] = amplitude * _sine(theta / CYCLES_PER_SUBCARRIER)
-
-
-@njit(cache=True, nogil=True)
-def _add(frames, at, table, bits):  # type: ignore[no-untyped-def]
-    """Add the subcarrier of all tracks (n, tracks) to frames of which the first is `at` in the table."""
-    waves, shares, symbols = table
-    for i in range(len(frames)):
-        wave, share, symbol = waves[at + i], shares[at + i], symbols[at + i]
-        for track in range(frames.shape[1]):
-            now, then = bits[symbol, track], bits[symbol + 1, track]
-            frames[i, track] += wave * (now + (then - now) * share)
+    (first, skip), (step, amplitude) = begun, how
+    for k in range(waves.shape[0]):
+        for period in range(waves.shape[1]):
+            theta = first + (period * waves.shape[0] + k - skip) * step
+            place = max(theta, 0.0) / CYCLES_PER_SYMBOL
+            symbol = min(int(place), SYMBOLS - 1)
+            symbols[k, period] = symbol
+            # sin² of a quarter turn
+            shares[k, period] = 0.5 - 0.5 * sine(0.25 + 0.5 * (place - symbol))
+            waves[k, period] = amplitude * sine(theta / CYCLES_PER_SUBCARRIER)

@@ -13,13 +13,14 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 
+import numpy as np
 import soundfile
 
 from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
 from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import Motion, Path
-from morfax.recorder.sound.source import Frames
+from morfax.recorder.sound.source import SampleType, Stored
 from morfax.recorder.sound.spool import Spool, medium
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.recording import (
@@ -37,6 +38,7 @@ class Halves(Ending):
     """A sink that shares its tracks out to two."""
 
     spools: tuple[Spool, Spool]
+    takes: SampleType = np.int16
 
     def end(self, error: BaseException | None) -> None:
         """End both."""
@@ -46,7 +48,7 @@ class Halves(Ending):
             for spool in self.spools:
                 ends.callback(spool.end, error)
 
-    def put(self, frames: Frames) -> None:
+    def put(self, frames: Stored) -> None:
         """Take the next frames."""
         for half, spool in enumerate(self.spools):
             spool.put(frames[:, TRACKS * half : TRACKS * (half + 1)].copy())

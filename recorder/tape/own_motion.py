@@ -19,7 +19,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.recorder.tape.carrier import ROWS_AT_ONCE
+from morfax.recorder.tape.waiting_rows import ROWS_AT_ONCE
 
 STATED_CYCLES = 1.0  # an axis that moves by less is stated
 OWN_CYCLES = 0.5  # an axis that moves by less has no motion of its own
@@ -106,8 +106,9 @@ def _widen(places, first, low, high):  # type: ignore[no-untyped-def]
     width = ROWS_AT_ONCE * axes
     least, most, wrong = np.full(width, np.inf), np.full(width, -np.inf), np.zeros(width)
     for begin in range(0, len(places), width):
-        for k in range(min(width, len(places) - begin)):
-            place = places[begin + k]
+        some = places[begin : begin + width]
+        for k in range(len(some)):
+            place = some[k]
             least[k], most[k] = min(least[k], place), max(most[k], place)
             wrong[k] += place - place  # no number, if place is none
     for k in range(axes, width):

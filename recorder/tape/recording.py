@@ -31,9 +31,9 @@ from morfax.motion.files import disk_full_fault, written_beside
 from morfax.motion.motion import AXES, Motion, Path
 from morfax.recorder.report import Written
 from morfax.recorder.sound.riff import make_plain, replace_text
-from morfax.recorder.sound.source import Sink, sidecar
+from morfax.recorder.sound.source import SampleType, Sink, Stored, sidecar
 from morfax.recorder.sound.spool import Spool, medium
-from morfax.recorder.tape.carrier import Carrier, Frames
+from morfax.recorder.tape.carrier import Carrier
 from morfax.recorder.tape.check_signal import CheckWriter
 from morfax.recorder.tape.format import LARGEST_TEXT_BYTES, TapeFormat
 from morfax.recorder.tape.own_motion import OwnMotion
@@ -125,8 +125,8 @@ def record_live(
     if first is None:
         raise MotionFault("the motion is empty; a tape needs at least one position")
     fmt = replace(fmt, start_mm=_place(first[0]), end_mm=None, still=(), alike=())
-    tape = _Take(fmt, first[0], progress, _total_s(stream))
     with open_sink(fmt) as out:
+        tape = _Take(fmt, first[0], out.takes, _Progress(progress, _total_s(stream)))
         for frames in tape.frames(chain([first], blocks)):
             out.put(frames)
     still, alike = tape.own.told(fmt.axes)
@@ -134,66 +134,66 @@ def record_live(
     return LiveRecording(fmt, tape.count, tape.largest_speed_mm_s)
 
 
+@dataclass(frozen=True, slots=True)
+class _Progress:
+    """Whom to tell how much of the motion is recorded, and its length in s, if that is known."""
+
+    tell: Progress | None
+    total_s: float | None
+
+
 class _Take:
     """One run of the tape: carriers, speed gauge and count of frames."""
 
     def __init__(
-        self, fmt: TapeFormat, first_mm: Array, progress: Progress | None, total_s: float | None
+        self, fmt: TapeFormat, first_mm: Array, samples: SampleType, progress: _Progress
     ) -> None:
-        self._format, self._progress, self._total_s = fmt, progress, total_s
-        self._carrier = Carrier(fmt.carrier, first_mm)
+        self._format, self._progress = fmt, progress
+        self._carrier = Carrier(fmt.carrier, first_mm, samples)
         self._samples = 0
-        self.count = 0
         self.last_mm = first_mm
         self._speeds = SpeedGauge(fmt)
         self.own = OwnMotion(len(first_mm))
-        self._check = CheckWriter(fmt) if fmt.checked else None
+        self._check = CheckWriter(fmt, self._carrier) if fmt.checked else None
+
+    @property
+    def count(self) -> int:
+        """Frames so far."""
+        return self._carrier.done
 
     @property
     def largest_speed_mm_s(self) -> tuple[float, ...]:
         """The largest speed of each axis so far."""
         return tuple(self._speeds.largest_mm_s.tolist())
 
-    def frames(self, blocks: Iterable[Array]) -> Iterator[Frames]:
+    def frames(self, blocks: Iterable[Array]) -> Iterator[Stored]:
         """All frames of the tape, standstill included."""
         yield from self._standstill()
         for positions in blocks:
             self._gauge(positions)
-            cycles = self._carrier.displacements(positions)
-            self.own.feed(cycles)
-            yield from self._laid(cycles)
+            self.own.feed(self._carrier.feed(positions))
+            yield from self._ready()
             self._tell()
         yield from self._standstill()
-        yield from self._checked(self._counted(self._carrier.rest()))
-        if self._check is not None:
+        if self._check is None:
+            yield self._carrier.rest()
+        else:
             yield from self._check.rest()
 
-    def _standstill(self) -> Iterator[Frames]:
+    def _standstill(self) -> Iterator[Stored]:
         """The frames of a standstill where the screws are."""
         samples = _dwell_samples(self._format)
         for first in range(0, samples, _BLOCK_SAMPLES):
             rows = min(_BLOCK_SAMPLES, samples - first)
-            still = self._carrier.displacements(self.last_mm[None])
-            yield from self._laid(np.tile(still, (rows, 1)))
+            self._carrier.feed(np.tile(self.last_mm, (rows, 1)))
+            yield from self._ready()
 
-    def _laid(self, cycles: Array) -> Iterator[Frames]:
-        """The frames of the next displacements, as far as they are finished."""
-        frames = self._counted(self._carrier.frames_of(cycles))
-        if self._check is not None:
-            self._check.positions(cycles)
-        yield from self._checked(frames)
-
-    def _checked(self, frames: Frames) -> Iterator[Frames]:
-        """The frames with the check signal, where the tape has one."""
+    def _ready(self) -> Iterator[Stored]:
+        """The frames that can be finished by now, with the check signal, where the tape has one."""
         if self._check is None:
-            yield frames
+            yield self._carrier.ready()
         else:
-            yield from self._check.frames(frames)
-
-    def _counted(self, frames: Frames) -> Frames:
-        """The frames, counted."""
-        self.count += len(frames)
-        return frames
+            yield from self._check.frames()
 
     def _gauge(self, positions: Array) -> None:
         """Note the largest speeds; raise MotionFault where an axis leaves the deviation."""
@@ -203,8 +203,10 @@ class _Take:
 
     def _tell(self) -> None:
         """Report the progress in s of the motion."""
-        if self._progress is not None:
-            self._progress(self._samples / self._format.motion_rate_hz, self._total_s)
+        if self._progress.tell is not None:
+            self._progress.tell(
+                self._samples / self._format.motion_rate_hz, self._progress.total_s
+            )
 
 
 def _axes_of(

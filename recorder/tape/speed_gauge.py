@@ -15,8 +15,8 @@ import numpy as np
 from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import MotionFault
-from morfax.recorder.tape.carrier import ROWS_AT_ONCE
 from morfax.recorder.tape.format import TapeFormat
+from morfax.recorder.tape.waiting_rows import ROWS_AT_ONCE
 
 
 class SpeedGauge:
@@ -36,24 +36,35 @@ class SpeedGauge:
             raise _too_fast(fmt, axis, (done + at) / fmt.motion_rate_hz, speed)
 
 
+@njit(cache=True, nogil=True, _nrt=False)
+def widest_moves(along, apart, widest):  # type: ignore[no-untyped-def]
+    """Make the widest moves so far those from places to the ones so many behind them, too.
+
+    `along`: places row after row; as many at once as `widest` is long, so that they fill the vectors.
+    """
+    before, after = along[: max(len(along) - apart, 0)], along[apart:]
+    for begin in range(0, len(before), len(widest)):
+        come = before[begin : begin + len(widest)]
+        gone = after[begin : begin + len(widest)]
+        for k in range(len(come)):
+            widest[k] = max(widest[k], abs(gone[k] - come[k]))
+
+
 @njit(cache=True, nogil=True)
 def _speeds(positions, last_mm, rate_hz, most_mm_s, largest_mm_s):  # type: ignore[no-untyped-def]
     """Make the largest speeds so far those of positions, too, which come after the last ones.
 
     Returns row, axis and speed of the first that is above the limit; -1 without any.
     """
-    # 1. the largest of all, as many rows at once as fill the vectors
+    # 1. the largest of all
     places, axes = positions.ravel(), positions.shape[1]
-    width, last = ROWS_AT_ONCE * axes, len(places) - axes
-    fastest = np.zeros(width)
-    for begin in range(0, last, width):
-        for k in range(min(width, last - begin)):
-            speed = (places[begin + k + axes] - places[begin + k]) * rate_hz
-            fastest[k] = max(fastest[k], abs(speed))
+    fastest = np.zeros(ROWS_AT_ONCE * axes)
+    widest_moves(places, axes, fastest)
     for axis in range(min(axes, len(places))):
-        fastest[axis] = max(fastest[axis], abs((places[axis] - last_mm[axis]) * rate_hz))
+        fastest[axis] = max(fastest[axis], abs(places[axis] - last_mm[axis]))
+    fastest *= rate_hz
     if fastest.max() <= most_mm_s:
-        for k in range(width):
+        for k in range(len(fastest)):
             largest_mm_s[k % axes] = max(largest_mm_s[k % axes], fastest[k])
         return -1, -1, 0.0
     # 2. row by row, if one of them is too fast

@@ -44,7 +44,7 @@ class Stated(NamedTuple):
     start_mm: tuple[float, ...]
 
 
-def frame_of(stated: Stated, number: int, last: bool) -> CheckFrame:
+def frame_of(stated: Stated, number: int, last: bool = False) -> CheckFrame:
     """What the reference's track says in a frame of this number."""
     tens, ones = divmod(_sum(stated), CODES)
     return CheckFrame(

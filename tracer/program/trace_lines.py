@@ -30,6 +30,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.arrows import turned_round, with_arrows
 from morfax.tracer.program.joined_lines import joined_to
+from morfax.tracer.program.laid.bent import bent
 from morfax.tracer.program.laid.narrow_bays import explained, with_bars
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import order, selection
@@ -87,7 +88,7 @@ def trace_lines(
     found = found_lines(setup, which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines, found.unclear)
-    lines, left = explained(setup, lines)
+    lines, left = explained(setup, bent(setup, lines))
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
     return Trace(
@@ -148,7 +149,7 @@ def trace_places(
             progress(float(number), float(len(starts_mm)))
     _refuse_none_begun(lines)
     lines, unread = with_marks_read(with_arrows(setup, lines), operator)
-    lines, left = explained(setup, lines)
+    lines, left = explained(setup, bent(setup, lines))
     beside = left if alone else ()
     return Trace(tuple(_in_order(setup, lines)), operator, unread=unread, unexplained=beside)
 

@@ -16,7 +16,6 @@ from morfax.motion.motion import Motion, join
 from morfax.player.tape.playback import play
 from morfax.recorder.sound.source import FileSource
 from morfax.recorder.tape import check_signal
-from morfax.recorder.tape.check_frame import COUNTS_PER_CYCLE, Bits, CheckFrame, to_bits
 from morfax.recorder.tape.tape import record
 from tests.player.worn import corners, program
 
@@ -172,16 +171,9 @@ class Bench:
         return float(best.max())
 
 
-def to_bits_of_version_1(frame: CheckFrame) -> Bits:
-    """A frame as earlier versions of the recorder wrote it; what the reference says in it are counts."""
-    finer = COUNTS_PER_CYCLE[frame.version] / COUNTS_PER_CYCLE[1]
-    cycles = frame.cycles * (1 if frame.track else finer)
-    return to_bits(frame._replace(version=1, cycles=cycles))
-
-
 def earlier_benches(folder: object) -> tuple[Bench, Bench]:
     """The same as `benches`, of tapes whose counts are sixteenths of a cycle."""
-    with mock.patch.object(check_signal, "to_bits", to_bits_of_version_1):
+    with mock.patch.object(check_signal, "VERSION", 1):
         return benches(folder)
 
 

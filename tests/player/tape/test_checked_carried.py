@@ -19,7 +19,6 @@ from morfax.recorder.tape import check_signal
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
 from morfax.recorder.wear.settings import Wear
 from morfax.recorder.wear.transport import age
-from tests.player.attacks.bench import to_bits_of_version_1
 from tests.player.tape.checked import (
     AT,
     RATE_HZ,
@@ -176,7 +175,7 @@ def test_counts_that_begin_again_lead_no_axis_astray(tmp_path: Path) -> None:
 
 def test_a_tape_of_version_1_plays(tmp_path: Path, bench: Bench) -> None:
     """Its counts are sixteenths of a cycle."""
-    with mock.patch.object(check_signal, "to_bits", to_bits_of_version_1):
+    with mock.patch.object(check_signal, "VERSION", 1):
         earlier = Bench(tmp_path)
     assert not np.array_equal(earlier.frames, bench.frames)
     assert np.abs(earlier.clean - bench.clean).max() < 0.01 * UM

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,9 @@ import soundfile
 
 from morfax.motion.motion import Motion
 from morfax.player.tape.check_reader import read_ahead, read_check
-from morfax.recorder.tape import check_signal
-from morfax.recorder.tape.check_frame import SYMBOLS
+from morfax.recorder.tape import check_frame, check_signal
+from morfax.recorder.tape.carrier import Carrier
+from morfax.recorder.tape.check_frame import SENT_BY, SYMBOLS
 from morfax.recorder.tape.check_signal import CheckWriter
 from morfax.recorder.tape.format import CHECK_SHARE
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
@@ -115,22 +117,23 @@ def test_a_tape_shorter_than_a_frame_is_whole(tmp_path: Path) -> None:
     assert report.frames == 800
 
 
-def signal_alone(fmt: TapeFormat, sizes: list[int]) -> tuple[list[np.ndarray], np.ndarray]:
-    """Silent frames that were handed over in blocks, and these blocks with the check signal, in one."""
-    writer = CheckWriter(fmt)
-    given, out = [], []
+def signal_alone(fmt: TapeFormat, sizes: list[int]) -> np.ndarray:
+    """The check signal beneath carriers that are silent, of rows that come in blocks of these sizes."""
+    carrier = Carrier(replace(fmt.carrier, level=0.0), np.zeros(3))
+    writer = CheckWriter(fmt, carrier)
+    out = []
     for rows in sizes:
-        writer.positions(np.zeros((rows, 3)))
-        given.append(np.zeros((rows * fmt.samples_per_motion, 4), np.float32))
-        out += list(writer.frames(given[-1]))
-    return given, np.concatenate([*out, *writer.rest()])
+        carrier.feed(np.zeros((rows, 3)))
+        out += list(writer.frames())
+    return np.concatenate([*out, *writer.rest()])
 
 
-def test_the_signal_lies_on_the_frames_that_were_given() -> None:
-    # and on no copy of them
-    given, out = signal_alone(TapeFormat(checked=True), [5000, 3000, 7000])
-    assert np.array_equal(np.concatenate(given), out)
-    assert np.abs(out).max() > 0.9 * CHECK_SHARE * TapeFormat().level
+def test_the_signal_does_not_depend_on_the_blocks_of_rows() -> None:
+    fmt = TapeFormat(checked=True)
+    out = signal_alone(fmt, [5000, 3000, 0, 7000])
+    assert np.array_equal(out, signal_alone(fmt, [15_000]))
+    assert len(out) == 15_000 * fmt.samples_per_motion
+    assert np.abs(out).max() > 0.9 * CHECK_SHARE * fmt.level
 
 
 def test_the_subcarrier_of_one_frame_serves_all_where_frames_begin_alike(
@@ -145,13 +148,13 @@ def test_the_subcarrier_of_one_frame_serves_all_where_frames_begin_alike(
 
     monkeypatch.setattr(check_signal, "_fill", counted)
     signal_alone(TapeFormat(checked=True), [30_000])  # ten check frames
-    assert len(made) <= 3  # the empty one, that of the whole frames, that of the rest
+    assert len(made) == 1
 
 
 @pytest.mark.parametrize("reference_hz", [6000.0, 6001.37])
 def test_the_subcarrier_is_in_phase_with_the_reference(reference_hz: float) -> None:
     fmt = TapeFormat(checked=True, reference_hz=reference_hz)
-    _, out = signal_alone(fmt, [20_000])
+    out = signal_alone(fmt, [20_000])
     theta = np.arange(len(out)) * (reference_hz / RATE_HZ)
     wave = CHECK_SHARE * fmt.level * np.sin(2 * np.pi * theta / 6)
     # at its start a symbol is +1 or -1 whole; in its first twentieth it has gone over by 0.6 % of the two
@@ -160,26 +163,51 @@ def test_the_subcarrier_is_in_phase_with_the_reference(reference_hz: float) -> N
     assert off.max() <= 2 * 0.0062 * CHECK_SHARE * fmt.level
 
 
-def test_the_plain_kernels_of_the_signal_are_the_compiled_ones() -> None:
-    how = (-0.01, 0.125, 0.1)
-    tables = [(np.empty(3000), np.empty(3000), np.empty(3000, np.int64)) for _ in range(2)]
-    check_signal._fill(how, *tables[0])
-    check_signal._fill.py_func(how, *tables[1])
-    bits = np.sign(np.random.default_rng(19).normal(size=(SYMBOLS + 1, 4)))
-    frames = np.full((2, 900, 4), 0.3, np.float32)
-    check_signal._add(frames[0], 40, tables[0], bits)
-    check_signal._add.py_func(frames[1], 40, tables[1], bits)
+def test_the_plain_kernel_of_the_subcarrier_is_the_compiled_one() -> None:
+    tables = [
+        (np.empty((8, 400)), np.empty((8, 400)), np.empty((8, 400), np.int64)) for _ in range(2)
+    ]
+    for fill, table in zip(
+        (check_signal._fill, check_signal._fill.py_func), tables, strict=True
+    ):
+        fill((-0.01, 3), (0.125, 0.1), *table)
     # the compiler may fuse multiply and add
-    assert np.abs(frames[0] - frames[1]).max() <= 6e-8  # a step of float32
-    assert np.array_equal(tables[0][2], tables[1][2])
+    for one, other in zip(*tables, strict=True):
+        assert np.abs(one - other).max() <= 1e-14
+
+
+def test_the_plain_kernel_tells_what_the_compiled_one_tells(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fmt = TapeFormat(checked=True)
+    rows = np.cumsum(np.random.default_rng(5).normal(0, 0.01, (9000, 3)), axis=0)
+    teller = check_signal._teller(fmt, float(FRAME_ROWS), 12)
+    symbols = np.empty((2, SYMBOLS + 1, 4))
+    check_signal._tell(rows, 0, 1, True, teller, SENT_BY, symbols[0])
+    for name in ("_count", "_gauged", "_widest_changes", "widest_moves", "word_of", "send"):
+        monkeypatch.setattr(check_signal, name, getattr(check_signal, name).py_func)
+    monkeypatch.setattr(check_frame, "to_code", check_frame.to_code.py_func)
+    check_signal._tell.py_func(rows, 0, 1, True, teller, SENT_BY, symbols[1])
+    assert np.array_equal(symbols[0], symbols[1])
+    said = check_frame.from_bits(symbols[0, :SYMBOLS].T.astype(np.int8))
+    assert [frame.track for frame in said if frame is not None] == [0, 1, 2, 3]
+    for axis, frame in enumerate(said[1:]):
+        assert frame is not None and frame.number == 1 and frame.last
+        assert frame.cycles == pytest.approx(rows[FRAME_ROWS, axis], abs=0.5 / 64)
 
 
 @pytest.mark.parametrize("rows", [0, 1, 12, 13, 14, 500])
 @pytest.mark.parametrize("plain", [False, True])
-def test_the_gauge_finds_the_largest_of_plain_differences(rows: int, plain: bool) -> None:
+def test_the_gauge_finds_the_largest_of_plain_differences(
+    monkeypatch: pytest.MonkeyPatch, rows: int, plain: bool
+) -> None:
     places = np.cumsum(np.random.default_rng(rows).normal(0, 0.01, (rows, 3)), axis=0)
     told = np.full((2, 3), 20.0)  # of the rows before
-    gauged = check_signal._gauged.py_func if plain else check_signal._gauged
+    gauged = check_signal._gauged
+    if plain:
+        gauged = gauged.py_func
+        for name in ("_widest_changes", "widest_moves"):
+            monkeypatch.setattr(check_signal, name, getattr(check_signal, name).py_func)
     gauged(places, (6000.0, 12), told[0], told[1])
     speeds = np.diff(places, axis=0) * 6000.0
     changes = np.abs(speeds[12:] - speeds[:-12]) * (6000.0 / 12)

@@ -30,12 +30,13 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import OF_WIDTH
+from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.laid.line_parts import (
     LEGS,
     MOUTH,
+    REACH,
     back_along,
-    ink_about,
     is_clear,
     is_plain,
     part_of,
@@ -173,7 +174,7 @@ def _sides(
     if is_a_pen(setup.sheet, median(apart_mm) + width_mm):
         return None
     # 3. held against the ink
-    ink = ink_about(drawing, np.vstack([bar, there.way, back.way]), width_mm)
+    ink = ink_about(drawing, np.vstack([bar, there.way, back.way]), width_mm, REACH)
     every_way = [*ways, there.way, back.way]
     away_mm = np.min([away_from(ink.places_mm, way) for way in every_way], axis=0)
     misfit = ink.misfit(ink.best_drawn(away_mm))

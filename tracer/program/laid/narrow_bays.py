@@ -24,11 +24,12 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly, nearest_mm
+from morfax.motion.polyline import broad_mm, evenly, nearest_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import bar_at, reaches
+from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
     beside_ink,
@@ -41,12 +42,10 @@ from morfax.tracer.program.laid.line_parts import (
     MOUTH,
     OF_LOOP,
     REACH,
-    ink_about,
     is_clear,
     is_plain,
 )
 from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, rim_bays
-from morfax.tracer.program.laid.rim_loops import broad_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
@@ -55,9 +54,6 @@ from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
 WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
-# half as much ink as a line has at the edge of what is looked at, so far from all lines, goes on; less is
-# specks
-EDGE, OWN = 0.2, 0.8
 LONGEST = 80.0  # a longer stretch is no bay
 FURTHER = 0.01  # as much more must be left for each width more of a way that runs out and back on one line
 # of what a way leaves that does not come beside itself, where the rule draws otherwise: less is a blot,
@@ -234,7 +230,7 @@ class _Bays:
         rest = way[np.arange(last, first + len(way) + 1) % len(way)]
         about = np.vstack([own, suspect.beyond_mm])
         ink = self._ink(about, rest)
-        return None if self._goes_on(ink, about) else Stretch(first, last, own, ink)
+        return None if goes_on(ink, about, REACH) else Stretch(first, last, own, ink)
 
     def _rim_bay(self, seen: Stretch, step_mm: float, suspect: Suspect) -> Bay | None:
         """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
@@ -271,17 +267,9 @@ class _Bays:
             kept[key] = folding_rule.explained(ink, rules)
         return kept[key]
 
-    def _goes_on(self, ink: SeenInk, about: Array) -> bool:
-        """Whether ink beside all lines goes on beyond what is looked at: another line, or a longer bar."""
-        beside = (ink.darkness > 0.5) & (ink.known_mm > OWN * self.line.width_mm)
-        away_mm = pen.away_from(ink.places_mm[beside], about)
-        far = np.count_nonzero(away_mm > (REACH - EDGE) * self.line.width_mm)
-        # one place alone is a speck
-        return bool(far > 1 and far * ink.area_mm2 > 0.5 * EDGE * self.line.width_mm**2)
-
     def _ink(self, about: Array, rest: Array) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
-        ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm)
+        ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm, REACH)
         reach_mm = REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = pen.away_from(ink.places_mm, rest)

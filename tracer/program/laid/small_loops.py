@@ -24,7 +24,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.polyline import length_mm
+from morfax.motion.polyline import broad_mm, length_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.lettering import lettering
@@ -40,7 +40,6 @@ from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
 from morfax.tracer.program.laid.loop_ink import ink_of, is_drawn, is_single, leaves_none
 from morfax.tracer.program.laid.rim_loops import (
     BROAD,
-    broad_mm,
     core_within,
     felt_pen_mm,
     narrow_outline,

@@ -29,11 +29,12 @@ from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import reaches
+from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.line_parts import (
     OF_LOOP,
+    REACH,
     back_along,
-    ink_about,
     is_clear,
     is_plain,
     part_of,
@@ -163,7 +164,7 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
         for line, begin, end in zip((one, other), touch.first_mm, touch.last_mm, strict=True)
     )
     ways = _Ways(first, second if touch.is_parallel else second[::-1])
-    ink = ink_about(setup.sheet.drawing, np.vstack(ways), width_mm)
+    ink = ink_about(setup.sheet.drawing, np.vstack(ways), width_mm, REACH)
     rest_mm = _rest_mm(ink, lines, touch, whole)
     widths = sum(long) / width_mm
 
