@@ -15,7 +15,6 @@ as broad.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -50,8 +49,6 @@ from morfax.tracer.tangles.pen import away_from
 from morfax.tracer.tangles.seen_ink import LIKE, middles_mm
 
 # In widths of the line; chosen by trial on keyholes, slit rings and necks:
-# a bar as long as this in its box is one line if it has less ink than so many widths for each of its length
-LONG, TWO = 8.0, 1.1
 LEAST = 0.3  # squared: a smaller bar is a flaw of the ink
 
 
@@ -103,13 +100,10 @@ def _bars(drawing: Drawing, lines: Sequence[Line], closed: Sequence[Line]) -> It
         way_px = window.pixels(line.places_mm).reshape(-1, 1, 2)
         cv2.polylines(bare, [way_px], line.comes_round, 0, wide_px)
     count, label, of_each, _ = cv2.connectedComponentsWithStats(bare, connectivity=4)
-    width_px = width_mm / drawing.pitch_mm
-    least_px = (LEAST * width_px) ** 2
+    least_px = (LEAST * width_mm / drawing.pitch_mm) ** 2
     for number in range(1, count):
         left, top, across, down, area_px = of_each[number].tolist()
-        long_px = math.hypot(across, down)
-        is_thin = long_px > LONG * width_px and area_px < TWO * width_px * long_px
-        if area_px > least_px and not is_thin:
+        if area_px > least_px:
             i, j = np.nonzero(label[top : top + down, left : left + across] == number)
             yield middles_mm(drawing, i + window.top + top, j + window.left + left)
 

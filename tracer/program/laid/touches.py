@@ -58,8 +58,6 @@ HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
 # for each width of the ways: head's ways that leave less explain the ink, and rims must leave so much less
 LEAVES, TIMES = 0.01, 2.0
 LONGER = 1.4  # a rim, than the head's way; and a width
-# rad: the rim of lines that cross turns so much more where they do than either line does
-CROSSES = 0.12
 
 
 class _Touch(NamedTuple):
@@ -181,9 +179,6 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
     rims = _rims(setup, width_mm, ways, left)
     if rims is None or rims.left > LIKE or own < TIMES * rims.left:
         return None
-    bent = max(_bent(way, width_mm) for way in (rims.one.way, rims.other.way))
-    if bent > max(_bent(way, width_mm) for way in ways) + CROSSES:
-        return None
     if not rims.is_exchanged:
         return _laid_each(setup, (one, other), touch, rims, whole)
     return _exchanged(setup, one, touch, rims) if one is other else None
@@ -241,16 +236,6 @@ def _rims(
             if best is None or rims.left < best.left:
                 best = rims
     return best
-
-
-def _bent(way: Array, width_mm: float) -> float:
-    """How much more a way turns at its most over a width than it does as a rule, rad."""
-    places = evenly(way, 0.5 * width_mm)
-    if len(places) < 4:
-        return 0.0
-    headings = np.unwrap(np.arctan2(*np.diff(places, axis=0).T[::-1]))
-    turns = headings[2:] - headings[:-2]
-    return float(np.abs(turns - np.median(turns)).max())
 
 
 def _laid_each(
