@@ -53,8 +53,8 @@ def off_mm(line: Line, truth: Points) -> float:
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_reliefs_of_inner_corners_are_followed_as_they_are_drawn(seed: int) -> None:
-    """Within 45 um, half a pixel; the head's own way is farther off. It comes to no stretch with a jump: no step
-    is longer than 10 mm/s makes it by an increment of 1 um.
+    """Within 45 um, half a pixel; the head's own way is farther off. It jumps onto no stretch: no
+    step is longer than 10 mm/s makes it by an increment of 1 um.
     """
     truth = with_reliefs()
     (own,), (line,) = before_and_after(truth, seed=seed)
