@@ -32,6 +32,9 @@ PART_PX = 96  # of the sheet: light and noise change little over it
 # percentiles a standard deviation apart on the bright side; 1.35 where pale lines cover a quarter of a part
 BRIGHT = 2.28, 15.87
 LEAST_PAPER = 0.2  # of a part: less paper tells no noise
+# of ink's darkness, behind a spot: half of a scan's noise. Quieter paper counts as so noisy: what differs
+# there is shade, and rims that a JPEG leaves
+QUIET = 0.005
 
 
 def noise_of_spots(darkness: Darkness) -> float:
@@ -69,8 +72,8 @@ def times_as_noisy(darkness: Darkness) -> NDArray[np.float32]:
                 low, high = (percentile(paper, percent) for percent in BRIGHT)
                 found[k, n] = high - low
     known = found[found > 0]
-    usual = percentile(known, 50.0) if len(known) else 1.0
-    return np.maximum(found / np.float32(usual), np.float32(1))
+    usual = percentile(known, 50.0) if len(known) else QUIET
+    return np.maximum(found / np.float32(max(usual, QUIET)), np.float32(1))
 
 
 def of_pixels(parts: Darkness, top: int, bottom: int, columns: int) -> Darkness:

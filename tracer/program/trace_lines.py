@@ -35,6 +35,7 @@ from morfax.tracer.program.laid.narrow_bays import explained, with_bars
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import order, selection
 from morfax.tracer.program.lines.marks_read import with_marks_read
+from morfax.tracer.program.lines.repeated import without_repeats
 from morfax.tracer.program.lines.selection import COVERED, Contour, Which
 from morfax.tracer.program.lines.small_rings import (
     SmallPatch,
@@ -179,6 +180,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
         patch_of = {line.number: patch for line, patch in further}
         others = [line for line, _ in further]
         lines += [line for line in others if which != "outer" or not is_inside(line, lines)]
+    lines = lines if numbers else without_repeats(lines)
     lines = selection.with_least_numbers(lines, asked)
     # 3. dots that stand alone, and slots whose sides run together
     lines += holes

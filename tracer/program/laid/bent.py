@@ -56,7 +56,7 @@ from morfax.tracer.tangles.seen_ink import SeenInk
 
 # In widths of the line, chosen by trial on parts with reliefs and on racks of teeth, drawn with known truth:
 LONGEST = 18.0  # a stretch is no longer, legs apart
-LONGER = 0.4  # than a way that does not turn: it goes out along a burr and comes back
+LONGER = 0.15  # than a way that does not turn: it goes out along a burr and comes back
 TURNS_OVER = 1.0  # on either side of a place, by how much the way turns there
 MOST_ASIDE = 0.5  # that a spline lies off the way: further is out along a tick, or round a bay
 # misfit: of what is wrong about a place noise is a quarter of that; 15 um of a line of 0.35 mm are as much
