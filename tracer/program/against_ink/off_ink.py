@@ -48,7 +48,7 @@ class Clean(NamedTuple):
     """A way (n, 2) mm a step from place to place, and those places (k,) at which it is surely on its ink."""
 
     way: Array
-    places: Array
+    places: NDArray[np.intp]
 
 
 def ink_about(
