@@ -5,9 +5,9 @@
 Drawings are made with known truth (`net_drawings`): chords, circles laid over each other, Voronoi cells,
 grids, trees, Lissajous figures and text in one-stroke letters, as a pen of 0.4 mm draws them, scanned at
 300 dpi with noise. For each kind: the share of the true lines that strokes run along (all, and the worst
-drawing), the length that is run more than once, strokes against the least that the net allows (half of its
-odd junctions), the distance of strokes from the true lines outside of junctions and at them, how often a
-true line that passes a junction is one stroke there, and processor time; at the end the worst drawing of
+drawing), the length that is run more than once, strokes against the least of a pen that goes straight on
+where lines cross, the distance of strokes from the true lines outside of junctions and at them, how often
+a true line that passes a junction is one stroke there, and processor time; at the end the worst drawing of
 each figure, by which it can be made again, and by how much the ledger told too much of one. Beside it the
 pieces into which scikit-image's skeleton falls at its junctions, and, where `pyautotrace` is installed, the
 paths that autotrace makes of the middle lines.
@@ -24,6 +24,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import convolve, label, minimum_filter1d
 from scipy.spatial import cKDTree
@@ -37,6 +38,8 @@ from morfax.tracer.program.trace_ink import trace_ink
 PEN_MM, DPI, FINER, NOISE = 0.4, 300.0, 4, 4.0
 ON_IT_MM = 0.5 * PEN_MM  # a true place is followed if a stroke comes as near
 AT_JUNCTION_MM = 2.0  # places nearer to a junction are left out of the RMS
+# pens: ends of true lines so near to each other share their ink, or have a pixel of paper between
+MET_WIDTHS = 1.5
 STEP_MM = 0.05
 PASSED_MM = 2.0  # before and behind a junction, where the partners are looked up
 # a quarter of the pen's width: a line so near to the true one there is its stroke
@@ -100,7 +103,7 @@ def measured(strokes: Strokes, file: Path, seed: int, name: str = "net") -> Foun
     net = shapely.unary_union([shapely.LineString(stroke) for stroke in strokes])
     edges = [np.asarray(edge.coords) for edge in getattr(net, "geoms", [net])]
     truth = np.vstack([evenly(edge, STEP_MM) for edge in edges])
-    least, junctions = least_strokes(edges)
+    junctions = junctions_of(edges)
     # 2. what was followed of it
     run = np.vstack([evenly(line[::10], STEP_MM) for line in lines])
     near = cKDTree(run).query(truth)[0] < ON_IT_MM
@@ -108,8 +111,8 @@ def measured(strokes: Strokes, file: Path, seed: int, name: str = "net") -> Foun
     # 3. how far the strokes are from it
     away = np.array(shapely.distance(shapely.points(run), net))
     there = np.zeros(len(run), bool)
-    if len(junctions):
-        there = cKDTree(junctions).query(run)[0] < AT_JUNCTION_MM
+    if len(met := np.vstack([junctions, nearly_met(strokes)])):
+        there = cKDTree(met).query(run)[0] < AT_JUNCTION_MM
     right = partners(strokes, junctions, lines)
     twice_mm = max(0.0, run_mm - net.length * float(near.mean()))
     return Found(
@@ -117,7 +120,7 @@ def measured(strokes: Strokes, file: Path, seed: int, name: str = "net") -> Foun
         net.length * float(near.mean()),
         twice_mm,
         len(lines),
-        least,
+        least_strokes(strokes),
         rms_um(away[~there]),
         rms_um(away[there]),
         len(right),
@@ -180,23 +183,45 @@ def drawn(strokes: Strokes, file: Path, seed: int) -> None:
     Image.fromarray(np.clip(grey, 0, 255).astype(np.uint8)).save(file, dpi=(DPI, DPI))
 
 
-def least_strokes(edges: Strokes) -> tuple[int, Points]:
-    """The fewest strokes that go along every edge once, and the junctions (n, 2) mm."""
-    ends = np.vstack([edge[[0, -1]] for edge in edges])
+def least_strokes(strokes: Strokes) -> int:
+    """The fewest strokes of a pen that goes straight on where lines cross, and may go on into another where
+    lines end: half of the ends that are left over there, one at least of lines that hang together.
+    """
+    _, node, degree = _nodes(strokes)
+    part = np.arange(len(degree))
+    for a, b in node.reshape(-1, 2):
+        part[part == part[a]] = part[b]
+    used = np.unique(node)
+    odd = np.bincount(part[used], degree[used] % 2)
+    return int(np.maximum(1, odd[np.unique(part[used])] // 2).sum())
+
+
+def junctions_of(edges: Strokes) -> Points:
+    """The places at which more than two edges end, (n, 2) mm."""
+    ends, node, degree = _nodes(edges)
+    return ends[degree[node] > 2]
+
+
+def nearly_met(strokes: Strokes) -> Points:
+    """The ends of strokes that come near those of others without meeting them, (n, 2) mm."""
+    ends, node, _ = _nodes(strokes)
+    has_ends = np.repeat(node[::2] != node[1::2], 2)
+    ends, node = ends[has_ends], node[has_ends]
+    if not len(ends):
+        return ends
+    near = cKDTree(ends).query_pairs(MET_WIDTHS * PEN_MM, output_type="ndarray")
+    return ends[np.unique(near[node[near[:, 0]] != node[near[:, 1]]])]
+
+
+def _nodes(lines: Strokes) -> tuple[Points, NDArray[np.int64], NDArray[np.int64]]:
+    """The ends of lines, two for each, mm; which are one node, by the first of them; how many end at each."""
+    ends = np.vstack([line[[0, -1]] for line in lines])
     tree = cKDTree(ends)
     node = np.full(len(ends), -1)
     for k in range(len(ends)):
         if node[k] < 0:
             node[tree.query_ball_point(ends[k], 1e-6)] = k
-    degree = np.bincount(node, minlength=len(ends))
-    part = np.arange(len(ends))
-    for a, b in node.reshape(-1, 2):
-        part[part == part[a]] = part[b]
-    odd = [int(np.sum(degree[node == n][:1] % 2)) for n in np.unique(node)]
-    by_part = dict[int, int]()
-    for n, is_odd in zip(np.unique(node), odd, strict=True):
-        by_part[int(part[n])] = by_part.get(int(part[n]), 0) + is_odd
-    return sum(max(1, count // 2) for count in by_part.values()), ends[degree[node] > 2]
+    return ends, node, np.bincount(node, minlength=len(ends))
 
 
 def skeleton_pieces(drawing: Drawing) -> int:

@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.plane import BEND_RAD
+from morfax.motion.plane import BEND_RAD, left_of
 from morfax.motion.polyline import APART_MM, UM, closed_up, with_places
 
 PLAIN = 0.05 * UM  # a line is known by places between which it is straight within this
@@ -37,7 +37,7 @@ def swung(line: Array, closed: bool, radius_mm: float) -> Array:
     ways = np.diff(closed_up(line) if closed else line, axis=0)
     lengths = np.hypot(*ways.T)
     ways /= lengths[:, None]
-    arms = radius_mm * np.column_stack([-ways[:, 1], ways[:, 0]])
+    arms = radius_mm * left_of(ways)
     # 2. the pieces before and after each vertex
     if closed:
         vertices, after = line, ways

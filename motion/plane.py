@@ -30,9 +30,9 @@ def heading_of(way: Array) -> float:
     return math.atan2(way[1], way[0])
 
 
-def left_of(way: Array) -> Array:
-    """A direction a quarter of a turn to the left, as long."""
-    return np.array([-way[1], way[0]])
+def left_of(ways: Array) -> Array:
+    """Directions (2,) or (n, 2) a quarter of a turn to the left, as long."""
+    return np.asarray(ways[..., ::-1] * (-1.0, 1.0))
 
 
 def left_of_headings(headings_rad: Array) -> Array:

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import blocks
 from morfax.motion.neighbours import Neighbours
@@ -66,6 +66,11 @@ def area_mm2(line_mm: Array) -> float:
     """Area inside a line taken for closed, mm²: positive if it goes round counter-clockwise."""
     x, y = (line_mm - line_mm[0]).T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def broad_mm(line_mm: Array) -> float:
+    """How broad a long area within a polyline taken for closed is, in the mean, mm."""
+    return 2 * abs(area_mm2(line_mm)) / max(length_mm(line_mm), NOT_ZERO)
 
 
 def closed_up(line_mm: Array) -> Array:

@@ -22,10 +22,3 @@ CLEAR_WIDTHS = 1.5  # from a place where lines meet: further on, the ink is that
 ABOUT_WIDTHS = 3.0  # about a place: so far what belongs to it is looked for
 LONGER_WIDTHS = 4.0  # what goes on beside a line for longer is no corner, crossing or blot
 FADES = 3.0  # softnesses from its edge, ink is whole or none: erfc is within 1e-5 of that
-
-EVERY_MM = 0.05  # between the places that stand for a way where it is held against another
-SOME_PLACES = 40  # of a line, which show where it runs
-MANY = 100  # lines, patches, pieces of a line: of more not each is looked at
-ROUNDS = 6  # times that a fit is made anew from the one before, at the most
-# pixels that are worked on at a time: 4 MB of darkness; so many tell a figure of a sheet
-FEW_PX = 1 << 20

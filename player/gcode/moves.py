@@ -40,6 +40,11 @@ class Program:
     machine: str = ""
     notes: tuple[str, ...] = ()
 
+    @property
+    def end_mm(self) -> Place:
+        """Where it ends."""
+        return self.moves[-1].end_mm if self.moves else self.start_mm
+
 
 def reached(move: Move) -> Iterator[tuple[float, ...]]:
     """The places that the registers must hold: the end; of an arc the centre and the furthest points too."""

@@ -119,8 +119,7 @@ class PositionPlayback(Supervised):
             samples += rows
             if rows < len(places):
                 raise monitor.warnings[-1]
-        ends = self.program.moves[-1].end_mm if self.program.moves else self.program.start_mm
-        self.end_error_mm = self.end_mm - np.array(ends)
+        self.end_error_mm = self.end_mm - np.array(self.program.end_mm)
 
     def _run(self) -> Iterator[tuple[Array, Array]]:
         """What the axes are told and where they are, block by block, standstill included."""

@@ -177,8 +177,7 @@ class PulsePlayback(Supervised):
                 raise monitor.warnings[-1]
             if done < len(pulses):
                 raise self._lag_fault(servos, samples / MOTION_RATE_HZ)
-        ends = self.program.moves[-1].end_mm if self.program.moves else self.program.start_mm
-        self.end_error_mm = self.end_mm - np.array(ends)
+        self.end_error_mm = self.end_mm - np.array(self.program.end_mm)
 
     @property
     def _sampled(self) -> int:

@@ -18,6 +18,7 @@ LENGTHS = st.floats(0.01, 100.0)
 def test_left_of_x_is_y_and_left_of_y_is_back() -> None:
     assert left_of(np.array([2.0, 0.0])).tolist() == [0.0, 2.0]
     assert left_of(np.array([0.0, 3.0])).tolist() == [-3.0, 0.0]
+    assert left_of(np.array([[2.0, 0.0], [0.0, 3.0]])).tolist() == [[0.0, 2.0], [-3.0, 0.0]]
     assert direction(math.pi / 2) == pytest.approx([0.0, 1.0])
 
 

@@ -31,7 +31,8 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.motion.polyline import evenly
 from morfax.tracer.corrections.on_sheet import Stroke
-from morfax.tracer.limits import FADES, PAPER, ROUNDS
+from morfax.tracer.effort import ROUNDS
+from morfax.tracer.limits import FADES, PAPER
 
 Darkness = NDArray[np.float32]
 

@@ -28,7 +28,7 @@ from morfax.motion.offset import DriveCurve
 from morfax.motion.polyline import APART_MM, Nearest, with_places
 from morfax.tracer.cutter import sides
 from morfax.tracer.cutter.contouring import Lead
-from morfax.tracer.limits import EVERY_MM
+from morfax.tracer.effort import EVERY_MM
 
 # a lead without a cutter stays so far from other lines: our own choice, for thin cuts; a kerf can be given
 # a place is clear if it is no nearer to a contour or line than the radius less this

@@ -36,7 +36,7 @@ from morfax.tracer.cutter.contour import Beside, heading, nearest_place
 from morfax.tracer.cutter.contouring import AS_FOLLOWED, Contouring, Lead
 from morfax.tracer.cutter.leads import LEAST_MM, SIZES, Scrap, depth_mm, shaped
 from morfax.tracer.cutter.sides import is_counterclockwise
-from morfax.tracer.limits import EVERY_MM
+from morfax.tracer.effort import EVERY_MM
 
 # All limits below were chosen by trial on the test drawings.
 STRAIGHT_MM = 0.03  # a stretch is straight within this

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.tracer.drawing.components import Numbers
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 BLOCK_PX = 16  # of a sheet of darkness; by trial
 GAP_PX = 64  # between stretches: a shorter one costs less than to begin anew; by trial

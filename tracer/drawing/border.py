@@ -47,13 +47,16 @@ class _Band(NamedTuple):
         return float(np.mean(mask.any(axis=self.across)))
 
 
-def without_border(darkness: Picture) -> tuple[str, ...]:
-    """Make the border of a picture paper, in place; returns the names of the edges where there was one."""
-    bands = [band for band in _bands(darkness.shape) if _is_inked(darkness, band)]
+def without_border(darkness: Picture, ink: float = INK) -> tuple[str, ...]:
+    """Make the border of a picture paper, in place; returns the names of the edges where there was one.
+
+    What is darker than `ink` counts: where pale lines are followed, so is what resizing leaves of a row.
+    """
+    bands = [band for band in _bands(darkness.shape) if _is_inked(darkness, band, ink)]
     if not bands:
         return ()
     patches = Patches.of(
-        runs_of(darkness[top:bottom] > INK, top) for top, bottom, _ in strips(darkness.shape)
+        runs_of(darkness[top:bottom] > ink, top) for top, bottom, _ in strips(darkness.shape)
     )
     # 1. patches in the margin that lie along an edge
     borders, edges = np.zeros(patches.count, bool), set[str]()
@@ -91,10 +94,10 @@ def _bands(shape: tuple[int, ...]) -> list[_Band]:
     ]
 
 
-def _is_inked(darkness: Picture, band: _Band) -> bool:
+def _is_inked(darkness: Picture, band: _Band, ink: float) -> bool:
     """Whether there is ink along an edge, whatever it belongs to."""
     pixels = darkness[band.top : band.bottom, band.left : band.right]
-    return band.covered(pixels > INK) >= ALONG
+    return band.covered(pixels > ink) >= ALONG
 
 
 def _edges_along(patches: Patches, patch: int, bands: list[_Band]) -> set[str]:

@@ -26,7 +26,8 @@ from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import at_lengths
 from morfax.tracer.drawing.hollow import FEWEST_PIECES, Seen, rows_of
-from morfax.tracer.limits import SOME_PLACES, WIDER
+from morfax.tracer.effort import SOME_PLACES
+from morfax.tracer.limits import WIDER
 
 # All limits below were chosen by trial on pairs of lines, and on line art.
 ACROSS = np.arange(-24, 25) / 16  # of the line's width, to the left

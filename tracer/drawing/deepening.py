@@ -24,27 +24,26 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import percentile
 from morfax.tracer.drawing.components import INK, Mask, strips
 from morfax.tracer.drawing.contrast import DARKER, LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.noise import measured
-from morfax.tracer.limits import FEW_PX
-
-Darkness = NDArray[np.float32]
+from morfax.tracer.drawing.spots import (
+    PART_PX,
+    SPOT_PX,
+    Darkness,
+    disc,
+    noise_of_spots,
+    of_pixels,
+    times_as_noisy,
+)
+from morfax.tracer.effort import FEW_PX
 
 SURELY = 0.6  # of ink's darkness: paler ink is that of a pale line in noise
-SPOT_PX = 1.0  # standard deviation of the spot behind which lines are told from noise
 # of ink's darkness behind that spot. Paler are what shines through a sheet and a JPEG's rims; chosen
 LEAST = 0.15
 # times the noise of spots: so far a pale line stands out from paper. That noise is up to 0.011 on scans,
 # 0.013 to 0.03 on photographs of crumpled and of squared paper and of boards; by trial
 ABOVE_NOISE = 12.5
-STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that tell its noise
-ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
-# percentiles half a standard deviation apart: rims of ink are on one side, and pale lines, which may be a
-# fifth of the paper that is near ink, beyond the other
-MIDDLE_AND_HIGH, APART = (50.0, 69.15), 0.5
-FAR_PX = 7  # from ink: its rims are no paper
 # pixels, and spots of the picture's softness: so near to ink is its own rim
 RIM_PX, SPOTS = 2, 2.0
 # a line is made darker so much farther than that rim: up to ink, and into its edge
@@ -71,23 +70,27 @@ def deepened(
     pitch_mm: float,
     paper_noise: float | None,
     shapes: NDArray[np.bool_],
+    *,
+    is_pencil: bool = False,
 ) -> float:
     """Make pale lines as dark as ink, in place; the length of all of them, mm. The shade of filled shapes is
-    no line.
+    no line. What is noise of the paper on one side of a sheet alone may be a pencil's shade.
     """
     noise = measured(darkness, pitch_mm, paper_noise)
     if not math.isfinite(noise.softness_px):
         return 0.0
-    level = max(LEAST, ABOVE_NOISE * noise_of_spots(darkness))
-    if level > INK:
+    noisy = ABOVE_NOISE * noise_of_spots(darkness)
+    if noisy > INK:
         return 0.0
+    times = times_as_noisy(darkness)
+    levels = np.maximum(LEAST, noisy * (np.ones_like(times) if is_pencil else times))
     rim_px = RIM_PX + math.ceil(SPOTS * noise.softness_px)
     length_px, shortest_px = 0.0, max(LEAST_STROKE_PX, LEAST_STROKE_MM / pitch_mm)
     for _ in range(ROUNDS):
-        pale = pale_ink(darkness, level, rim_px, shortest_px)
+        pale = pale_ink(darkness, levels, rim_px, shortest_px)
         if shapes.any():
             pale &= 1 - shaded(shapes, pale.shape)
-        lines = _lines(pale, darkness, (noise.width_mm / pitch_mm, level), pitch_mm)
+        lines = _lines(pale, darkness, noise.width_mm / pitch_mm, levels, pitch_mm)
         if lines is None:
             break
         length_px += lines.length_px
@@ -103,8 +106,9 @@ def deepened_note(pale_mm: float) -> str:
     )
 
 
-def pale_ink(darkness: Darkness, level: float, rim_px: int, shortest_px: float) -> Mask:
-    """Where a sheet is darker than a level behind a spot, and is no ink, nor so near to ink as its rim.
+def pale_ink(darkness: Darkness, levels: Darkness, rim_px: int, shortest_px: float) -> Mask:
+    """Where a sheet is darker behind a spot than the level of its part (see `spots`), and is no ink, nor so
+    near to ink as its rim.
 
     Shorter patches that are hardly ink are places at which a pale line is a little darker.
     """
@@ -112,14 +116,14 @@ def pale_ink(darkness: Darkness, level: float, rim_px: int, shortest_px: float) 
     for top, bottom, rows in strips(pale.shape, halo=math.ceil(4 * SPOT_PX), pixels=FEW_PX):
         soft = cv2.GaussianBlur(darkness[rows], (0, 0), SPOT_PX)[top - rows.start :]
         soft = soft[: bottom - top]
-        pale[top:bottom] = soft > level
+        pale[top:bottom] = soft > of_pixels(levels, top, bottom, pale.shape[1])
         inked[top:bottom] = (soft > INK).view(np.uint8) + (soft > SURELY)
     _, labels, boxes, _ = cv2.connectedComponentsWithStats(inked, connectivity=8)
     is_ink = boxes[:, 2:4].max(axis=1) >= shortest_px
     is_ink[labels[inked > 1]] = True
     is_ink[0] = False
     inked = is_ink[labels].view(np.uint8)
-    pale &= 1 - np.asarray(cv2.dilate(inked, _disc(rim_px)), np.uint8)
+    pale &= 1 - np.asarray(cv2.dilate(inked, disc(rim_px)), np.uint8)
     return pale
 
 
@@ -129,32 +133,11 @@ def shaded(shapes: NDArray[np.bool_], shape: tuple[int, ...]) -> Mask:
     return np.asarray(large, np.uint8)
 
 
-def noise_of_spots(darkness: Darkness) -> float:
-    """The standard deviation of the paper behind a spot, against the paper about it.
-
-    Grain, and what a camera has made of noise, is broader than pixels: a spot averages little of it. Shade
-    that is even, such as a tinted room of a plan, is none.
-    """
-    every = max(1, darkness.shape[0] // (STRIPS * STRIP_PX))
-    seen = list[Darkness]()
-    for top in range(0, darkness.shape[0], every * STRIP_PX):
-        strip = darkness[top : top + STRIP_PX]
-        soft = cv2.GaussianBlur(strip, (0, 0), SPOT_PX)
-        inked = cv2.dilate((soft > INK).view(np.uint8), _disc(FAR_PX))
-        differs = soft - cv2.GaussianBlur(soft, (0, 0), ABOUT_PX)
-        seen.append(differs[(strip != 0) & (inked == 0)][::SPARSE])  # bare paper is made 0
-    paper = np.concatenate(seen)
-    if not len(paper):
-        return 0.0
-    middle, high = (percentile(paper, percent) for percent in MIDDLE_AND_HIGH)
-    return (high - middle) / APART
-
-
 def _lines(
-    pale: Mask, darkness: Darkness, usual: tuple[float, float], pitch_mm: float
+    pale: Mask, darkness: Darkness, usual_px: float, levels: Darkness, pitch_mm: float
 ) -> _Lines | None:
-    """The patches of a mask that are lines; None if none is. Usual are the width of lines, pixels, and the
-    darkness from which on ink may be pale.
+    """The patches of a mask that are lines; None if none is. Lines are usually so wide; from the levels of
+    the sheet's parts on ink may be pale.
     """
     count, labels, boxes, _ = cv2.connectedComponentsWithStats(pale, connectivity=8)
     if count < 2:
@@ -167,13 +150,13 @@ def _lines(
     broad_px = np.maximum(4 * np.bincount(patch, depth, count) / areas - 2, 1)
     lengths_px = areas / broad_px
     long_px = boxes[:, 2:4].max(axis=1)
-    usual_px, level = usual
     are_lines = long_px >= max(LEAST_STROKE_PX, LETTER_MM / pitch_mm)
     are_lines &= lengths_px > SLENDER * broad_px
     are_lines &= broad_px < BROAD * usual_px + BROAD_PX
     are_lines[0] = False
     dark = _usual(darkness[rows, columns], patch, count)
     are_lines &= dark < FULL
+    level = levels[boxes[:, 1] // PART_PX, boxes[:, 0] // PART_PX]
     are_lines &= (long_px >= LEAST_STROKE_MM / pitch_mm) | (dark > TWICE * level)
     if not are_lines.any():
         return None
@@ -204,13 +187,7 @@ def _deepen(darkness: Darkness, lines: _Lines, rim_px: int) -> None:
     dark = lines.dark[line_of[nearest[rows, columns]]]
     # in ink's rim only what is as dark as the line is the line
     soft = cv2.GaussianBlur(darkness, (0, 0), SPOT_PX)
-    in_rim = cv2.dilate((soft > INK).view(np.uint8), _disc(rim_px))[rows, columns] > 0
+    in_rim = cv2.dilate((soft > INK).view(np.uint8), disc(rim_px))[rows, columns] > 0
     is_line = ~in_rim | (seen > TOUCHED * dark)
     darker = np.maximum(np.minimum(seen / dark, 1.0), seen)
     darkness[rows, columns] = np.where(is_line, darker, seen)
-
-
-def _disc(radius_px: int) -> Mask:
-    """Mask of a disc."""
-    across = 2 * radius_px + 1
-    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)

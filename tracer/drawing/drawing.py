@@ -29,7 +29,7 @@ from morfax.tracer.drawing import coarse, grain, inks, large, raster, ruling
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import INK
-from morfax.tracer.drawing.deepening import deepened, deepened_note
+from morfax.tracer.drawing.deepening import LEAST, deepened, deepened_note
 from morfax.tracer.drawing.levelling import levelled
 from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, Within, measured, within
@@ -240,8 +240,9 @@ class Drawing:
         # 2. pale lines
         lines, pale_mm = within(darkness, paper_noise), 0.0
         drawn_grain = lines.grain
+        is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
-            pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes)
+            pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
         if pale_mm:
             lines = within(darkness, paper_noise)
         notes += _of_few_pixels(lines, drawn_grain, pitch_mm)
@@ -278,7 +279,7 @@ class Drawing:
 def _cleared(darkness: Any, pitch_mm: float, reading: Reading) -> tuple[Any, tuple[str, ...]]:
     """Darkness without what is printed and without the scan's border, and notes of both."""
     darkness, printed = ruling.left_out(darkness, pitch_mm, reading.printed)
-    edges = without_border(darkness)
+    edges = without_border(darkness, LEAST if reading.pale_is_ink else INK)
     border = border_note(edges) if edges else None
     return darkness, tuple(note for note in (printed, border) if note is not None)
 

@@ -28,7 +28,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.paper import Paper
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 Picture = NDArray[np.uint8]  # rows from the top, columns, channels
 Colour = tuple[int, int, int]

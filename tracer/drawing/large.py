@@ -37,7 +37,7 @@ from morfax.tracer.drawing.memory import make_sure_of_ink
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.paper_noise import paper_noise
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 # pixels: A3 at 600 dpi is the first; smaller sheets are kept as a whole, in floats
 LARGE_PX = 1 << 26

@@ -31,7 +31,7 @@ from morfax.tracer.drawing.contrast import (
 from morfax.tracer.drawing.memory import give_back
 from morfax.tracer.drawing.paper_noise import every_px, paper_noise
 from morfax.tracer.drawing.scan import Grey
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 # of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen

@@ -29,8 +29,6 @@ from morfax.motion.plane import CORNER_RAD
 ALIKE = 0.015  # lengths within this share are equal
 AS_NEAR = 0.04  # of the ink's reach from its middle: distances within this are equal
 LOPSIDED = 0.02  # of the ink's third moment without signs: less shows no side
-# the way round begins so far before the lopsided side: no line lies on the cut
-BEFORE = CORNER_RAD
 
 
 class Ink(NamedTuple):
@@ -62,7 +60,8 @@ def longest_first(lengths_mm: Array, middles_mm: Array, ink: Ink) -> NDArray[np.
     order = list[int]()
     away = middles_mm - np.array(ink.middle_mm)
     near_mm = np.hypot(away[:, 0], away[:, 1])
-    turns = np.arctan2(away[:, 1], away[:, 0]) - ink.side_rad + BEFORE
+    # the way round begins a little before the lopsided side: no line lies on the cut
+    turns = np.arctan2(away[:, 1], away[:, 0]) - ink.side_rad + CORNER_RAD
     for alike in _groups(-lengths_mm, ALIKE * lengths_mm):
         within_mm = np.full(len(alike), AS_NEAR * ink.reach_mm)
         for as_near in _groups(near_mm[alike], within_mm):

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.tracer.drawing.scan import darkest
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 if TYPE_CHECKING:
     from PIL.Image import Image

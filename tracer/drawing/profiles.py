@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.motion.plane import unit
+from morfax.motion.plane import left_of, unit
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.components import INK
@@ -85,7 +85,7 @@ def profiles_of(darkness: Kept) -> Profiles | None:
     at_px = np.arange(-half_px, half_px, STEP_PX)
     # a place anywhere between two pixels of the line, not always on a row: so noise is averaged alike
     share = np.arange(len(places)) * GOLDEN % 1.0 - 0.5
-    middles = places.mean(axis=2) + share[:, None] * across[:, ::-1] * [1, -1]
+    middles = places.mean(axis=2) - share[:, None] * left_of(across)
     seen = seen_at(darkness, middles[:, :, None] + across[:, :, None] * at_px)
     # 3. with one line in the middle and paper beside it
     outside = np.abs(at_px) > 0.75 * half_px

@@ -33,7 +33,7 @@ from morfax.tracer.drawing.scan import (
     page_asked_for,
     page_notes,
 )
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 if TYPE_CHECKING:
     from PIL.Image import Image

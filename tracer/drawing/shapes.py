@@ -34,7 +34,7 @@ from morfax.tracer.drawing.closing import Closed, covers, note, places_of, strea
 from morfax.tracer.drawing.components import FRINGE_PX
 from morfax.tracer.drawing.sharpening import APART_PX, Edge, sharpened
 from morfax.tracer.drawing.spacing import finer, too_near
-from morfax.tracer.limits import ROUNDS
+from morfax.tracer.effort import ROUNDS
 
 EDGE_PX = 2.0  # of a pen that leaves one line at any angle
 EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close

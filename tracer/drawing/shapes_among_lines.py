@@ -85,6 +85,8 @@ def has_lines(drawing: Drawing) -> bool:
     if usual_px * drawing.pitch_mm > BROADEST_MM:
         return False
     ridge = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)))
+    if not ridge.any():
+        return False
     widths_px = 2 * depth[ridge] - 1
     return bool(np.mean(np.abs(widths_px - usual_px) < ALIKE * usual_px + 1) > MOST)
 

@@ -22,7 +22,8 @@ from morfax.motion.plane import unit
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
-from morfax.tracer.limits import AHEAD_RAD, MANY
+from morfax.tracer.effort import MANY
+from morfax.tracer.limits import AHEAD_RAD
 
 # All limits below were chosen by trial on `python -m benchmarks rough`.
 WIDEST_MM = 1.0  # over a wider gap a leg's own bend does not lead any more

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import Mask, strips
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 # All limits below were chosen by trial on own and fetched drawings, in usual widths of a line.
 BROAD, BROAD_PX = 2.2, 1.5  # a disc as broad goes into a solid area

@@ -31,7 +31,7 @@ from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 from morfax.tracer.drawing.weighing import Weight, weighed_mm
-from morfax.tracer.limits import MANY
+from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last

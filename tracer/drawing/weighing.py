@@ -25,7 +25,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.tracer.drawing.components import FRINGE_PX
 from morfax.tracer.drawing.holes import holes
-from morfax.tracer.limits import MANY
+from morfax.tracer.effort import MANY
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.strokes import Sheet

@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST
-from morfax.motion.plane import unit
+from morfax.motion.plane import left_of, unit
+from morfax.tracer.effort import ROUNDS
 from morfax.tracer.flatten.edges import Picture, crossings, light_at
 from morfax.tracer.flatten.fit import Sightings
-from morfax.tracer.limits import ROUNDS
 
 SMALL_PX = 700  # longer side of the picture on which the outline is looked for
 LEAST_AREA, LARGEST_AREA = 0.08, 0.995  # of the photograph: of a sheet worth a trace
@@ -232,7 +232,7 @@ def _straight(places: Array) -> Array:
     """The straight line through places: normal and offset, so that normal · place = offset."""
     middle = places.mean(axis=0)
     _, _, ways = np.linalg.svd(places - middle, full_matrices=False)
-    normal = np.array([-ways[0][1], ways[0][0]])
+    normal = left_of(ways[0])
     return np.array([*normal, normal @ middle])
 
 

@@ -16,10 +16,10 @@ import math
 import cv2
 import numpy as np
 
+from morfax.tracer.effort import FEW_PX
 from morfax.tracer.flatten.edges import Picture
 from morfax.tracer.flatten.layout import Box
 from morfax.tracer.flatten.projection import Projection
-from morfax.tracer.limits import FEW_PX
 
 # of a sheet, made paper: the table shows there if the sheet was cut or printed aslant
 RIM_MM = 1.5

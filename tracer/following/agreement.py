@@ -62,9 +62,7 @@ class Agreement:
         doubtful = carriage.is_trusted or (by_memory and not self.by_stations)
         if doubtful or corner_in(seen, here) is not None:
             return 0.0
-        guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm
-        clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm
-        return clear_mm if clear_mm > LEAST_LEGS * view.leg_mm else 0.0
+        return _clear_mm(carriage, view, ahead_mm)
 
     def goes_on_along(self, carriage: Carriage, view: View, seen: Array) -> bool:
         """The same along the stations of an edge on which nothing is tight."""
@@ -72,12 +70,10 @@ class Agreement:
         if off_mm is None or off_mm > AGREES_PX * view.pitch_mm or not carriage.sees_line:
             self._overrule(carriage)
             return False
-        guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm
-        clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm
-        if carriage.is_trusted or clear_mm < LEAST_LEGS * view.leg_mm:
-            return False
-        carriage.trust(clear_mm)
-        return True
+        clear_mm = 0.0 if carriage.is_trusted else _clear_mm(carriage, view, ahead_mm)
+        if clear_mm:
+            carriage.trust(clear_mm)
+        return clear_mm > 0
 
     def goes_on(self, carriage: Carriage, view: View, seen: Array) -> bool:
         """Whether the cell goes on by itself along stations ahead; the carriage trusts it then."""
@@ -97,6 +93,13 @@ class Agreement:
             self.overruled = 0
         self.overruled += 1
         self._led_mm = carriage.cell_led_mm
+
+
+def _clear_mm(carriage: Carriage, view: View, ahead_mm: float) -> float:
+    """How far the cell may go on where a felt line goes on so far beyond it, mm; 0 if that is too little."""
+    guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm
+    clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm
+    return clear_mm if clear_mm > LEAST_LEGS * view.leg_mm else 0.0
 
 
 def turned_rad(carriage: Carriage, seen: Array) -> float:

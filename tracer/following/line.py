@@ -187,9 +187,10 @@ class Line:
         if self.ending != "ended" or not 0 < gap_mm < widest_mm:
             return None
         moving = self.xy_mm[np.r_[True, np.any(np.diff(self.xy_mm, axis=0) != 0, axis=1)]]
-        reach = min(HEADING, len(moving) - 1)
-        begins = moving[reach] - moving[0]
-        ends = moving[-1] - moving[max(-HEADING, -len(moving))]
+        if len(moving) <= HEADING:
+            return None
+        begins = moving[HEADING] - moving[0]
+        ends = moving[-1] - moving[-HEADING]
         for way in (begins, ends):
             if way @ across <= AHEAD * gap_mm * float(np.hypot(*way)):
                 return None

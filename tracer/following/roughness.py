@@ -21,12 +21,12 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.motion.plane import heading_of, unit
+from morfax.motion.plane import heading_of, left_of, unit
 from morfax.motion.polyline import lengths_mm
 from morfax.motion.usual import THINNED
+from morfax.tracer.effort import MANY
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
-from morfax.tracer.limits import MANY
 from morfax.tracer.sensing.edge_scout import CIRCLE_PX
 from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import View
@@ -84,7 +84,7 @@ def _deviations_mm(view: View, place_mm: Array, heading: float) -> tuple[float, 
         return None
     chord = seen[-1, :2] - seen[0, :2]
     along = unit(chord)
-    left = np.array([-along[1], along[0]])
+    left = left_of(along)
     x, y = seen[:, :2] @ along, seen[:, :2] @ left
     x, y = x - x.mean(), y - y.mean()
     strays_mm = float(np.std(y - np.polyval(np.polyfit(x, y, 2), x)))

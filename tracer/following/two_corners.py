@@ -180,7 +180,7 @@ def _stepping(view: View, incoming: Leg, outgoing: Leg, round_mm: Array) -> _Sid
     ways = np.array([direction(leg.heading_rad) for leg in (incoming, outgoing)])
     from_ends = round_mm - np.array([incoming.end_mm, outgoing.end_mm])[:, None]
     along = (from_ends @ ways[:, :, None])[..., 0]
-    aside = (from_ends @ np.array([left_of(way) for way in ways])[:, :, None])[..., 0]
+    aside = (from_ends @ left_of(ways)[:, :, None])[..., 0]
     half_way = int(np.argmin(np.abs(aside.sum(axis=0))))
     high_mm = float(np.abs(aside[:, half_way]).sum())
     if high_mm > ABOUT_WIDTHS * view.width_mm:

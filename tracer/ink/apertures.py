@@ -20,7 +20,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.motion.plane import unit
+from morfax.motion.plane import left_of, unit
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import ONE_PEN, Window
@@ -119,6 +119,5 @@ def _beside(places: Array, aside_mm: float) -> tuple[Array, Array]:
     if len(places) < 2:
         return places, places
     ways = np.gradient(places, axis=0)
-    normals = np.column_stack([-ways[:, 1], ways[:, 0]])
-    aside = aside_mm * unit(normals)
+    aside = aside_mm * unit(left_of(ways))
     return places + aside, places - aside

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.effort import ROUNDS
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.crossing import Crossing, are_side_by_side
 from morfax.tracer.ink.doubled import BROADER
@@ -28,7 +29,6 @@ from morfax.tracer.ink.net import Inner, Net, net_of
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.swelling import TWO
-from morfax.tracer.limits import ROUNDS
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
 from morfax.tracer.sensing.view import View

@@ -19,7 +19,8 @@ It never leaves a line that goes on for another that goes on, and never goes ont
 bar that ends on a line at both its ends comes round by two ends, and so never. Nor does it go along a line
 that goes straight on beyond both ends of that: a centre line makes no halves of a circle.
 
-A way round what bars join counts without all this if it goes round nearly all of a net: its silhouette.
+A way round what bars join counts without all this if it goes round nearly all of a net: its silhouette. A way
+round the two rims of one line's ink, as of the bold arm of a cross, is none.
 
 Source: our own.
 """
@@ -27,14 +28,11 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Set
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from heapq import heappop, heappush
 from typing import NamedTuple
-
-import cv2
-import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.polyline import length_mm
@@ -45,6 +43,8 @@ from morfax.tracer.ink.onward import Onward
 from morfax.tracer.ink.outlines import (
     Outline,
     as_outline,
+    goes_round,
+    goes_round_paper,
     parts,
     straight_chains,
     turned_by,
@@ -56,7 +56,6 @@ from morfax.tracer.sensing.leg import FACING
 # (smoothly also between two legs of which neither goes on elsewhere)
 ALONE, CORNER, SMOOTHLY, CROSSING, END, MOST = 0.1, 0.5, 1.0, 1.0, 1.5, 4.0
 ENDS = 1  # in a way
-NEARLY_ALL = 0.9  # of a net: a way round so much is its silhouette
 NEW_BY_END = 0.9  # of a way with an end is along no other
 # a way that turns by more than BACK_RAD goes back, but for a tip whose sides are so many times as long as the
 # ink that they share, and along that bend by no more of its angle; of circles that touch by 0.2 of it
@@ -100,6 +99,8 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     def is_new(way: Outline, least: float = share) -> bool:
         if share_beside(way.chain, taken, junctions) <= least:
             return False
+        if not goes_round_paper(way.chain, junctions):
+            return False
         taken.update(link.line for link in way.chain.links)
         return True
 
@@ -116,7 +117,7 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
         rest = [
             way
             for way in parts(junctions, without)
-            if search.cost(way.chain) < math.inf or _goes_round(way.chain, junctions, aside)
+            if search.cost(way.chain) < math.inf or goes_round(way.chain, junctions, aside)
         ]
         yield from filter(is_new, rest)
 
@@ -126,21 +127,6 @@ def share_beside(chain: Chain, taken: set[int], junctions: Junctions) -> float:
     lengths = {link.line: junctions.net.lines[link.line].length_mm for link in chain.links}
     beside_mm = sum(mm for line, mm in lengths.items() if line not in taken)
     return beside_mm / max(sum(lengths.values()), NOT_ZERO)
-
-
-def _goes_round(chain: Chain, junctions: Junctions, aside: Set[int]) -> bool:
-    """Whether nearly all lines of a net, but those aside, lie on or inside a closed chain: its silhouette."""
-    lines, on_it = junctions.net.lines, {link.line for link in chain.links}
-    outline = junctions.places_along(chain).astype(np.float32).reshape(-1, 1, 2)
-    all_mm = inside_mm = 0.0
-    for n, line in enumerate(lines):
-        if n in aside:
-            continue
-        x, y = line.places_mm[len(line.places_mm) // 2].tolist()
-        all_mm += line.length_mm
-        if n in on_it or cv2.pointPolygonTest(outline, (x, y), False) > 0:
-            inside_mm += line.length_mm
-    return inside_mm > NEARLY_ALL * all_mm
 
 
 @dataclass

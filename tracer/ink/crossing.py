@@ -24,9 +24,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
+from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.ink.lifted import WAY_MM, Loose, ends_in_ink_mm
+from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
 from morfax.tracer.ink.partners import CORNERED, Pair, partners, turnings, way_through
 from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
@@ -158,7 +159,9 @@ class Crossing:
     @cached_property
     def _ways(self) -> Neighbours | None:
         """Places of all lines in it."""
-        ended = [self.legs[k].at(np.arange(0.0, mm, WAY_MM)) for k, mm in self.ends_mm.items()]
+        ended = [
+            self.legs[k].at(np.arange(0.0, mm, EVERY_MM)) for k, mm in self.ends_mm.items()
+        ]
         places = np.vstack([self.passing_mm, *ended])
         return Neighbours(places) if len(places) else None
 

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import BEND_RAD
 from morfax.tracer.ink.nib import (
     ENOUGH,
     Ink,
@@ -48,7 +49,7 @@ SWELLS = 0.13
 FROM_ENDS = 10.0  # widths: within them two lines that share a stretch have begun to
 HALF = 0.5  # of a short piece's stations tell its width
 CUT_WIDTHS = 1.8  # of its own: a shorter piece is where others cross
-STRAIGHT_COS = 0.98  # 11 degrees
+STRAIGHT_COS = math.cos(BEND_RAD)
 PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the same two lines
 # the width of a line as the head wants it: of a narrower one pixels make the width swell; and where they are
 # ink or paper alone, and tell a width to one of them: `WIDER` is more then

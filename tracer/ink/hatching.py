@@ -19,7 +19,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
-from morfax.motion.plane import direction
+from morfax.motion.plane import direction, left_of
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import grouped
 from morfax.tracer.drawing.thinning import Indices
@@ -85,7 +85,7 @@ def _neighbours(middles_mm: Array, headings: Array, long_mm: Array) -> tuple[Ind
         turned = np.remainder(headings - heading + 0.5 * math.pi, math.pi) - 0.5 * math.pi
         away = middles_mm - middles_mm[k]
         along = away @ direction(heading)
-        aside = away @ np.array([-math.sin(heading), math.cos(heading)])
+        aside = away @ left_of(direction(heading))
         shorter = np.minimum(long_mm, long_mm[k])
         beside = 0.5 * (long_mm + long_mm[k]) - np.abs(along)
         fits = (

@@ -26,7 +26,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.lettering import lettering, lower_than
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 HALO_PX = 8  # beside a strip: softening looks no further
 OUTLINE_PX = 0.5  # so near an outline is drawn, for the eye

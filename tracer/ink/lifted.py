@@ -28,6 +28,7 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import left_of_headings
+from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.limits import FADES
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.parabola import FEWEST
@@ -49,7 +50,6 @@ BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
 STEP_MM = 0.01  # of ends that are tried
 ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
 ROUNDS = 3  # in which lines that end in each other's ink have their ends found
-WAY_MM = 0.05  # between places of a line that may be the others' ink
 EVERY_PX = 0.7  # a place is looked at
 # of the line's darkness: no pen leaves its ink more exactly; and deviations, for places share what they see
 INEXACT, DEVIATIONS = 0.05, 5.0
@@ -75,7 +75,7 @@ def ends_in_ink_mm(loose: Sequence[Loose], *, are_tips: bool = False) -> list[fl
     for _ in range(ROUNDS if len(loose) > 1 else 1):
         for k, line in enumerate(loose):
             ways = [
-                other.leg.at(np.arange(0.0, ends[m], WAY_MM))
+                other.leg.at(np.arange(0.0, ends[m], EVERY_MM))
                 for m, other in enumerate(loose)
                 if m != k
             ]

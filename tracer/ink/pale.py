@@ -24,10 +24,11 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.components import INK, Mask, strips
 from morfax.tracer.drawing.contrast import ABOVE_NOISE
 from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
-from morfax.tracer.drawing.deepening import LEAST, SPARSE, SPOT_PX, STRIPS, shaded
+from morfax.tracer.drawing.deepening import LEAST, shaded
 from morfax.tracer.drawing.drawing import Darkness, Drawing
+from morfax.tracer.drawing.spots import SPARSE, SPOT_PX, STRIPS, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
-from morfax.tracer.limits import FEW_PX
+from morfax.tracer.effort import FEW_PX
 
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
 # of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
@@ -65,8 +66,9 @@ def _pale(drawing: Drawing) -> Mask:
     noise = drawing.noise
     rim_px = RIM_PX + math.ceil(SPOTS * float(np.nan_to_num(noise.softness_px)))
     level = max(LEAST, ABOVE_NOISE * LEFT_OF_NOISE * float(np.nan_to_num(noise.paper)))
+    levels = level * times_as_noisy(drawing.darkness)
     if drawing.grainy:  # a slit makes strands of the paper's grain
-        level = max(level, STANDS_OUT * _noise_of_spots(drawing))
+        levels[:] = max(level, STANDS_OUT * _noise_of_spots(drawing))
     rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim_px + 1,) * 2)
     pale = np.zeros(drawing.darkness.shape, np.uint8)
     for top, bottom, rows in strips(
@@ -75,7 +77,8 @@ def _pale(drawing: Drawing) -> Mask:
         soft = cv2.GaussianBlur(drawing.darkness[rows], (0, 0), SPOT_PX)
         inked = cv2.dilate((soft > INK).view(np.uint8), rim)
         own = slice(top - rows.start, bottom - rows.start)
-        pale[top:bottom] = ((soft > level) & (inked == 0))[own]
+        pale[top:bottom] = (inked == 0)[own]
+        pale[top:bottom] &= soft[own] > of_pixels(levels, top, bottom, soft.shape[1])
     return pale if drawing.shapes is None else pale & (1 - shaded(drawing.shapes, pale.shape))
 
 

@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.plane import CORNER_RAD, SAME_MM, left_of_headings, unit
+from morfax.motion.plane import CORNER_RAD, SAME_MM, left_of, left_of_headings, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
+from morfax.tracer.effort import EVERY_MM, ROUNDS
 from morfax.tracer.ink.run import Run
-from morfax.tracer.limits import EVERY_MM, ROUNDS
 from morfax.tracer.sensing.parabola import FEWEST
 
 # All limits below were chosen by trial on drawings of nets.
@@ -122,8 +122,7 @@ def are_apart_where_they_cross(
         if run.length_mm < LONG * width_mm or low_mm < APART * width_mm:
             continue
         far, station = Neighbours(run.places_mm).nearest(one[at : at + 1])
-        heading = run.headings_rad[station[0]]
-        normal = np.array([[-math.sin(heading), math.cos(heading)]])
+        normal = left_of_headings(run.headings_rad[station])
         if (
             far[0] < ABREAST * width_mm
             and _goes_along(one, np.array([at]), normal)[0]
@@ -182,7 +181,7 @@ def _bent(some: Array, share: Array, off: _Off) -> Array:
     Least squares, to which the headings at its ends belong; a place that is far off counts less.
     """
     ways = np.gradient(some, axis=0)
-    to_left = unit(np.column_stack([-ways[:, 1], ways[:, 0]]))
+    to_left = unit(left_of(ways))
     wanted = off.aside * np.sum(off.normals * to_left, axis=1)
     if off.sure.sum() < FEWEST:
         return np.zeros_like(some)

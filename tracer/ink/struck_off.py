@@ -27,7 +27,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.plane import unit
+from morfax.motion.plane import left_of, unit
 from morfax.motion.polyline import evenly
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.between import between
@@ -154,7 +154,7 @@ class _Struck:
         others = self.near.several(self.places[some], min(MANY, len(self.places)))
         along, widths_mm = self.along[some], self.widths_mm[some, None]
         off = self.places[others] - self.places[some, None]
-        normals = np.column_stack([-along[:, 1], along[:, 0]])
+        normals = left_of(along)
         aside, ahead = (np.sum(off * way[:, None], axis=2) for way in (normals, along))
         is_other = self.stroke[others] != self.stroke[some, None]
         come_mm = np.abs(self.come_mm[others] - self.come_mm[some, None])

@@ -24,6 +24,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.arrays import median as median_of
 from morfax.motion.compiled import njit
 from morfax.motion.curves import hermite
+from morfax.motion.plane import direction, left_of
 from morfax.tracer.head.course import SMOOTH, ahead_mm, along_leg, onto, through_nodes
 from morfax.tracer.sensing.leg import STRAIGHT, Leg, meet, turn
 from morfax.tracer.sensing.ray import edge_along, edges
@@ -123,9 +124,7 @@ def _bend(
     It is one cubic where that place no longer lies within the turn.
     """
     heading = corner.headings_rad()[0] + 0.5 * corner.turned_rad
-    inward = math.copysign(1.0, corner.turned_rad) * np.array(
-        [-math.sin(heading), math.cos(heading)]
-    )
+    inward = math.copysign(1.0, corner.turned_rad) * left_of(direction(heading))
     middle = corner.vertex_mm + missing_mm * inward
     if max((middle - start[0]) @ inward, (middle - end[0]) @ inward) < 0:
         return through_nodes([start, (middle, heading), end])
@@ -260,7 +259,7 @@ def _arc(start: Array, heading: float, end: Array, end_heading: float) -> Array:
     pieces = max(1, math.ceil(abs(angle) / PIECE_RAD))
     radius = float(np.hypot(*(end - start))) / (2 * math.sin(abs(angle) / 2))
     side = math.copysign(1.0, angle)
-    centre = start + side * radius * np.array([-math.sin(heading), math.cos(heading)])
+    centre = start + side * radius * left_of(direction(heading))
     headings = heading + angle * np.arange(pieces + 1) / pieces
     nodes = centre + side * radius * np.column_stack([np.sin(headings), -np.cos(headings)])
     nodes[-1] = end

@@ -16,6 +16,7 @@ import numpy as np
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
+from morfax.motion.plane import direction, left_of
 from morfax.tracer.head import course
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
@@ -135,7 +136,7 @@ class Planner:
         """The longest stretch without any ink across the line, straight from one leg's end to another's."""
         view, step = self.view, STEP_PX * self.view.pitch_mm
         along = np.arange(0.0, course.ahead_mm(incoming.end_mm, outgoing), step)
-        left = np.array([-math.sin(incoming.heading_rad), math.cos(incoming.heading_rad)])
+        left = left_of(direction(incoming.heading_rad))
         across = ACROSS[:, None] * view.width_mm * left
         lighter = view.at_level(FAINTER * view.level)
         blank = longest = 0.0

@@ -100,21 +100,27 @@ def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> list[Unexp
     """
     # 1. what makes up the line, and the others
     least_mm = OTHERS * strokes[0].length_mm
-    parts = [stroke.places_mm for stroke in strokes if stroke.length_mm > least_mm]
-    others = [stroke.places_mm for stroke in strokes[len(parts) :]]
-    others_mm = sum(stroke.length_mm for stroke in strokes[len(parts) :])
+    parts, others = list[Line](), list[Line]()
+    for stroke in strokes:
+        is_part = stroke.ending == "closed" or stroke.length_mm > least_mm
+        (parts if is_part else others).append(stroke)
+    others_mm = sum(stroke.length_mm for stroke in others)
     if len(strokes) == 1 or len(parts) > MOST_PARTS or others_mm > least_mm:
         return None
     if len(others) > MOST_OTHERS:
         return None
     # 2. the bars that the others lie within, or in which the parts end
     end_mm, short_mm = END * width_mm, THICK[1] * width_mm
-    ends = [end for way in parts for end in (_up_to(way, end_mm), _up_to(way[::-1], end_mm))]
-    bars = list(bars_along(sheet, others or ends, width_mm))
+    ways = [stroke.places_mm for stroke in parts]
+    ends = [end for way in ways for end in (_up_to(way, end_mm), _up_to(way[::-1], end_mm))]
+    bars = bars_along(sheet, [stroke.places_mm for stroke in others] or ends, width_mm)
     thick = [Unexplained(bar.place_mm, bar.long_mm, "broad") for bar in bars if bar.is_thick]
-    if others:
-        return thick if all(bar.is_thick or bar.long_mm < short_mm for bar in bars) else None
-    return thick or None
+    if not others:
+        return thick or None
+    # 3. one that the head felt to be as broad is a bar, however bent; another may be a line
+    slim = [each.places_mm for each in others if each.width_mm < THICK[0] * width_mm]
+    may_be = bars_along(sheet, slim, width_mm)
+    return thick if all(bar.is_thick or bar.long_mm < short_mm for bar in may_be) else None
 
 
 def _up_to(way: Array, length_mm: float) -> Array:

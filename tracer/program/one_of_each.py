@@ -79,7 +79,8 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
             unclear.append(contour)
             continue
         is_letter = contour.stroke.patch in letters
-        found = _found(setup.after(come_mm, total_mm), loops, contour, is_letter)
+        reads_marks = setup.operator.reads_marks(lines)
+        found = _found(setup.after(come_mm, total_mm), loops, contour, is_letter, reads_marks)
         line = found.line
         if line is not None:
             if found.others is not None:
@@ -135,7 +136,9 @@ def _is_inner(contour: Contour, lines: list[Line]) -> bool:
     return any(not line.is_open and contour.lies_in(line.loop_mm) for line in lines)
 
 
-def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -> _Found:
+def _found(
+    setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool, reads_marks: bool
+) -> _Found:
     """A line of a patch as the head follows it, as the outline of a net, or as the small loop that it is."""
     stroke = contour.stroke
     if setup.sheet.are_solid[stroke.patch]:
@@ -146,7 +149,7 @@ def _found(setup: Setup, loops: SmallLoops, contour: Contour, is_letter: bool) -
         net = net_of(about, contour)
         lines = net.lines() if net is not None and net.is_clear else []
         if not lines and not is_letter:
-            lines = lines_of_ring(about, contour)
+            lines = lines_of_ring(about, contour, reads_marks)
         elif lines and lines[0].ending != "closed":
             lines = []
         if lines:

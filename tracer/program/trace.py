@@ -26,6 +26,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.best_run import Target, best_of
+from morfax.tracer.program.laid.bent import bent
 from morfax.tracer.program.laid.narrow_bays import explained
 from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.laid.touches import touching
@@ -59,7 +60,7 @@ def trace(
         line = max(touching(found.setup, [line]), key=lambda each: each.length_mm)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
-    lines, left = explained(setup, lines)
+    lines, left = explained(setup, bent(setup, lines))
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=left)
 
 

@@ -31,6 +31,7 @@ from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.as_contours import as_contours
+from morfax.tracer.program.laid.bent import bent
 from morfax.tracer.program.laid.line_parts import is_clear
 from morfax.tracer.program.laid.narrow_bays import beside_mended
 from morfax.tracer.program.laid.small_loops import Loop, SmallLoops
@@ -87,7 +88,7 @@ def _of_strokes(
     setup = Setup(sheet, settings, Operator(marks="off"))
     lines = [_line(stroke, k) for k, stroke in enumerate(strokes, 1)]
     lines, broad = as_contours(setup, lines)
-    lines, beside = beside_mended(setup, lines)
+    lines, beside = beside_mended(setup, bent(setup, lines))
     broad += _slots_left(setup, lines)
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
     ink = balance(sheet, felt, left, [line.xy_mm for line in lines])

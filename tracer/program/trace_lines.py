@@ -30,10 +30,12 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.arrows import turned_round, with_arrows
 from morfax.tracer.program.joined_lines import joined_to
+from morfax.tracer.program.laid.bent import bent
 from morfax.tracer.program.laid.narrow_bays import explained, with_bars
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import order, selection
 from morfax.tracer.program.lines.marks_read import with_marks_read
+from morfax.tracer.program.lines.repeated import without_repeats
 from morfax.tracer.program.lines.selection import COVERED, Contour, Which
 from morfax.tracer.program.lines.small_rings import (
     SmallPatch,
@@ -87,7 +89,7 @@ def trace_lines(
     found = found_lines(setup, which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines, found.unclear)
-    lines, left = explained(setup, lines)
+    lines, left = explained(setup, bent(setup, lines))
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
     return Trace(
@@ -148,7 +150,7 @@ def trace_places(
             progress(float(number), float(len(starts_mm)))
     _refuse_none_begun(lines)
     lines, unread = with_marks_read(with_arrows(setup, lines), operator)
-    lines, left = explained(setup, lines)
+    lines, left = explained(setup, bent(setup, lines))
     beside = left if alone else ()
     return Trace(tuple(_in_order(setup, lines)), operator, unread=unread, unexplained=beside)
 
@@ -178,6 +180,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
         patch_of = {line.number: patch for line, patch in further}
         others = [line for line, _ in further]
         lines += [line for line in others if which != "outer" or not is_inside(line, lines)]
+    lines = lines if numbers else without_repeats(lines)
     lines = selection.with_least_numbers(lines, asked)
     # 3. dots that stand alone, and slots whose sides run together
     lines += holes

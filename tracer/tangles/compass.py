@@ -26,7 +26,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.plane import NOTHING_MM2, unit
+from morfax.motion.plane import NOTHING_MM2, left_of, unit
 from morfax.motion.polyline import area_mm2
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.tangles import pen
@@ -206,7 +206,7 @@ def _within(polygon: Array, half_mm: float) -> Array:
     """A convex polygon (n, 2) with its sides half a width further in."""
     polygon = polygon if area_mm2(polygon) > 0 else polygon[::-1]
     ahead = np.roll(polygon, -1, axis=0) - polygon
-    inward = unit(np.column_stack([-ahead[:, 1], ahead[:, 0]]))
+    inward = unit(left_of(ahead))
     before = np.roll(inward, 1, axis=0)
     spread = np.maximum(1 + np.sum(inward * before, axis=1), SHARPEST)
     return np.asarray(polygon + half_mm * (inward + before) / spread[:, None])

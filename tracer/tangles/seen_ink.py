@@ -105,6 +105,14 @@ class SeenInk(NamedTuple):
         """The pen's width."""
         return 2 * self.half_mm
 
+    def only(self, kept: NDArray[np.int64]) -> SeenInk:
+        """The same of some places, by their numbers."""
+        noise = self.noise * len(kept) / max(len(self.darkness), 1)
+        places, darkness, known_mm = (part[kept] for part in self[:3])
+        return self._replace(
+            places_mm=places, darkness=darkness, known_mm=known_mm, noise=noise
+        )
+
     def without_specks(self, chosen: NDArray[np.bool_]) -> Array:
         """Those of some places (n,) that have others about them, or are beside one that has, (m, 2) mm."""
         places, near_mm2 = self.places_mm[chosen], CLOSE**2 * self.area_mm2

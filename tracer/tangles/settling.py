@@ -20,7 +20,7 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM2
-from morfax.tracer.limits import ROUNDS
+from morfax.tracer.effort import ROUNDS
 from morfax.tracer.tangles.pen import (
     PIECES,
     ink_at,

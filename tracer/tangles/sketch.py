@@ -24,7 +24,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median, medians
-from morfax.motion.plane import NOTHING_MM2, unit
+from morfax.motion.plane import NOTHING_MM2, left_of, unit
 from morfax.tracer.junctions.rings import FARTHEST_MM
 from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.photocell import darkness_along
@@ -232,7 +232,7 @@ def softness_of(view: View, leg: Leg) -> float:
     along = np.array([[math.cos(leg.heading_rad), math.sin(leg.heading_rad)]])
     if len(stations) > 1:  # a leg of few stations has one
         along = unit(np.gradient(stations, axis=0))
-    left = np.column_stack([-along[:, 1], along[:, 0]])
+    left = left_of(along)
     u = ACROSS * (leg.width_mm + PAPER_MM)
     places = stations[:, None] + u[:, None] * left[:, None]
     across = darkness_along(view.cells, places.reshape(-1, 2)).reshape(len(left), len(u))

@@ -55,6 +55,18 @@ def test_an_area_is_rubbed_out_to_its_edges() -> None:
     assert gone_mm2 == pytest.approx(10 * across_mm, abs=2 * a_pixel_mm2)  # one at each edge
 
 
+def test_a_filled_shape_is_gone_where_it_is_rubbed_out() -> None:
+    """Where shapes are is known on a picture of pixels four times as large."""
+    blank = np.zeros((200, 300), np.float32)
+    drawing = Drawing(blank, 0.1, shapes=np.ones((50, 75), bool))
+    corners = (mm(4, 4), mm(12, 4), mm(12, 8), mm(4, 8))
+    left = with_ink(drawing, Correction("rub-area", corners)).shapes
+    assert left is not None
+    assert not left[30:40, 10:30].any()
+    left[29:41, 9:31] = True  # a pixel about it may go with it
+    assert left.all()
+
+
 @pytest.mark.parametrize("seed", [None, 3])
 @pytest.mark.parametrize("aside_mm", [0.0, 0.25])
 def test_a_bridge_goes_on_as_the_line_does(seed: int | None, aside_mm: float) -> None:

@@ -10,9 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.border import without_border
+from morfax.tracer.drawing.deepening import LEAST
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
-from morfax.tracer.drawing.scan import Scan
+from morfax.tracer.drawing.scan import Scan, Stated
+from morfax.tracer.drawing.shapes_among_lines import drawing_of_all_ink
 
 Picture = NDArray[np.float32]
 
@@ -67,3 +69,19 @@ def test_the_operator_is_told() -> None:
         "the ink along the upper, lower, left, right edges of the picture" in drawing.notes[-1]
     )
     assert drawing.darkness[2].max() == 0.0
+
+
+def test_a_row_that_resizing_has_left_half_grey_is_a_border_where_pale_lines_are_followed() -> (
+    None
+):
+    """It was a line of a pixel along all the sheet, beside which a pen's lines were walls."""
+    picture = sheet()
+    picture[:, -1] = 0.45
+    assert without_border(picture.copy()) == ()
+    assert without_border(picture, LEAST) == ("right",) and np.array_equal(picture, sheet())
+    pixels = np.asarray(240 - 200 * sheet(), np.uint8)
+    pixels[:, -1] = 150
+    scan = Scan(Path("made.png"), pixels, Stated((150.0, 150.0)))
+    notes = drawing_of_all_ink(scan, Scale(), None, "auto").notes
+    assert any("right edge" in note for note in notes)
+    assert not any("less than half as dark" in note for note in notes)

@@ -10,11 +10,12 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.polyline import nearest_mm
-from morfax.tracer.drawing.deepening import ABOVE_NOISE, LEAST, noise_of_spots
+from morfax.tracer.drawing.deepening import ABOVE_NOISE, LEAST
 from morfax.tracer.drawing.drawing import Drawing, Reading
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.shapes_among_lines import drawing_of_all_ink
+from morfax.tracer.drawing.spots import noise_of_spots, times_as_noisy
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import DPI, WIDTH_MM, arc, inked, polyline, together
 
@@ -106,6 +107,35 @@ def test_pale_lines_are_no_noise_though_they_take_up_a_sixth_of_the_paper() -> N
         lined[first::20] += 0.4
     # a whole standard deviation higher, where lines are, it is 2.8 times as high
     assert noise_of_spots(lined) < 2.2 * noise_of_spots(paper)
+
+
+def test_noise_of_a_photographs_dark_corner_is_no_pale_line() -> None:
+    """A camera makes its corners brighter, and their noise with them: it ran 80 strokes there."""
+    pixels = np.full((1200, 1200), 170.0)
+    cv2.rectangle(pixels, (500, 500), (900, 900), 60.0, 9)
+    cv2.line(pixels, (520, 700), (880, 700), 130.0, 7)  # a pale one
+    rng = np.random.default_rng(2)
+    noise = cv2.GaussianBlur(rng.normal(0, 1, pixels.shape), (0, 0), 1.6)
+    down, across = np.mgrid[:1200, :1200] / 1200
+    noise *= (1 + 3 * np.exp(-8 * (down**2 + across**2))) * 2.5 / noise.std()
+    scan = Scan(
+        Path("made.png"), np.asarray(np.round(pixels + noise), np.uint8), Stated((DPI, DPI))
+    )
+    drawing = drawing_of_all_ink(scan, Scale(), None, "auto")
+    assert any("31 mm of line are less than half as dark" in note for note in drawing.notes)
+    trace = trace_ink(drawing)
+    assert len(trace.lines) == 2
+    assert trace.ink is not None and not trace.ink.pale and trace.ink.followed_share > 0.99
+
+
+def test_a_part_in_pale_lines_is_not_taken_for_noisy_paper() -> None:
+    paper = np.random.default_rng(1).normal(0, 0.02, (960, 960)).astype(np.float32)
+    hatched = paper.copy()
+    for first in range(3):
+        hatched[480 + first :: 12, :480] += 0.25  # a quarter of it, a half with rims
+    assert times_as_noisy(hatched).max() < 1.6
+    paper[:480, :480] *= 3
+    assert times_as_noisy(paper)[:4, :4].min() > 2.4
 
 
 @pytest.mark.parametrize("pale", [0.3, 0.45])

@@ -6,6 +6,7 @@ the limit for three drawings.
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
@@ -104,6 +105,20 @@ def test_two_clean_lines_beside_each_other_have_no_grain(dpi: float, apart: floa
         out_mm = np.hypot(*(line.xy_mm - 26.0).T)
         off_mm = out_mm - min(radii_mm, key=lambda r, out=out_mm: abs(out[0] - r))
         assert np.sqrt(np.mean(off_mm**2)) < 0.1 * MM_PER_INCH / dpi
+
+
+@pytest.mark.parametrize("heading_deg", [0.0, 30.0, 90.0])
+def test_the_slit_is_as_long_and_as_wide_as_it_is_told(heading_deg: float) -> None:
+    """By the moments of its weights; what it is cut off beyond makes it a tenth shorter."""
+    slit, heading = grain.Slit(6.0, 1.5, 8.0), math.radians(heading_deg)
+    weights = grain._kernel(slit, heading)
+    half = len(weights) // 2
+    down, right = np.mgrid[-half : half + 1, -half : half + 1]
+    along = right * math.cos(heading) + down * math.sin(heading)
+    across = down * math.cos(heading) - right * math.sin(heading)
+    assert weights.sum() == pytest.approx(1.0, abs=1e-5)
+    assert math.sqrt((weights * along**2).sum()) == pytest.approx(6.0, rel=0.1)
+    assert math.sqrt((weights * across**2).sum()) == pytest.approx(1.5, rel=0.01)
 
 
 def test_clean_ink_and_lines_of_several_pens_have_no_grain() -> None:

@@ -6,11 +6,14 @@ here fail.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
 from morfax.jobs.remarks.narrow_gaps import NarrowGaps
-from morfax.tracer.drawing.narrow import narrow_gaps
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.narrow import Strips, narrow_gaps
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline
 
@@ -47,6 +50,17 @@ def test_a_path_that_goes_over_is_told_with_its_place() -> None:
 def test_paths_that_keep_to_their_lines_are_not_told(apart_mm: float) -> None:
     drawing = inked(*rings(apart_mm), dpi=DPI, seed=1)
     assert narrow_gaps(drawing, [(way, WIDTH_MM) for way in rings(apart_mm)]) == [None, None]
+
+
+@pytest.mark.parametrize("finer", [1, 2])
+def test_a_strip_is_narrow_up_to_two_pixels_of_the_scan(finer: int) -> None:
+    """However much finer its pixels are made; three are a gap that noise does not bridge."""
+    darkness = np.ones((60, 100), np.float32)
+    darkness[20 : 20 + 2 * finer, 10:90] = darkness[40 : 40 + 3 * finer, 10:90] = 0
+    strips = Strips.of(Drawing(darkness, 0.1, finer=finer))
+    assert set(strips.rows.tolist()) == set(range(20, 20 + 2 * finer))
+    long_mm, across_mm = 0.1 * 82, 0.1 * (2 * finer + 2)  # with a pixel about it
+    assert strips.lengths_mm == pytest.approx(math.hypot(long_mm, across_mm))
 
 
 def test_a_wider_gap_and_a_short_one_are_not_told() -> None:

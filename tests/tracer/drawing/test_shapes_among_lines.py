@@ -14,7 +14,11 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
-from morfax.tracer.drawing.shapes_among_lines import MOSTLY_SHAPES, drawing_of_all_ink
+from morfax.tracer.drawing.shapes_among_lines import (
+    MOSTLY_SHAPES,
+    drawing_of_all_ink,
+    has_lines,
+)
 from morfax.tracer.ink.pale import pale_lines
 from morfax.tracer.program.trace_ink import trace_ink
 
@@ -94,6 +98,11 @@ def test_a_panel_paler_than_ink_stays_paper_for_lines_may_be_drawn_on_it(
 def test_of_filled_shapes_alone_it_is_said_what_follows_their_outlines() -> None:
     drawing = read(box(25, 30, 85, 70), lines=False)
     assert MOSTLY_SHAPES in drawing.notes
+
+
+def test_a_sheet_without_ink_has_no_lines() -> None:
+    """Of an icon that is dark paper all over; numpy's warning of an empty mean came to the terminal."""
+    assert not has_lines(Drawing(np.zeros((40, 60), np.float32), 0.1))
 
 
 def test_the_shade_of_a_filled_shape_is_no_pale_line() -> None:

@@ -85,6 +85,10 @@ def test_the_cell_goes_on_where_it_stands_on_the_line_and_not_beside_it() -> Non
         assert not agreement.contradict
         assert agreement.goes_on_mm(cell, stance.view, seen) == 0
     assert agreement.contradict
+    # in a row: a cell that has led for more than its own lead since is overruled for the first time
+    cell.cell_led_mm += 1.1 * cell.tuning.lead_mm
+    assert agreement.goes_on_mm(cell, stance.view, seen) == 0
+    assert not agreement.contradict
 
 
 def test_a_circle_of_small_radius_is_the_cell_s() -> None:

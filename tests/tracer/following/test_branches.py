@@ -10,7 +10,7 @@ import pytest
 from morfax.motion.arrays import bounds
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following import branches, clean_line
+from morfax.tracer.following import attempts, branches, clean_line
 from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.clean_line import Knows
 from morfax.tracer.following.followed import Followed
@@ -70,6 +70,13 @@ def test_a_run_with_other_turns_leaves_the_run_without_them_at_the_junction() ->
     assert (
         away_mm < 4.0 < head.carriage.travel_mm
     )  # near the junction, not where it was put down
+
+
+def test_no_head_is_put_down_for_another_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    stance, first = stance_on(LADDER), attempts_at(LADDER)
+    first.run(stance)
+    monkeypatch.setattr(attempts, "_kind", None)
+    assert first.run(stance, (1,)).travel_mm > 0
 
 
 def test_a_turn_at_a_junction_to_which_the_run_never_came_is_not_run_again(

@@ -11,11 +11,15 @@ import pytest
 from morfax.tracer.corrections.corrections import Correction, Corrections, Place
 from morfax.tracer.drawing.corrected import corrected
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.following import knots
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following import attempts, knots
+from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.follower import Follower
-from morfax.tracer.following.knots import Memory, remembering
+from morfax.tracer.following.knots import Memory, changes_mm, remembering
+from morfax.tracer.following.start import put_down
 from morfax.tracer.head import watched
 from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.settings import Settings
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import inked, polyline
@@ -101,6 +105,32 @@ def test_ink_that_is_changed_ahead_does_not_begin_the_run_anew(
         replayed.append(kept.replayed_mm - before_mm)
         assert same(again, trace(drawing, start))
     assert replayed[0] == 0 and sum(mm > 5 for mm in replayed[1:]) >= 3
+
+
+def test_what_the_operator_changed_lies_in_boxes_on_the_sheet() -> None:
+    """With 8 pixels about them, half of what parts two changes. Other sizes are two drawings."""
+    blank = np.zeros((200, 300), np.float32)
+    changed = blank.copy()
+    changed[50:60, 100:140] = changed[150, 20] = 1.0
+    boxes = changes_mm(Drawing(blank, 0.1), Drawing(changed, 0.1))
+    assert boxes is not None
+    right, left = sorted(boxes.tolist(), reverse=True)
+    assert right == pytest.approx([9.2, 13.2, 14.8, 15.8]) and left == pytest.approx(
+        [1.2, 4.1, 2.9, 5.8]
+    )
+    same_mm = changes_mm(Drawing(blank, 0.1), Drawing(blank.copy(), 0.1))
+    assert same_mm is not None and len(same_mm) == 0
+    assert changes_mm(Drawing(blank, 0.1), Drawing(blank, 0.2)) is None
+    assert changes_mm(Drawing(blank, 0.1), Drawing(blank[:100], 0.1)) is None
+
+
+def test_no_head_is_put_down_where_one_is_taken_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    stance = next(put_down(Sheet.of(COMB), START, Settings()))[0]
+    with remembering(Memory()):
+        first = Attempts(COMB, Settings(), 200.0).run(stance)
+        monkeypatch.setattr(attempts, "_kind", None)
+        again = Attempts(COMB, Settings(), 200.0).run(stance)
+    assert np.array_equal(again.positions_mm, first.positions_mm)
 
 
 def test_another_drawing_is_begun_anew() -> None:

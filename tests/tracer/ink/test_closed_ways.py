@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink import outlines
 from morfax.tracer.ink.aside import has_arrowhead
-from morfax.tracer.ink.chains import Junction, Junctions, Side
+from morfax.tracer.ink.chains import Chain, Junction, Junctions, Link, Side
 from morfax.tracer.ink.closed_ways import _Search
 from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.net import FeltLine, Net
 from morfax.tracer.ink.onward import Onward
+from morfax.tracer.ink.outlines import Outline, goes_round_paper
 from morfax.tracer.sensing.leg import Leg
 
 STEP_MM, LINE_MM = 0.05, 0.4
@@ -85,3 +87,26 @@ def test_a_sharp_tip_is_one_of_long_straight_lines(
     junctions = Junctions(Net(lines), Settings())
     search = _Search(junctions, Onward(junctions), Onward(junctions))
     assert search._is_tip(*sides, np.radians(160)) == is_tip
+
+
+@pytest.mark.parametrize(
+    ("apart_widths", "is_paper"),
+    [
+        (0.3, False),
+        (1.0, True),
+    ],  # the rims of the bold arm of a cross; a slot whose sides touch
+)
+def test_a_way_round_the_rims_of_one_line_s_ink_is_no_outline(
+    monkeypatch: pytest.MonkeyPatch, apart_widths: float, is_paper: bool
+) -> None:
+    high_mm = apart_widths * LINE_MM
+    sides = [np.array([[0, 0], [4, 0]]), np.array([[4, high_mm], [0, high_mm]])]
+    junctions = Junctions(
+        Net([FeltLine([], [], (0, 1), LINE_MM, 4.0) for _ in sides]), Settings()
+    )
+    monkeypatch.setattr(Junctions, "places_along", lambda *_: np.vstack(sides))
+    chain = Chain([Link(0, False), Link(1, False)], True)
+    monkeypatch.setattr(outlines, "straight_chains", lambda _: [Outline(chain, 8.0)])
+    monkeypatch.setattr(outlines, "_outside", lambda _: None)
+    assert goes_round_paper(chain, junctions) == is_paper
+    assert bool(outlines.outlines(junctions)) == is_paper

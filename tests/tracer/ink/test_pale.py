@@ -86,7 +86,7 @@ def test_strands_that_a_slit_makes_of_the_papers_grain_are_no_pale_lines() -> No
     bare = with_pale_bar(0.6, 0.02)
     white = np.random.default_rng(3).normal(0, 1, bare.darkness.shape)
     strands = cv2.GaussianBlur(white, (0, 0), sigmaX=20, sigmaY=2)
-    seen = np.asarray(bare.darkness + 0.1 * strands / strands.std(), np.float32)
+    seen = np.asarray(bare.darkness + 0.14 * strands / strands.std(), np.float32)
     rough = replace(bare, darkness=np.maximum(seen, 0))
     assert sum(line.length_mm for line in pale_lines(rough)) > 25
     found = pale_lines(replace(rough, grainy=True))

@@ -7,6 +7,7 @@ import pytest
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import Points, arc, inked, polyline
+from tests.tracer.program.laid.test_bridges import points_of, shapes
 from tests.tracer.program.laid.test_narrow_bays import (
     DEEP_MM,
     WIDTH_MM,
@@ -36,6 +37,17 @@ def test_a_plate_with_a_narrow_bay_is_one_closed_line(truth: Points) -> None:
     (line,) = trace.lines
     assert line.ending == "closed" and off_mm(line, truth) < 60 * UM
     assert not trace.unexplained
+
+
+@pytest.mark.parametrize("widths", [0.5, 0.9])
+@pytest.mark.parametrize("name", ["bent stalk", "keyhole"])
+def test_a_bar_that_is_bent_or_leads_to_a_small_hole_is_of_one_closed_line(
+    name: str, widths: float
+) -> None:
+    """Within 0.1 mm, a pixel and a bit of 300 dpi."""
+    truth = points_of(shapes(widths * WIDTH_MM)[name])
+    (line,) = all_ink(truth).lines
+    assert line.ending == "closed" and off_mm(line, truth) < 100 * UM
 
 
 def test_a_tick_and_a_bar_from_side_to_side_stay_strokes() -> None:

@@ -3,8 +3,8 @@
 Signals: the sheet and the lines that were followed in; out the places at which the head's own pen would not
 have drawn what is there.
 
-    ───╮  ╭───     a tip that the head passed by: its ink lies more than a width and a half beside every way
-       │──│
+    ───╮  ╭───     a tip that the head passed by: its ink lies more than a width and a quarter beside every
+       │──│        way; the points of pointed tips apart (see `pointed`)
        ╰──╯        a way over bare paper, longer than a gap that the head may cross
 
 A line that comes round may still be another than the one that was drawn, where tips and bays are narrower
@@ -34,10 +34,12 @@ from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.sharpening import turned_at
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
-from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, EVERY_MM, PAPER, TIP_RAD
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER, TIP_RAD
 from morfax.tracer.program.against_ink.own_ink import beside
+from morfax.tracer.program.against_ink.pointed import points_of
 from morfax.tracer.program.against_ink.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.photocell import darkness_along, without_aperture
@@ -50,7 +52,10 @@ BESIDE = 2.0  # times as far apart as both are off: it is the same tip
 # darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
 # less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
 ASTRAY = 0.2
-
+# widths: ink further from all ways was missed, by a tip whose round end is as far but for half a width. Of 48
+# right plates none comes above 0.72, of 13 right outlines with spikes none above 0.78; where pixels were made
+# finer, ink looks broader at corners
+MISSED, MISSED_COARSE = 1.25, 2.0
 
 Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale"]
 
@@ -91,7 +96,12 @@ def unexplained(
     found += _tips_cut(sheet.drawing.edges_mm, closed)
     found += _once(_off_edges(sheet.drawing, closed))
     found = found or list(_astray(sheet, closed))
-    found += _beside_ink(sheet.drawing, lines, found, of_limit)
+    # ink that was missed by little may lie in a bay that was cut short
+    reach_mm = (0.5 + CLEAR_WIDTHS) * max(line.width_mm for line in lines)
+    other = [place for place in found if place.kind != "ink" or place.length_mm > reach_mm]
+    bays = list(_beside_ink(sheet.drawing, lines, other, of_limit))
+    sure = [place for place in bays if place.is_sure]
+    found = [place for place in found if not _is_about(place, sure, lines)] + bays
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
@@ -107,10 +117,16 @@ def _beside_ink(
     drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained], of_limit: float
 ) -> Iterator[Unexplained]:
     """Stretches of closed lines beside their ink, but for those about what was found otherwise."""
-    about_mm = ABOUT_WIDTHS * max(line.width_mm for line in lines)
     for place_mm, long_mm, is_sure in beside(drawing, lines, of_limit):
-        if all(math.dist(place_mm, other.place_mm) > about_mm for other in found):
-            yield Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
+        place = Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
+        if not _is_about(place, found, lines):
+            yield place
+
+
+def _is_about(place: Unexplained, others: Sequence[Unexplained], lines: Sequence[Line]) -> bool:
+    """Whether a place is about one of some others, by the broadest of some lines."""
+    about_mm = ABOUT_WIDTHS * max(line.width_mm for line in lines)
+    return any(math.dist(place.place_mm, other.place_mm) < about_mm for other in others)
 
 
 def _come_round(lines: Sequence[Line]) -> list[Line]:
@@ -123,20 +139,23 @@ def ink_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Unexplained]:
     patches, come_round = sheet.patches, _come_round(lines)
     if not come_round:
         return
-    # 1. the patches on which they run
-    own = np.zeros(patches.count, bool)
-    own[[sheet.patch_at(line.loop_mm[0]) for line in come_round]] = True
-    runs = np.flatnonzero(own[patches.patch] & ~sheet.are_solid[patches.patch])
+    # 1. the patches on which they run, and how wide the widest of them is
+    widths_mm = np.zeros(patches.count)
+    for line in come_round:
+        patch = sheet.patch_at(line.loop_mm[0])
+        widths_mm[patch] = max(widths_mm[patch], line.width_mm)
+    runs = np.flatnonzero((widths_mm > 0)[patches.patch] & ~sheet.are_solid[patches.patch])
     if not len(runs):
         return
     # 2. how far both ends of their runs are from the ways
-    ways = np.vstack([line.places_mm for line in lines])
+    tips = [side for line in come_round if line.ending == "closed" for side in points_of(line)]
+    ways = np.vstack([*(line.places_mm for line in lines), *tips])
     ends = np.vstack([sheet.run_begins_mm(runs), sheet.run_ends_mm(runs)])
     away_mm = nearest_mm(ends, ways).reshape(2, -1)
-    width_mm = np.array([line.width_mm for line in come_round]).max()
-    widths_mm = np.maximum(sheet.widths_mm[patches.patch[runs]], width_mm)
-    widths_mm = widths_mm - (_pixel_mm(sheet) if _is_coarse(sheet) else 0.0)
-    far = away_mm.max(axis=0) > (0.5 + CLEAR_WIDTHS) * widths_mm
+    far_mm = MISSED * widths_mm
+    if _is_coarse(sheet):
+        far_mm = MISSED_COARSE * (widths_mm - _pixel_mm(sheet))
+    far = away_mm.max(axis=0) > far_mm[patches.patch[runs]]
     # 3. those that lie together, where each reaches furthest
     runs, away_mm, ends = runs[far], away_mm[:, far], ends.reshape(2, -1, 2)[:, far]
     group, count = joined(patches.row[runs], patches.begin[runs], patches.end[runs], True)

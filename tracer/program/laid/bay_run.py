@@ -22,6 +22,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.motion.usual import THINNED
+from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head import screws
@@ -51,10 +52,12 @@ class Bay(NamedTuple):
 def laid(setup: Setup, line: Line, bays: Sequence[Bay], round_mm: float) -> Line:
     """A closed line, so long by its thinned places, with the head run along the rules of some bays."""
     # 1. begun where no bay is
-    begin_mm = next((bay.last_mm for bay in bays if bay.last_mm > round_mm), None)
-    begin_mm = next((bay.last_mm for bay in bays if bay.first_mm < 0), begin_mm)
-    if begin_mm is not None:
-        line = _begun_at(line, begin_mm % round_mm)
+    at_end = [b for b in bays if b.first_mm < EVERY_MM or b.last_mm > round_mm - EVERY_MM]
+    if at_end:
+        end_mm = at_end[0].last_mm
+        free_mm = min((bay.first_mm - end_mm) % round_mm for bay in bays)
+        begin_mm = (end_mm + min(2 * EVERY_MM, 0.5 * free_mm)) % round_mm
+        line = _begun_at(line, begin_mm)
         bays = [bay.moved(-begin_mm, round_mm) for bay in bays]
     # 2. the way from bay to bay, and the runs along their rules
     at = 0
@@ -113,8 +116,9 @@ def _run(setup: Setup, line: Line, bay: Bay) -> Splice:
     end_mm_s = float(np.hypot(*(xy_mm[last] - xy_mm[last - 1]))) * MOTION_RATE_HZ
     carriage.run(bay.rule.stretches(), end_mm_s, REDRAWN)
     way_mm = carriage.positions_mm[1:]
-    after = max(last - 2 * lag, first + 1)
-    nearest = np.hypot(*(xy_mm[after : last + 1] - way_mm[-1]).T)
+    after, beyond = (_position(line, bay.last_mm + aside * EVERY_MM) for aside in (-1, 1))
+    after = max(after, first + 1)
+    nearest = np.hypot(*(xy_mm[after : beyond + 1] - way_mm[-1]).T)
     return Splice(first, after + int(np.argmin(nearest)) + 1, way_mm)
 
 

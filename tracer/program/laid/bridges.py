@@ -15,7 +15,6 @@ as broad.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -31,10 +30,13 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import OF_WIDTH
+from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.laid.line_parts import (
+    LEGS,
+    MOUTH,
+    REACH,
     back_along,
-    ink_about,
     is_clear,
     is_plain,
     part_of,
@@ -47,13 +49,7 @@ from morfax.tracer.tangles.pen import away_from
 from morfax.tracer.tangles.seen_ink import LIKE, middles_mm
 
 # In widths of the line; chosen by trial on keyholes, slit rings and necks:
-# of a line before and after a bar, as many as are needed: the head may have run into it
-LEGS = 1.5, 4.0
-MOUTH = 1.0  # from a bar to the lines that it joins
-# a bar as long as this in its box is one line if it has less ink than so many widths for each of its length
-LONG, TWO = 8.0, 1.1
 LEAST = 0.3  # squared: a smaller bar is a flaw of the ink
-LONGEST = 400.0  # of both sides
 
 
 class _Mouth(NamedTuple):
@@ -104,13 +100,10 @@ def _bars(drawing: Drawing, lines: Sequence[Line], closed: Sequence[Line]) -> It
         way_px = window.pixels(line.places_mm).reshape(-1, 1, 2)
         cv2.polylines(bare, [way_px], line.comes_round, 0, wide_px)
     count, label, of_each, _ = cv2.connectedComponentsWithStats(bare, connectivity=4)
-    width_px = width_mm / drawing.pitch_mm
-    least_px = (LEAST * width_px) ** 2
+    least_px = (LEAST * width_mm / drawing.pitch_mm) ** 2
     for number in range(1, count):
         left, top, across, down, area_px = of_each[number].tolist()
-        long_px = math.hypot(across, down)
-        is_thin = long_px > LONG * width_px and area_px < TWO * width_px * long_px
-        if area_px > least_px and not is_thin:
+        if area_px > least_px:
             i, j = np.nonzero(label[top : top + down, left : left + across] == number)
             yield middles_mm(drawing, i + window.top + top, j + window.left + left)
 
@@ -175,17 +168,17 @@ def _sides(
         return None
     there, back = found
     # 2. apart, and of no other pen
-    long_mm = there.length_mm + back.length_mm
     apart_mm = away_from(_middle_half(there.way), back.way)
-    if apart_mm.min() < OPEN * width_mm or long_mm > LONGEST * width_mm:
+    if apart_mm.min() < OPEN * width_mm:
         return None
     if is_a_pen(setup.sheet, median(apart_mm) + width_mm):
         return None
     # 3. held against the ink
-    ink = ink_about(drawing, np.vstack([bar, there.way, back.way]), width_mm)
+    ink = ink_about(drawing, np.vstack([bar, there.way, back.way]), width_mm, REACH)
     every_way = [*ways, there.way, back.way]
     away_mm = np.min([away_from(ink.places_mm, way) for way in every_way], axis=0)
     misfit = ink.misfit(ink.best_drawn(away_mm))
+    long_mm = there.length_mm + back.length_mm
     return (there, back) if misfit < LIKE * long_mm / width_mm else None
 
 

@@ -12,22 +12,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import Led
-from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.rim_bays import RimBay
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
-from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
 
-REACH = 2.2  # widths of the ink about a place that is looked at
-MOST_PLACES = 4000  # of that
-MOST_ABOUT = 600  # places that show what is near
+# In widths of the line; chosen by trial on plates with notches, tongues, keyholes and necks:
+# of the way before and after a bay or a bar show where the line comes from and goes on: the rim of one aslant
+# is its own further off, and the head may have run into it
+LEGS = 1.5, 4.0
+MOUTH = 1.0  # from a bar of ink to the way that it is joined to
+OF_LOOP = 0.8  # of a line: a stretch that is more of it is no bay and no touch
+REACH = 2.2  # of the ink about a place that is looked at
 
 
 def is_plain(line: Line) -> bool:
@@ -92,13 +92,3 @@ def _one_after_the_other(parts: Sequence[Line]) -> Line:
             dict.fromkeys(place for line in parts for place in line.junctions_mm)
         ),
     )
-
-
-def ink_about(drawing: Drawing, about: Array, width_mm: float) -> SeenInk:
-    """The ink about some places (n, 2) mm."""
-    i, j = Window.about(drawing, about, REACH * width_mm).grid()
-    near = away_from(middles_mm(drawing, i, j), about[:: 1 + len(about) // MOST_ABOUT])
-    within = np.flatnonzero(near < REACH * width_mm)
-    every = 1 + len(within) // MOST_PLACES
-    i, j = i[within[::every]], j[within[::every]]
-    return SeenInk.of(drawing, (i, j), np.full(len(i), NOWHERE_MM), width_mm, every)

@@ -24,40 +24,37 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly, nearest_mm
+from morfax.motion.polyline import broad_mm, evenly, nearest_mm
+from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
-from morfax.tracer.limits import MANY
 from morfax.tracer.program.against_ink.bars import bar_at, reaches
+from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
     beside_ink,
     ink_beside,
     unexplained,
 )
-from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
-from morfax.tracer.program.laid.line_parts import is_clear
+from morfax.tracer.program.laid.line_parts import (
+    LEGS,
+    MOUTH,
+    OF_LOOP,
+    REACH,
+    is_clear,
+    is_plain,
+)
 from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, rim_bays
-from morfax.tracer.program.laid.rim_loops import broad_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
 from morfax.tracer.tangles.folding_rule import Rule
-from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk, middles_mm
+from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-# of the way before and after a bay show where the line comes from and goes on; the rim of one aslant is its
-# own further off
-LEGS = 1.5, 4.0
-MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
-REACH = 2.2  # of the ink about the way that is looked at
-# at the edge of that, half as much ink as a line has there, so far from all lines, goes on; less is specks
-EDGE, OWN = 0.2, 0.8
 LONGEST = 80.0  # a longer stretch is no bay
-OF_LOOP = 0.8  # nor is one that is so much of its line
-MOST_PLACES = 1500  # of ink: enough to place a corner within 10 um
 FURTHER = 0.01  # as much more must be left for each width more of a way that runs out and back on one line
 # of what a way leaves that does not come beside itself, where the rule draws otherwise: less is a blot,
 # or what a rubber left
@@ -147,9 +144,7 @@ class _Bays:
     def mended(self) -> Line:
         """The line as it is, or along the rules that explain narrow bays on it."""
         line = self.line
-        is_marked = line.is_lead or line.reference_mm is not None or line.marks or line.guides
-        is_plain = line.ending == "closed" and not is_marked and not line.loop_from
-        if not is_plain or line.on_edge or not is_clear(self.setup.sheet.drawing):
+        if not is_plain(line) or not is_clear(self.setup.sheet.drawing):
             return line
         step_mm = STEP_WIDTHS * line.width_mm
         way = evenly(line.loop_mm, step_mm)
@@ -235,7 +230,7 @@ class _Bays:
         rest = way[np.arange(last, first + len(way) + 1) % len(way)]
         about = np.vstack([own, suspect.beyond_mm])
         ink = self._ink(about, rest)
-        return None if self._goes_on(ink, about) else Stretch(first, last, own, ink)
+        return None if goes_on(ink, about, REACH) else Stretch(first, last, own, ink)
 
     def _rim_bay(self, seen: Stretch, step_mm: float, suspect: Suspect) -> Bay | None:
         """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
@@ -272,28 +267,13 @@ class _Bays:
             kept[key] = folding_rule.explained(ink, rules)
         return kept[key]
 
-    def _goes_on(self, ink: SeenInk, about: Array) -> bool:
-        """Whether ink beside all lines goes on beyond what is looked at: another line, or a longer bar."""
-        beside = (ink.darkness > 0.5) & (ink.known_mm > OWN * self.line.width_mm)
-        away_mm = pen.away_from(ink.places_mm[beside], about)
-        far = np.count_nonzero(away_mm > (REACH - EDGE) * self.line.width_mm)
-        # one place alone is a speck
-        return bool(far > 1 and far * ink.area_mm2 > 0.5 * EDGE * self.line.width_mm**2)
-
     def _ink(self, about: Array, rest: Array) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
-        drawing, width_mm = self.setup.sheet.drawing, self.line.width_mm
-        # 1. the pixels within reach
-        reach_mm = REACH * width_mm
-        i, j = Window.about(drawing, about, reach_mm).grid()
-        within = np.flatnonzero(pen.away_from(middles_mm(drawing, i, j), about) < reach_mm)
-        every = 1 + len(within) // MOST_PLACES
-        i, j = i[within[::every]], j[within[::every]]
-        # 2. how far they are from what is drawn anyway
-        places = middles_mm(drawing, i, j)
+        ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm, REACH)
+        reach_mm = REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
-        known_mm = pen.away_from(places, rest)
+        known_mm = pen.away_from(ink.places_mm, rest)
         for line in self.lines:
             if line is not self.line and reaches(line.places_mm, low, high):
-                known_mm = np.minimum(known_mm, nearest_mm(places, line.places_mm))
-        return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
+                known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, line.places_mm))
+        return ink._replace(known_mm=known_mm)

@@ -22,14 +22,13 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
-from morfax.motion.polyline import area_mm2, length_mm, lengths_mm, nearest_mm
+from morfax.motion.polyline import area_mm2, broad_mm, length_mm, lengths_mm, nearest_mm
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.ink.rim import felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE
 from morfax.tracer.program.against_ink.window import Window
-from morfax.tracer.program.laid.rim_loops import broad_mm
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.compass import between_corners

@@ -17,9 +17,9 @@ from itertools import islice
 import cv2
 import numpy as np
 
-from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.motion.polyline import area_mm2, length_mm
+from morfax.motion.polyline import area_mm2, broad_mm, length_mm
 from morfax.tracer.drawing.narrow import LONG_WIDTHS
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
@@ -55,11 +55,6 @@ def narrow_outline(sheet: Sheet, patch: int, pen_mm: float) -> Array | None:
     broad = (broad_mm(places) + sheet.drawing.pitch_mm) / pen_mm
     is_narrow = BROAD[0] < broad < BROAD[1] and length_mm(places) < LONGEST * pen_mm
     return places[:: 1 if area_mm2(places) > 0 else -1] if is_narrow else None
-
-
-def broad_mm(way: Array) -> float:
-    """How broad a long area within a closed way (n, 2) mm is, in the mean."""
-    return 2 * abs(area_mm2(way)) / max(length_mm(way), NOT_ZERO)
 
 
 def core_within(view: View, outline: Array, width_mm: float) -> Core | None:

@@ -24,22 +24,22 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import one_in
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.polyline import length_mm
+from morfax.motion.polyline import broad_mm, length_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.limits import ABOUT_WIDTHS, MANY, WIDER
+from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
 from morfax.tracer.program.laid.loop_ink import ink_of, is_drawn, is_single, leaves_none
 from morfax.tracer.program.laid.rim_loops import (
     BROAD,
-    broad_mm,
     core_within,
     felt_pen_mm,
     narrow_outline,

@@ -25,13 +25,16 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import at_lengths, evenly, length_mm, lengths_mm
+from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import reaches
+from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.line_parts import (
+    OF_LOOP,
+    REACH,
     back_along,
-    ink_about,
     is_clear,
     is_plain,
     part_of,
@@ -39,6 +42,7 @@ from morfax.tracer.program.laid.line_parts import (
 )
 from morfax.tracer.program.laid.rim_bays import RimBay, ways_within_rims
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import partners, shortest
 from morfax.tracer.tangles.pen import away_from
 from morfax.tracer.tangles.seen_ink import LIKE, SeenInk
@@ -54,9 +58,6 @@ HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
 # for each width of the ways: head's ways that leave less explain the ink, and rims must leave so much less
 LEAVES, TIMES = 0.01, 2.0
 LONGER = 1.4  # a rim, than the head's way; and a width
-# rad: the rim of lines that cross turns so much more where they do than either line does
-CROSSES = 0.12
-MOST = 20  # touches of one patch that are looked at
 
 
 class _Touch(NamedTuple):
@@ -75,7 +76,7 @@ def touching(setup: Setup, lines: Sequence[Line]) -> list[Line]:
     lines = list(lines)
     if not is_clear(setup.sheet.drawing):
         return lines
-    for _ in range(MOST):
+    for _ in range(MANY):
         closed = [n for n, line in enumerate(lines) if is_plain(line)]
         for touch in _touches(lines, closed):
             mended = _mended(setup, lines, touch)
@@ -152,10 +153,10 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
     are, or rims do not.
     """
     one, other = (lines[n] for n in touch.lines)
-    width_mm, step_mm = one.width_mm, 0.1 * one.width_mm
+    width_mm, step_mm = one.width_mm, STEP_WIDTHS * one.width_mm
     whole = [float(lengths_mm(line.loop_mm)[-1]) for line in (one, other)]
     long = [last - first for first, last in zip(touch.first_mm, touch.last_mm, strict=True)]
-    if sum(long) > 0.6 * min(whole):
+    if sum(long) > OF_LOOP * min(whole):
         return None
     # 1. the ways as they are, held against the ink
     first, second = (
@@ -163,7 +164,7 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
         for line, begin, end in zip((one, other), touch.first_mm, touch.last_mm, strict=True)
     )
     ways = _Ways(first, second if touch.is_parallel else second[::-1])
-    ink = ink_about(setup.sheet.drawing, np.vstack(ways), width_mm)
+    ink = ink_about(setup.sheet.drawing, np.vstack(ways), width_mm, REACH)
     rest_mm = _rest_mm(ink, lines, touch, whole)
     widths = sum(long) / width_mm
 
@@ -178,9 +179,6 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
     rims = _rims(setup, width_mm, ways, left)
     if rims is None or rims.left > LIKE or own < TIMES * rims.left:
         return None
-    bent = max(_bent(way, width_mm) for way in (rims.one.way, rims.other.way))
-    if bent > max(_bent(way, width_mm) for way in ways) + CROSSES:
-        return None
     if not rims.is_exchanged:
         return _laid_each(setup, (one, other), touch, rims, whole)
     return _exchanged(setup, one, touch, rims) if one is other else None
@@ -191,7 +189,7 @@ def _rest_mm(
 ) -> Array:
     """How far the ink is from all lines but the stretches of a touch, mm."""
     ways = [line.places_mm for n, line in enumerate(lines) if n not in touch.lines]
-    step_mm = 0.1 * lines[touch.lines[0]].width_mm
+    step_mm = STEP_WIDTHS * lines[touch.lines[0]].width_mm
     if touch.lines[0] != touch.lines[1]:
         ways += [
             _stretch(lines[n], last, first + round_mm, step_mm)
@@ -238,16 +236,6 @@ def _rims(
             if best is None or rims.left < best.left:
                 best = rims
     return best
-
-
-def _bent(way: Array, width_mm: float) -> float:
-    """How much more a way turns at its most over a width than it does as a rule, rad."""
-    places = evenly(way, 0.5 * width_mm)
-    if len(places) < 4:
-        return 0.0
-    headings = np.unwrap(np.arctan2(*np.diff(places, axis=0).T[::-1]))
-    turns = headings[2:] - headings[:-2]
-    return float(np.abs(turns - np.median(turns)).max())
 
 
 def _laid_each(

@@ -26,8 +26,8 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.enclosure import NONE
 from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.effort import SOME_PLACES
 from morfax.tracer.following.line import Line
-from morfax.tracer.limits import SOME_PLACES
 from morfax.tracer.program.lines.selection import lines_of
 
 

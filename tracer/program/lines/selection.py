@@ -31,8 +31,8 @@ from morfax.motion.nesting import lies_inside, size_mm
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.inner_rings import inner_rings
 from morfax.tracer.drawing.strokes import Sheet, Stroke
+from morfax.tracer.effort import SOME_PLACES
 from morfax.tracer.following.line import Line
-from morfax.tracer.limits import SOME_PLACES
 from morfax.tracer.marks.reference import LARGEST_MM
 
 Which = str | tuple[int, ...]  # "contours", "outer", or the numbers of lines

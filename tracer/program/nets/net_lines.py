@@ -60,9 +60,10 @@ def net_of(setup: Setup, contour: Contour) -> NetLines | None:
     return NetLines(setup, patch, contour.number)
 
 
-def lines_of_ring(setup: Setup, contour: Contour) -> list[Line]:
+def lines_of_ring(setup: Setup, contour: Contour, reads_marks: bool) -> list[Line]:
     """The lines of a patch that goes round one area and on which lines meet, by its junctions: closed ones,
-    or of a small patch strokes. None if these do not show what was drawn, or come from a reference point.
+    or of a small patch strokes. None if these do not show what was drawn, or come from a reference point, nor
+    where marks are read and lines may end in these.
     """
     stroke = contour.stroke
     if not may_solve(setup) or not goes_round(setup.sheet, stroke.patch, 1):
@@ -73,7 +74,7 @@ def lines_of_ring(setup: Setup, contour: Contour) -> list[Line]:
     if not (net.forks and net.is_clear):
         return []
     lines = net.round_about()
-    if lines and net.ends_in_marks:
+    if lines and reads_marks and net.ends_in_marks:
         return []  # the head reads them
     if lines or contour.reach_mm >= LETTER_MM or not can_stand(setup, contour):
         return lines

@@ -99,10 +99,13 @@ def strokes_of(setup: Setup, patch: int, number: int) -> list[Line]:
     """The longest stroke of a patch, and those others that are lines, the longest first, all with the patch's
     number; none if nothing is felt.
     """
-    from morfax.tracer.ink.outlines import is_free
+    from morfax.tracer.ink.outlines import goes_round_paper, is_free
 
     junctions, ink_mm = junctions_of(setup, patch), float(setup.sheet.lengths_mm[patch])
-    chains = sorted(junctions.chains(), key=lambda chain: -chain_mm(chain, junctions))
+    chains = [
+        it for it in junctions.chains() if not it.closed or goes_round_paper(it, junctions)
+    ]
+    chains.sort(key=lambda chain: -chain_mm(chain, junctions))
     return [
         replace(line_along(setup, chain, junctions), number=number, ink_mm=ink_mm)
         for n, chain in enumerate(chains)

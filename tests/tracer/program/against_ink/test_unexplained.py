@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +25,7 @@ from tests.tracer.inked import Points, arc, inked, polyline
 
 WIDTH_MM = 0.5
 STEP_MM = 0.0017  # of the motion: 10 mm/s at 6 kHz
-# the ink begins to count beyond two widths of the way, and is seen to a pixel or two: 85 um at 300 dpi
+# what ink is there is seen to a pixel or two: 85 um at 300 dpi
 PIXEL_MM = 0.17
 
 
@@ -43,7 +44,7 @@ def closed(places_mm: Points) -> Line:
     return Line(positions_mm, "closed", WIDTH_MM, whole_mm)
 
 
-@pytest.mark.parametrize("long_mm", [2.5, 6.0])
+@pytest.mark.parametrize("long_mm", [1.2 * WIDTH_MM, 2.5, 6.0])
 def test_ink_beside_a_closed_way_is_told_with_its_place_and_how_far_it_reaches(
     long_mm: float,
 ) -> None:
@@ -63,9 +64,37 @@ def test_ink_beside_a_line_that_ran_into_itself_is_told_too() -> None:
     assert "1 piece of ink joined to the line beside its way" in said
 
 
-def test_a_tip_shorter_than_a_width_and_a_half_is_not_told() -> None:
-    drawing = inked(with_tip(1.4 * WIDTH_MM), seed=1)
+def test_a_burr_of_half_a_width_is_not_told() -> None:
+    drawing = inked(with_tip(0.5 * WIDTH_MM), seed=1)
     assert unexplained(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))]) == ()
+
+
+TIP = np.pi / 10  # half of the angle of a star's tips
+STAR = [
+    (22 + r * np.sin(k * np.pi / 5), 22 + r * np.cos(k * np.pi / 5))
+    for k, r in zip(range(11), [15.0, 5.73] * 6, strict=False)
+]
+
+
+def point_of(tip: tuple[float, float]) -> Points:
+    """The ink of a pen that points its corners beyond a tip of the star, 1.6 widths from it."""
+    out = math.atan2(tip[1] - 22, tip[0] - 22)
+    half_mm, side = 0.5 * WIDTH_MM, 0.5 * np.pi - TIP
+    at = [(out - side, half_mm), (out, half_mm / math.sin(TIP)), (out + side, half_mm)]
+    beyond = [(tip[0] + r * math.cos(a), tip[1] + r * math.sin(a)) for a, r in at]
+    return polyline(tip, *beyond)
+
+
+def test_the_points_of_pointed_tips_are_no_ink_that_was_missed() -> None:
+    drawing = inked(polyline(*STAR), specks=[point_of(tip) for tip in STAR[::2]], seed=1)
+    assert unexplained(Setup(Sheet.of(drawing)), [closed(polyline(*STAR))]) == ()
+    (x, y), short = STAR[2], STAR.copy()
+    short[2] = (x - 1.5, y - 0.49)  # the tip is cut short by 3 widths
+    told = unexplained(Setup(Sheet.of(drawing)), [closed(polyline(*short))])
+    furthest = max(
+        (place for place in told if place.kind == "ink"), key=lambda it: it.length_mm
+    )
+    assert math.dist(furthest.place_mm, (x, y)) < 2 * WIDTH_MM
 
 
 def test_a_way_over_bare_paper_is_told_unless_it_is_a_gap_that_may_be_crossed() -> None:
@@ -120,9 +149,9 @@ def test_a_small_bay_that_is_cut_off_on_a_coarse_scan_is_told_with_a_resolution(
 
 
 def test_a_coarse_line_counts_a_pixel_less_wide_than_it_looks() -> None:
-    drawing, circle = scanned(with_tip(1.4), COARSE_DPI), coarse(arc((20, 20), 12))
+    drawing, circle = scanned(with_tip(1.0), COARSE_DPI), coarse(arc((20, 20), 12))
     (left,) = unexplained(Setup(drawing.sheet), [circle])
-    assert left.kind == "ink" and left.length_mm == pytest.approx(1.4, abs=0.5)  # a pixel
+    assert left.kind == "ink" and left.length_mm == pytest.approx(1.0, abs=0.5)  # a pixel
     assert unexplained(Setup(replace(drawing, finer=1).sheet), [circle]) == ()
 
 

@@ -176,3 +176,24 @@ def test_hatching_that_ends_at_corners_cuts_none_off() -> None:
     pieces = shapely.get_parts(shapely.intersection(shapely.MultiLineString(strokes), area))
     lines = cut(FRAME, bore[1:], *(shapely.get_coordinates(p) for p in pieces if p.length > 1))
     assert are(lines[-1:], FRAME)
+
+
+def test_a_hole_with_an_arrowhead_and_short_ends_of_other_lines_comes_round_once() -> None:
+    """They are as short as marks, but no line of the sheet has a reference point: the head went out along
+    one of them and back, 2.7 mm more.
+    """
+    plate, radius_mm = polyline((5, 5), (45, 5), (45, 35), (5, 35), (5, 5)), 4.95
+
+    def at(degrees: float, away_mm: float) -> tuple[float, float]:
+        turned = math.radians(degrees)
+        return 25 + away_mm * math.cos(turned), 20 + away_mm * math.sin(turned)
+
+    ticks = [
+        polyline(at(degrees, radius_mm - mm), at(degrees, radius_mm + mm))
+        for degrees, mm in ((90, 1.2), (270, 1.2), (130, 0.8), (310, 0.8))
+    ]
+    head = polyline(at(50, radius_mm), at(46.4, radius_mm + 1.4), at(53.6, radius_mm + 1.4))
+    drawing = inked(plate, arc((25, 20), radius_mm), *ticks, specks=[head], seed=1)
+    lines = trace_lines(drawing).lines
+    assert [line.ending for line in lines] == ["closed", "closed"]
+    assert min(line.length_mm for line in lines) == pytest.approx(math.tau * radius_mm, abs=0.1)

@@ -1,0 +1,119 @@
+"""Where the head ran from memory beside its ink, the way is bent onto it; everything else stays as it was."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import REDRAWN
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.laid import bent as bent_stretches
+from morfax.tracer.program.laid.bent import bent
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace_lines import found_lines
+from tests.tracer.inked import UM, Points, arc, inked, polyline
+
+WIDTH_MM, DPI = 0.35, 300.0
+RELIEF_MM = 0.7  # the radius of a relief at an inner corner
+
+
+def plate(*inner: tuple[float, float]) -> Points:
+    """A plate of 30 x 16 mm with some places in its upper side."""
+    return polyline((4, 4), (34, 4), (34, 20), *inner, (4, 20), (4, 4))
+
+
+def with_reliefs() -> Points:
+    """A plate, a little turned, with three slots in its upper side and a relief about each inner corner."""
+    slots = shapely.Polygon()
+    for left in (7, 16, 25):
+        slots = slots.union(shapely.box(left, 16, left + 5, 21))
+        for x in (left, left + 5):
+            slots = slots.union(shapely.Point(x, 16).buffer(RELIEF_MM, quad_segs=32))
+    drawn = shapely.affinity.rotate(shapely.box(4, 4, 34, 20).difference(slots), 7)
+    return np.array(drawn.exterior.coords)
+
+
+def before_and_after(*lines: Points, seed: int = 1) -> tuple[list[Line], list[Line]]:
+    """The closed lines of a sheet as the head ran along them, and as they are bent."""
+    drawing = inked(*lines, width_mm=WIDTH_MM, dpi=DPI, seed=seed)
+    setup = Setup(drawing.sheet, Settings(), Operator())
+    found = found_lines(setup, "contours").lines
+    return found, bent(setup, found)
+
+
+def off_mm(line: Line, truth: Points) -> float:
+    """How far the line is from a true one, or that from it."""
+    way = shapely.LinearRing(line.loop_mm)
+    return float(way.hausdorff_distance(shapely.LineString(truth)))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_reliefs_of_inner_corners_are_followed_as_they_are_drawn(seed: int) -> None:
+    """Within 45 um, half a pixel; the head's own way is farther off. It jumps onto no stretch: no
+    step is longer than 10 mm/s makes it by an increment of 1 um.
+    """
+    truth = with_reliefs()
+    (own,), (line,) = before_and_after(truth, seed=seed)
+    assert off_mm(line, truth) < 45 * UM < off_mm(own, truth)
+    assert REDRAWN in line.led.leaders
+    assert np.hypot(*np.diff(line.xy_mm, axis=0).T).max() < 10.0 / MOTION_RATE_HZ + UM
+    assert len(line.led.of(len(line.xy_mm))) == len(line.xy_mm)
+
+
+def test_a_line_on_its_ink_is_the_very_same() -> None:
+    """A circle, which the cell leads along, and a plate with right corners."""
+    for truth in (arc((19, 12), 7, 0, 360), plate()):
+        (own,), (line,) = before_and_after(truth)
+        assert line is own
+
+
+@pytest.mark.parametrize("reach_widths", [0.5, 0.8, 1.2])
+def test_no_line_goes_out_along_burrs_and_ticks(reach_widths: float) -> None:
+    """Not farther from its side than the head did, by more than 20 um."""
+    ticks = [
+        polyline((x, 4), (x, 4 + side * reach_widths * WIDTH_MM))
+        for x, side in ((8, 1), (14, -1), (20, 1), (26, -1))
+    ]
+    (own, *_), (line, *_) = before_and_after(plate(), *ticks)
+    true = shapely.LineString(plate())
+    away = [
+        max(true.distance(shapely.Point(place)) for place in it.loop_mm[::4])
+        for it in (own, line)
+    ]
+    assert away[1] < away[0] + 20 * UM
+
+
+def test_a_bar_that_joins_the_line_is_left_alone() -> None:
+    """The outline stays on its sides within 60 um where a bar that is left out joins them."""
+    bar = polyline((4, 12), (34, 12))
+    _, lines = before_and_after(plate(), bar)
+    line = max(lines, key=lambda it: it.length_mm)
+    true = shapely.LineString(plate())
+    assert max(true.distance(shapely.Point(place)) for place in line.loop_mm[::4]) < 60 * UM
+
+
+def test_lines_of_a_drawn_program_are_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawing = inked(with_reliefs(), width_mm=WIDTH_MM, dpi=DPI, seed=1)
+    setup = Setup(drawing.sheet, Settings(), Operator(marks="on"))
+    found = found_lines(setup, "contours").lines
+    assert all(new is old for new, old in zip(bent(setup, found), found, strict=True))
+
+
+def test_stretches_that_are_chosen_near_one_another_are_one_and_may_go_over_the_end() -> None:
+    chosen = np.zeros(50, bool)
+    chosen[[2, 5, 20, 47]] = True
+    runs = list(bent_stretches._runs(chosen, 4))
+    assert runs == [(47, 55), (70, 70)]
+    assert list(bent_stretches._runs(np.ones(50, bool), 4)) == [(0, 49)]
+    assert not list(bent_stretches._runs(np.zeros(50, bool), 4))
+
+
+def test_a_stretch_ends_away_from_corners() -> None:
+    """By a leg of 15 places beyond one that is nearer than half of that."""
+    assert bent_stretches._off_corners(40, [36, 90], -1) == 21
+    assert bent_stretches._off_corners(40, [36, 90], 1) == 51
+    assert bent_stretches._off_corners(60, [36, 90], 1) == 60

@@ -1,0 +1,13 @@
+"""Effort: how much of a sheet is looked at or worked on, in several rooms; more takes time and tells little.
+
+Chosen by trial.
+"""
+
+from __future__ import annotations
+
+EVERY_MM = 0.05  # between the places that stand for a way where it is held against another
+SOME_PLACES = 40  # of a line, which show where it runs
+MANY = 100  # lines, patches, pieces of a line: of more not each is looked at
+ROUNDS = 6  # times that a fit is made anew from the one before, at the most
+# pixels that are worked on at a time: 4 MB of darkness; so many tell a figure of a sheet
+FEW_PX = 1 << 20

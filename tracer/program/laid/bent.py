@@ -1,0 +1,226 @@
+"""Bent stretches: where the head ran from memory beside its ink, it runs along a spline that explains that.
+
+    ────╮  ╭────     the relief of an inner corner, a step with a round, an arc that begins at a corner: a
+        ╰──╯         bend shorter than a leg is felt as an average, and the way bulges or cuts it short
+
+Wherever the swinging cell did not lead, the pen's ink along the way is held against the sheet's, place by
+place. Where it leaves more than noise does, a spline is laid by the ink (see `tangles.spline`) between clean
+places of the way on either side, with the corners of the way, or some more or fewer. If it explains the ink,
+and the head's own way does not, the head runs along it from memory.
+
+Signals: the sheet and lines in; the lines with those stretches bent onto their ink out.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import evenly, length_mm, lengths_mm, nearest_mm
+from morfax.motion.usual import THINNED
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import CELL
+from morfax.tracer.limits import AS_WIDE
+from morfax.tracer.program.against_ink.bars import reaches
+from morfax.tracer.program.against_ink.off_ink import (
+    REACH,
+    Clean,
+    Felt,
+    felt_at,
+    goes_on,
+    ink_about,
+    without_specks,
+    wrong_about,
+)
+from morfax.tracer.program.laid.bay_run import Bay, apart, laid
+from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_clear, is_plain
+from morfax.tracer.program.laid.rim_bays import RimBay
+from morfax.tracer.program.laid.spline_fit import (
+    CORNER_RAD,
+    about_corners,
+    corners_of,
+    explained,
+    left_by,
+    turns_rad,
+)
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.tangles.seen_ink import SeenInk
+
+# In widths of the line, chosen by trial on parts with reliefs and on racks of teeth, drawn with known truth:
+LONGEST = 18.0  # a stretch is no longer, legs apart
+LONGER = 0.15  # than a way that does not turn: it goes out along a burr and comes back
+TURNS_OVER = 1.0  # on either side of a place, by how much the way turns there
+MOST_ASIDE = 0.5  # that a spline lies off the way: further is out along a tick, or round a bay
+# misfit: of what is wrong about a place noise is a quarter of that; 15 um of a line of 0.35 mm are as much
+OFF = 0.006
+OF_USUAL = 4.0  # times what most of the clean places of the line leave
+# of what the way leaves: a spline that leaves more is none, unless that is noise
+STILL_LEFT = 0.35
+
+
+def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:
+    """The lines with the head run along splines where it ran beside its ink."""
+    lines = list(lines)
+    if not is_clear(setup.sheet.drawing) or setup.operator.reads_marks(lines):
+        return lines
+    ways = {k: _Way(setup, line, lines) for k, line in enumerate(lines)}
+    ways = {k: way for k, way in ways.items() if way.may_be_off}
+    while ways:
+        # lines of about one width are one pen's
+        width_mm = next(iter(ways.values())).line.width_mm
+        like = {k for k, way in ways.items() if abs(way.line.width_mm / width_mm - 1) < AS_WIDE}
+        clean = [Clean(ways[k].places, np.flatnonzero(ways[k].by_cell)) for k in like]
+        felt = felt_at(setup.sheet.drawing, clean, width_mm)
+        for k in like:
+            way = ways.pop(k)
+            lines[k] = way.line if felt is None else way.bent(felt)
+    return lines
+
+
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """One of some lines: its way a step from place to place."""
+
+    setup: Setup
+    line: Line
+    lines: Sequence[Line]
+
+    @cached_property
+    def step_mm(self) -> float:
+        """From place to place."""
+        return STEP_WIDTHS * self.line.width_mm
+
+    @cached_property
+    def places(self) -> Array:
+        """Places (n, 2) mm of the way."""
+        return evenly(self.line.loop_mm, self.step_mm)
+
+    @cached_property
+    def by_cell(self) -> NDArray[np.bool_]:
+        """Whether the swinging cell led to each place."""
+        line = self.line
+        _, leaders = line.led.thinned(line.xy_mm, THINNED)
+        come_mm = lengths_mm(line.places_mm)
+        at = np.searchsorted(come_mm, np.arange(len(self.places)) * self.step_mm)
+        return np.asarray(leaders[np.minimum(at, len(leaders) - 1)] == CELL)
+
+    @cached_property
+    def corners(self) -> list[int]:
+        """The places at which it turns sharply, and those a round before and behind."""
+        count, over = len(self.places), round(LEGS[0] / STEP_WIDTHS)
+        on = self.places[np.arange(-over, count + over) % count]
+        found = corners_of(turns_rad(on)[over:-over])
+        return [at + k * count for at in found for k in (-1, 0, 1)]
+
+    @property
+    def may_be_off(self) -> bool:
+        """Whether it is a plain line along which the swinging cell did not lead all along."""
+        line = self.line
+        if not is_plain(line) or line.as_told or line.length_mm < 4 * LEGS[0] * line.width_mm:
+            return False
+        return not self.by_cell.all()
+
+    def bent(self, felt: Felt) -> Line:
+        """The line as it is, or along the splines that explain its ink better."""
+        bays = [bay for off in self._off(felt) if (bay := self._bay(*off, felt)) is not None]
+        round_mm = len(self.places) * self.step_mm
+        bays = apart(bays, round_mm)
+        return laid(self.setup, self.line, bays, round_mm) if bays else self.line
+
+    def _off(self, felt: Felt) -> Iterator[tuple[int, int]]:
+        """The stretches that are off their ink, from which place to which."""
+        leg, limit = round(LEGS[0] / STEP_WIDTHS), _limit(felt)
+        off = np.zeros(len(self.places), bool)
+        for first, last in _runs(~self.by_cell, leg):
+            for begin in range(first, last + 1, round(LONGEST / STEP_WIDTHS)):
+                end = min(begin + round(LONGEST / STEP_WIDTHS), last + 1)
+                ink, own = self._seen(begin - leg, end + leg, felt)
+                wrong = wrong_about(ink, own, about_corners(own), STEP_WIDTHS)[leg:-leg]
+                off[np.arange(begin, end + 1) % len(off)] |= wrong > limit
+        yield from _runs(off, leg) if off.any() else ()
+
+    def _seen(self, first: int, last: int, felt: Felt) -> tuple[SeenInk, Array]:
+        """The ink about a stretch, as the line's pen left it, and the stretch."""
+        way, drawing = self.places, self.setup.sheet.drawing
+        own = way[np.arange(first, last + 1) % len(way)]
+        rest = way[np.arange(last, first + len(way) + 1) % len(way)]
+        reach_mm = 2 * REACH * self.line.width_mm
+        low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
+        near = list(_within(rest, low, high))
+        for line in self.lines:
+            if line is not self.line and reaches(line.places_mm, low, high):
+                near += _within(line.places_mm, low, high)
+        ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
+        return without_specks(ink, own, drawing.pitch_mm), own
+
+    def _bay(self, first: int, last: int, felt: Felt) -> Bay | None:
+        """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""
+        count, leg = len(self.places), round(LEGS[0] / STEP_WIDTHS)
+        first = _off_corners(first - leg, self.corners, -1)
+        last = _off_corners(last + leg, self.corners, 1)
+        if last - first > min(2 * leg + LONGEST / STEP_WIDTHS, OF_LOOP * count):
+            return None
+        ink, own = self._seen(first, last, felt)
+        if goes_on(ink, own, REACH):
+            return None
+        spline = explained(ink, own, self.step_mm, _limit(felt))
+        if spline is None:
+            return None
+        left = left_by(ink, own, about_corners(own))
+        if spline.worst > _limit(felt) and spline.misfit > STILL_LEFT * left:
+            return None
+        gain, width_mm = left - spline.cost, self.line.width_mm
+        longer_mm = length_mm(spline.way) - length_mm(own)
+        if longer_mm > LONGER * width_mm and turns_rad(own, TURNS_OVER).max() < CORNER_RAD:
+            return None
+        if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
+            return None
+        rule = RimBay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
+        return Bay(first * self.step_mm, last * self.step_mm, rule, gain)
+
+
+def _limit(felt: Felt) -> float:
+    """What is left about a place of a line that is off its ink."""
+    return max(OFF, OF_USUAL * felt.usual)
+
+
+def _runs(chosen: NDArray[np.bool_], apart: int) -> Iterator[tuple[int, int]]:
+    """From which place of a closed way to which some are chosen, nearer than twice so many places to one
+    another; the last may be over the end.
+    """
+    found, count = np.flatnonzero(chosen), len(chosen)
+    if not len(found):
+        return
+    gaps = np.diff(np.r_[found, found[0] + count])
+    if gaps.max() <= 2 * apart:
+        yield int(found[0]), int(found[0]) + count - 1
+        return
+    begin = int(np.argmax(gaps)) + 1
+    found = np.r_[found[begin:], found[:begin] + count]
+    for run in np.split(found, np.flatnonzero(np.diff(found) > 2 * apart) + 1):
+        yield int(run[0]), int(run[-1])
+
+
+def _within(way: Array, low: Array, high: Array) -> Iterator[Array]:
+    """The parts of a way (n, 2) mm within a box."""
+    inside = np.flatnonzero(np.all((way > low) & (way < high), axis=1))
+    if len(inside):
+        for part in np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1):
+            yield way[part]
+
+
+def _off_corners(at: int, corners: Sequence[int], away: int) -> int:
+    """A place moved away from corners, so that the way there is clean."""
+    leg = round(LEGS[0] / STEP_WIDTHS)
+    for corner in sorted(corners, reverse=away < 0):
+        if abs(at - corner) < 0.5 * leg:
+            at = corner + away * leg
+    return at

@@ -1,0 +1,260 @@
+"""The spline: a strip that a draughtsman bends between weights, laid along a stretch of line by its ink.
+
+    ─────●     ●──●       ● weights, which move across the strip; it bends smoothly from one to the next
+          ╲___╱    ╲
+       corner       ●     at a corner it is broken, and its weight moves anywhere
+
+Between places of a line on which it is clean, the weights move to where a pen along the strip leaves least of
+the ink unexplained. What no compass and no folding rule draws is drawn so: an arc that begins at a corner, a
+step with a round, the relief of an inner corner.
+
+Between two weights the strip is a cubic, and its curvature goes on over each weight, as a thin strip's does.
+It comes to its ends on the headings of the line there. From a corner it leaves on an arc.
+
+Signals: a stretch of way, its corners, and the ink about it in; the way of the strip that explains the ink
+out.
+
+Source: our own; the strip is the natural cubic spline of ship's draughtsmen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.motion.compiled import njit
+from morfax.motion.plane import left_of, unit
+from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.least_squares import fitted
+from morfax.tracer.tangles.seen_ink import SeenInk
+
+PLACES_WIDTHS = 0.12  # between the places that a strip is drawn with
+ASIDE = 3  # places on either side of one: they show across what its weight moves
+ENDS = 3  # places from an end, and as many on, show its heading
+MOST_STEPS = (
+    12  # times that the ink is drawn: weights that lie 0.3 widths off settle within six
+)
+STEEP = 5.0  # softnesses from its edge, ink fades no more
+
+
+class Weights(NamedTuple):
+    """Where the weights of a strip lie: numbers (k,) of places along its stretch, fractions included, the
+    first and the last of which stay, and which of them (k,) are corners.
+    """
+
+    at: Array
+    sharp: NDArray[np.bool_]
+
+    @classmethod
+    def apart(cls, count: int, corners: Sequence[int], every: float) -> Weights:
+        """Weights on a stretch of so many places with corners at some, and about every so many between."""
+        cuts = [0, *sorted(corners), count - 1]
+        at, sharp = [0.0], [False]
+        for first, last in pairwise(cuts):
+            pieces = max(1, round((last - first) / every))
+            at += np.linspace(first, last, pieces + 1)[1:].tolist()
+            sharp += [False] * (pieces - 1) + [last != cuts[-1]]
+        return cls(np.array(at), np.array(sharp))
+
+
+class Strip(NamedTuple):
+    """A strip's way (m, 2) mm as its weights lie, how far each figure moves its places, (m, f, 2), and at
+    which of its places (m,) it is broken.
+    """
+
+    way_mm: Array
+    moves: Array
+    sharp: NDArray[np.bool_]
+
+    @classmethod
+    def along(cls, own: Array, step_mm: float, weights: Weights, apart_mm: float) -> Strip:
+        """A strip along a stretch (n, 2) mm, a step from place to place, drawn with places so far apart."""
+        at, sharp = weights
+        ends = np.flatnonzero(np.r_[True, sharp[1:-1], True])
+        come_mm = at * step_mm
+        # 1. each part by the cubics between its weights
+        shares, slopes, corners = list[Array](), list[Array](), list[int]()
+        drawn = 0
+        for first, last in pairwise(ends.tolist()):
+            clamped = first == 0, last == len(at) - 1
+            part_mm = come_mm[first : last + 1]
+            places = max(2, 1 + math.ceil((part_mm[-1] - part_mm[0]) / apart_mm))
+            drawn_mm = np.linspace(part_mm[0], part_mm[-1], places)
+            shared = _cubics(part_mm, drawn_mm, clamped)
+            of_all = np.zeros((places, len(at) + 2))
+            of_all[:, first : last + 1] = shared[:, :-2]
+            of_all[:, -2:] = shared[:, -2:]
+            shares.append(of_all[drawn > 0 :, :-2])
+            slopes.append(of_all[drawn > 0 :, -2:])
+            drawn += places - (drawn > 0)
+            corners.append(drawn - 1)
+        # 2. where the weights lie, and what moves them
+        number = np.arange(len(own))
+        lie = np.column_stack([np.interp(at, number, column) for column in own.T])
+        heading = unit(np.array([_leaves(own), -_leaves(own[::-1])]))
+        share = np.vstack(shares)
+        way = share @ lie + np.vstack(slopes) @ heading
+        broken = np.isin(np.arange(len(way)), corners[:-1])
+        return cls(way, _moves(own, weights, share), broken)
+
+    @property
+    def figures(self) -> int:
+        """How many figures it has."""
+        return self.moves.shape[1]
+
+    def moved(self, figures: Array) -> Array:
+        """Its way (m, 2) mm with its weights moved by some figures (f,), mm."""
+        return np.asarray(self.way_mm + np.tensordot(self.moves, figures, (1, 0)))
+
+    def settled(self, ink: SeenInk) -> Array:
+        """Its way (m, 2) mm where a pen along it leaves least of the ink unexplained."""
+        seen = ink.for_kernel()
+
+        def wrong(figures: Array) -> Array:
+            return wrong_along(ink, self.moved(figures), self.sharp)
+
+        def changes(figures: Array) -> Array:
+            out = np.empty((len(seen.places_mm), self.figures))
+            _changes(seen, self.moved(figures), self.sharp, self.moves, out)
+            return out
+
+        if not self.figures:
+            return self.way_mm
+        return self.moved(fitted(wrong, np.zeros(self.figures), MOST_STEPS, changes))
+
+
+def _leaves(own: Array) -> Array:
+    """Along which way (x, y) a stretch (n, 2) leaves its first place, if it bends evenly there."""
+    return np.asarray(4 * (own[ENDS] - own[0]) - (own[2 * ENDS] - own[0]))
+
+
+def _moves(own: Array, weights: Weights, share: Array) -> Array:
+    """How far each figure moves places (m, f, 2), of which so much (m, k) is each weight's: a weight between
+    the ends moves across its stretch (n, 2), one at a corner along x and y.
+    """
+    moves = list[Array]()
+    for k in range(1, len(weights.at) - 1):
+        ways = np.eye(2)
+        if not weights.sharp[k]:
+            i = round(float(weights.at[k]))
+            ahead = own[min(i + ASIDE, len(own) - 1)] - own[max(i - ASIDE, 0)]
+            ways = left_of(ahead / max(float(np.hypot(*ahead)), NOT_ZERO))[None]
+        moves += [share[:, k, None] * way for way in ways]
+    return np.stack(moves, axis=1) if moves else np.empty((len(share), 0, 2))
+
+
+def _cubics(weights_mm: Array, places_mm: Array, clamped: tuple[bool, bool]) -> Array:
+    """Which share of each place (m,) along a strip comes from each of its weights (k,), and from the slopes
+    at its ends, if it is clamped there: (m, k + 2). At an end that is not its curvature stays the same.
+    """
+    count, long_mm = len(weights_mm), np.diff(weights_mm)
+    # 1. the curvature at the weights
+    left, right = np.zeros((count, count)), np.zeros((count, count + 2))
+    for k in range(1, count - 1):
+        a, b = long_mm[k - 1], long_mm[k]
+        left[k, k - 1 : k + 2] = a, 2 * (a + b), b
+        right[k, k - 1 : k + 2] = 6 / a, -6 / a - 6 / b, 6 / b
+    for end, beside, sign, a in ((0, 1, 1, long_mm[0]), (-1, -2, -1, long_mm[-1])):
+        if clamped[end]:
+            left[end, end], left[end, beside] = 2 * a, a
+            at = 0 if end == 0 else count - 1
+            right[end, at], right[end, at + sign] = -6 / a, 6 / a
+            right[end, count if end == 0 else count + 1] = -6 * sign
+        elif count > 2 or clamped[-1 - end]:
+            left[end, end], left[end, beside] = 1.0, -1.0
+        else:
+            left[end, end] = 1.0
+    bends = np.linalg.solve(left, right)
+    # 2. the cubic between two weights
+    piece = np.clip(np.searchsorted(weights_mm, places_mm, side="right") - 1, 0, count - 2)
+    each_mm, row = long_mm[piece], np.arange(len(places_mm))
+    before = (weights_mm[piece + 1] - places_mm) / each_mm
+    after = 1 - before
+    share = np.zeros((len(places_mm), count + 2))
+    share[row, piece] += before
+    share[row, piece + 1] += after
+    for part, bend in ((before, bends[piece]), (after, bends[piece + 1])):
+        share += ((part**3 - part) * each_mm**2 / 6)[:, None] * bend
+    return share
+
+
+@njit(cache=True)
+def _nearest(way, x, y):  # type: ignore[no-untyped-def]
+    """Where a way (m, 2) is nearest to a place: its piece, the share of that, and the distance, mm."""
+    best, piece, share = math.inf, 0, 0.0
+    for i in range(len(way) - 1):
+        vx, vy = way[i + 1, 0] - way[i, 0], way[i + 1, 1] - way[i, 1]
+        wx, wy = x - way[i, 0], y - way[i, 1]
+        t = min(max((wx * vx + wy * vy) / max(vx * vx + vy * vy, NOT_ZERO), 0.0), 1.0)
+        dx, dy = wx - t * vx, wy - t * vy
+        if dx * dx + dy * dy < best:
+            best, piece, share = dx * dx + dy * dy, i, t
+    return piece, share, math.sqrt(best)
+
+
+@njit(cache=True, _nrt=False)
+def nearest_pieces(places, way, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, 2) with how far places (n, 2) mm are from a way (m, 2) mm, and at which of its places,
+    fractions included.
+    """
+    for k in range(len(places)):
+        piece, share, away_mm = _nearest(way, places[k, 0], places[k, 1])
+        out[k, 0], out[k, 1] = away_mm, piece + share
+
+
+def wrong_along(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
+    """What a pen along a way (m, 2) mm draws too dark at each place of an ink, (n,); `sharp` are its corners.
+
+    A pen's ink is round at a corner, a plotting program's may come to a point: neither is too little.
+    """
+    out = np.empty(len(ink.places_mm))
+    _wrong(ink.for_kernel(), np.ascontiguousarray(way), sharp, out)
+    return out
+
+
+@njit(cache=True)
+def _at_corner(piece, share, sharp):  # type: ignore[no-untyped-def]
+    """Whether a place on a piece of a way is one of its corners."""
+    if sharp[piece] and (share <= 0 or sharp[piece + 1]):
+        return True
+    return sharp[piece + 1] and share >= 1
+
+
+@njit(cache=True, _nrt=False)
+def _wrong(ink, way, sharp, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n,) with what a pen along a way (m, 2) mm draws too dark at each place of the ink."""
+    for k in range(len(ink.places_mm)):
+        i, t, away_mm = _nearest(way, ink.places_mm[k, 0], ink.places_mm[k, 1])
+        drawn = pen.ink_at(min(away_mm, ink.known_mm[k]), ink.half_mm, ink.softness_mm)
+        out[k] = drawn - ink.darkness[k]
+        if out[k] < 0 and _at_corner(i, t, sharp):
+            out[k] = 0.0
+
+
+@njit(cache=True, _nrt=False)
+def _changes(ink, way, sharp, moves, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, f) with by how much each figure of a strip darkens each place of the ink, per mm."""
+    for k in range(len(ink.places_mm)):
+        x, y = ink.places_mm[k, 0], ink.places_mm[k, 1]
+        i, t, away_mm = _nearest(way, x, y)
+        out[k, :] = 0.0
+        u = (away_mm - ink.half_mm) / ink.softness_mm
+        if away_mm > ink.known_mm[k] or abs(u) > STEEP or away_mm < NOT_ZERO:
+            continue
+        is_less = pen.ink_at(away_mm, ink.half_mm, ink.softness_mm) < ink.darkness[k]
+        if is_less and _at_corner(i, t, sharp):
+            continue
+        # the ink fades along the line from the way's nearest place
+        fades = math.exp(-0.5 * u * u) / (math.sqrt(math.tau) * ink.softness_mm) / away_mm
+        dx = fades * (x - way[i, 0] - t * (way[i + 1, 0] - way[i, 0]))
+        dy = fades * (y - way[i, 1] - t * (way[i + 1, 1] - way[i, 1]))
+        for f in range(moves.shape[1]):
+            before, after = moves[i, f], moves[i + 1, f]
+            along_x = (1 - t) * before[0] + t * after[0]
+            out[k, f] = dx * along_x + dy * ((1 - t) * before[1] + t * after[1])
