@@ -113,11 +113,16 @@ class Linker:
 def _load_algebra() -> None:
     """Load scipy's BLAS and LAPACK, which numba's C functions would import at their first call.
 
-    If Ctrl-C comes while they do, they end the process with a dump.
+    If Ctrl-C comes while they do, they end the process with a dump. The two are loaded by themselves, and not
+    scipy.linalg, which loads much more.
     """
-    from scipy.linalg import cython_blas, cython_lapack
+    try:
+        for name in ("linalg.cython_blas", "linalg.cython_lapack"):
+            extension("scipy", name)
+    except ImportError:  # a scipy that keeps them elsewhere
+        from scipy.linalg import cython_blas, cython_lapack
 
-    assert cython_blas and cython_lapack
+        assert cython_blas and cython_lapack
 
 
 def _serve_pickles(unpickle_address: int) -> None:

@@ -152,7 +152,9 @@ def test_linear_algebra_is_loaded_before_a_kept_kernel_runs(
         "import sys, numpy as np; from solved import solved; solved(np.eye(2), np.ones(2), 0); "
     )
     names = "scipy.linalg.cython_lapack", "scipy.linalg.cython_blas", "numba.core"
-    call += f"print(*[name in sys.modules for name in {names}])"
+    call += f"print(*[name in sys.modules for name in {names}]); "
+    # and by itself: scipy.linalg takes a fifth of a second and 25 MB
+    call += "solved(np.eye(2), np.ones(2), 2); print('scipy.linalg' in sys.modules)"
     kept = {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
     paths = {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
     for with_numba in (True, False):
@@ -163,7 +165,9 @@ def test_linear_algebra_is_loaded_before_a_kept_kernel_runs(
             text=True,
             check=True,
         )
-        assert done.stdout.split() == ["True", "True", str(with_numba)]
+        *loaded, all_of_it = done.stdout.split()
+        assert loaded == ["True", "True", str(with_numba)]
+        assert with_numba or all_of_it == "False"
 
 
 def test_only_the_newest_versions_of_a_kernel_are_kept(tmp_path: Path) -> None:
