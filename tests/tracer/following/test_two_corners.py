@@ -8,7 +8,11 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.contour import distance
 from morfax.tracer.following import follower
-from morfax.tracer.program.trace import trace
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace import followed
 from tests.tracer.inked import UM, arc, inked, polyline
 
 TURN = np.radians(60)
@@ -18,6 +22,14 @@ STEP_CUT_OFF_MM = 40 * UM  # as one bend, or by one vertex, a step of 0.6 mm is 
 CUT_OFF_MM = 60 * UM  # an arc in place of two corners 0.6 to 0.75 mm apart is 69 to 96 um off
 FLOOR_MM = 0.6  # high: the floor, or the arc in its place
 NEAR_STEP_MM = 2.0  # both of its ends
+
+
+def own_way(line: Array, seed: int) -> Line:
+    """The head's own way along a closed line, before stretches of it are bent onto their ink."""
+    sheet = inked(line, width_mm=0.5, seed=seed).sheet
+    run = followed(Setup(sheet, Settings(), Operator()), None)
+    assert run.fault is None
+    return run
 
 
 def valley(side_mm: float) -> Array:
@@ -46,8 +58,7 @@ def rounded_valley(radius_mm: float) -> Array:
 
 def worst_mm(line: Array, seed: int) -> float:
     """How far the valley's floor and its ends are at the most from the path of the head."""
-    run = trace(inked(line, width_mm=0.5, seed=seed))
-    assert run.fault is None
+    run = own_way(line, seed)
     floor = line[line[:, 1] < line[:, 1].min() + FLOOR_MM]
     return distance(run.xy_mm[::4], floor).reference_to_path.max_mm
 
@@ -90,8 +101,7 @@ def stepped(side_mm: float, turn_deg: float) -> Array:
 
 def worst_at_step_mm(line: Array, seed: int) -> float:
     """How far the ends of the step are at the most from the path of the head."""
-    run = trace(inked(line, width_mm=0.5, seed=seed))
-    assert run.fault is None
+    run = own_way(line, seed)
     near = line[np.hypot(*(line - (20.0, 20.0)).T) < NEAR_STEP_MM]
     return distance(run.xy_mm[::4], near).reference_to_path.max_mm
 
