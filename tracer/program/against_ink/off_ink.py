@@ -39,7 +39,7 @@ SPECK, BESIDE_PX = 0.35, 1.6
 # less is specks
 EDGE, OWN = 0.2, 0.8
 MOST = 1.0  # that a pixel is wrong, squared
-CLEAN_PLACES = 40  # of some lines, about which their pen is felt
+CLEAN_PLACES = 15  # of some lines, about which their pen is felt
 ALONG = 0.8  # widths of way on either side of such a place
 FEWEST = 200  # pixels that show a pen
 
