@@ -18,17 +18,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.polyline import evenly, length_mm, lengths_mm, nearest_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
-from morfax.tracer.program.against_ink.bars import reaches
 from morfax.tracer.program.against_ink.off_ink import (
     REACH,
     Clean,
@@ -71,7 +71,8 @@ def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:
     lines = list(lines)
     if not is_clear(setup.sheet.drawing) or setup.operator.reads_marks(lines):
         return lines
-    ways = {k: _Way(setup, line, lines) for k, line in enumerate(lines)}
+    beside = _Lines.of(lines)
+    ways = {k: _Way(setup, line, beside) for k, line in enumerate(lines)}
     ways = {k: way for k, way in ways.items() if way.may_be_off}
     while ways:
         # lines of about one width are one pen's
@@ -85,13 +86,34 @@ def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:
     return lines
 
 
+class _Lines(NamedTuple):
+    """Some lines, and the boxes about them: their least and greatest x and y, (n, 2) mm."""
+
+    lines: list[Line]
+    low: Array
+    high: Array
+
+    @classmethod
+    def of(cls, lines: Sequence[Line]) -> _Lines:
+        """Some lines."""
+        boxes = np.array([bounds(line.places_mm) for line in lines]).reshape(-1, 2, 2)
+        return cls(list(lines), boxes[:, 0], boxes[:, 1])
+
+    def within(self, low: Array, high: Array, but: Line) -> Iterator[Array]:
+        """The parts of the ways (m, 2) mm of all lines but one within a box."""
+        reach = np.all((self.low < high) & (self.high > low), axis=1)
+        for k in np.flatnonzero(reach).tolist():
+            if self.lines[k] is not but:
+                yield from _within(self.lines[k].places_mm, low, high)
+
+
 @dataclass(frozen=True, eq=False)
 class _Way:
-    """One of some lines: its way a step from place to place."""
+    """One of some lines, its way a step from place to place, and the lines beside it."""
 
     setup: Setup
     line: Line
-    lines: Sequence[Line]
+    beside: _Lines
 
     @cached_property
     def step_mm(self) -> float:
@@ -154,10 +176,7 @@ class _Way:
         rest = way[np.arange(last, first + len(way) + 1) % len(way)]
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
-        near = list(_within(rest, low, high))
-        for line in self.lines:
-            if line is not self.line and reaches(line.places_mm, low, high):
-                near += _within(line.places_mm, low, high)
+        near = [*_within(rest, low, high), *self.beside.within(low, high, self.line)]
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_specks(ink, own, drawing.pitch_mm), own
 
