@@ -138,7 +138,11 @@ class SeenInk(NamedTuple):
 
     def misfit(self, drawn: Array) -> float:
         """How much darkness (n,) that is drawn leaves unexplained, in squares of the line's width."""
-        left = float(np.sum((drawn - self.darkness) ** 2)) - self.noise
+        return self.left(drawn - self.darkness)
+
+    def left(self, wrong: Array) -> float:
+        """The same of what is drawn too dark or too light at each place, (n,)."""
+        left = float(np.sum(wrong**2)) - self.noise
         return left * self.area_mm2 / self.width_mm**2
 
     def holds(self, way: Array) -> bool:

@@ -38,6 +38,9 @@ SPECK, BESIDE_PX = 0.35, 1.6
 # at the edge of what is looked at, half as much ink as a line has there, so far from all lines, goes on;
 # less is specks
 EDGE, OWN = 0.2, 0.8
+# misfit: of what is wrong about a place noise is a quarter of that; 15 um of a line of 0.35 mm are as much
+OFF = 0.006
+OF_USUAL = 4.0  # times what most of the clean places of the line leave
 MOST = 1.0  # that a pixel is wrong, squared
 CLEAN_PLACES = 15  # of some lines, about which their pen is felt
 ALONG = 0.8  # widths of way on either side of such a place
@@ -76,6 +79,11 @@ class Felt(NamedTuple):
 
     pen: FeltPen
     usual: float
+
+    @property
+    def limit(self) -> float:
+        """What is left about a place that is off its ink, at the least."""
+        return max(OFF, OF_USUAL * self.usual)
 
 
 def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | None:
@@ -132,7 +140,7 @@ def goes_on(ink: SeenInk, about: Array, reach_widths: float) -> bool:
     return bool(far > 1 and far * ink.area_mm2 > 0.5 * EDGE * ink.width_mm**2)
 
 
-def without_specks(ink: SeenInk, way: Array, pitch_mm: float) -> SeenInk:
+def without_lone_pixels(ink: SeenInk, way: Array, pitch_mm: float) -> SeenInk:
     """The ink without pixels that are wrong by themselves, where a pen goes along a way (n, 2) mm."""
     wrong = ink.drawn_along(way, ink.half_mm) - ink.darkness
     suspect = np.flatnonzero(np.abs(wrong) > SPECK)

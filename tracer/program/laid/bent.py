@@ -30,13 +30,14 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
 from morfax.tracer.program.against_ink.off_ink import (
+    OFF,
     REACH,
     Clean,
     Felt,
     felt_at,
     goes_on,
     ink_about,
-    without_specks,
+    without_lone_pixels,
     wrong_about,
 )
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
@@ -59,9 +60,6 @@ LONGEST = 18.0  # a stretch is no longer, legs apart
 LONGER = 0.15  # than a way that does not turn: it goes out along a burr and comes back
 TURNS_OVER = 1.0  # on either side of a place, by how much the way turns there
 MOST_ASIDE = 0.5  # that a spline lies off the way: further is out along a tick, or round a bay
-# misfit: of what is wrong about a place noise is a quarter of that; 15 um of a line of 0.35 mm are as much
-OFF = 0.006
-OF_USUAL = 4.0  # times what most of the clean places of the line leave
 # of what the way leaves: a spline that leaves more is none, unless that is noise
 STILL_LEFT = 0.35
 
@@ -159,14 +157,14 @@ class _Way:
 
     def _off(self, felt: Felt) -> Iterator[tuple[int, int]]:
         """The stretches that are off their ink, from which place to which."""
-        leg, limit = round(LEGS[0] / STEP_WIDTHS), _limit(felt)
+        leg = round(LEGS[0] / STEP_WIDTHS)
         off = np.zeros(len(self.places), bool)
         for first, last in _runs(~self.by_cell, leg):
             for begin in range(first, last + 1, round(LONGEST / STEP_WIDTHS)):
                 end = min(begin + round(LONGEST / STEP_WIDTHS), last + 1)
                 ink, own = self._seen(begin - leg, end + leg, felt)
                 wrong = wrong_about(ink, own, about_corners(own), STEP_WIDTHS)[leg:-leg]
-                off[np.arange(begin, end + 1) % len(off)] |= wrong > limit
+                off[np.arange(begin, end + 1) % len(off)] |= wrong > felt.limit
         yield from _runs(off, leg) if off.any() else ()
 
     def _seen(self, first: int, last: int, felt: Felt) -> tuple[SeenInk, Array]:
@@ -178,7 +176,7 @@ class _Way:
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
         near = [*_within(rest, low, high), *self.beside.within(low, high, self.line)]
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
-        return without_specks(ink, own, drawing.pitch_mm), own
+        return without_lone_pixels(ink, own, drawing.pitch_mm), own
 
     def _bay(self, first: int, last: int, felt: Felt) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""
@@ -190,11 +188,11 @@ class _Way:
         ink, own = self._seen(first, last, felt)
         if goes_on(ink, own, REACH):
             return None
-        spline = explained(ink, own, self.step_mm, _limit(felt))
+        spline = explained(ink, own, self.step_mm, felt.limit)
         if spline is None:
             return None
         left = left_by(ink, own, about_corners(own))
-        if spline.worst > _limit(felt) and spline.misfit > STILL_LEFT * left:
+        if spline.worst > felt.limit and spline.misfit > STILL_LEFT * left:
             return None
         gain, width_mm = left - spline.cost, self.line.width_mm
         longer_mm = length_mm(spline.way) - length_mm(own)
@@ -204,11 +202,6 @@ class _Way:
             return None
         rule = RimBay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
         return Bay(first * self.step_mm, last * self.step_mm, rule, gain)
-
-
-def _limit(felt: Felt) -> float:
-    """What is left about a place of a line that is off its ink."""
-    return max(OFF, OF_USUAL * felt.usual)
 
 
 def _runs(chosen: NDArray[np.bool_], apart: int) -> Iterator[tuple[int, int]]:

@@ -82,8 +82,7 @@ def explained(ink: SeenInk, own: Array, step_mm: float, limit: float) -> Spline 
 
 def left_by(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> float:
     """How much a pen along a way (n, 2) mm with some corners leaves, in squares of the line's width."""
-    wrong = wrong_along(ink, way, sharp)
-    return (float(wrong @ wrong) - ink.noise) * ink.area_mm2 / ink.width_mm**2
+    return ink.left(wrong_along(ink, way, sharp))
 
 
 def about_corners(way: Array) -> NDArray[np.bool_]:

@@ -7,12 +7,13 @@ import pytest
 
 from morfax.motion.polyline import evenly
 from morfax.tracer.program.against_ink.off_ink import (
+    OFF,
     Clean,
     Felt,
     felt_at,
     goes_on,
     ink_about,
-    without_specks,
+    without_lone_pixels,
     wrong_about,
 )
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -22,7 +23,6 @@ from tests.tracer.inked import Points, inked, polyline
 WIDTH_MM, DPI = 0.5, 300.0
 LINE = polyline((5.3, 6.1), (24.0, 9.0))
 ACROSS = polyline((14.0, 4.0), (15.0, 12.0))
-OFF = 0.006  # in squares of the width: the least that is off its ink (see `laid.bent`)
 
 
 def felt_along(*lines: Points, seed: int | None = 1) -> tuple[Felt, Points, SeenInk]:
@@ -72,7 +72,7 @@ def test_a_speck_is_left_out_and_two_pixels_that_hang_together_are_not() -> None
     for specks, kept in (([beside], 1), (near.tolist(), 0)):
         dark = ink.darkness.copy()
         dark[specks] = 1.0
-        left = without_specks(ink._replace(darkness=dark), way, pitch_mm)
+        left = without_lone_pixels(ink._replace(darkness=dark), way, pitch_mm)
         assert len(ink.darkness) - len(left.darkness) == kept
 
 

@@ -96,7 +96,7 @@ def test_a_bar_that_joins_the_line_is_left_alone() -> None:
     assert max(true.distance(shapely.Point(place)) for place in line.loop_mm[::4]) < 60 * UM
 
 
-def test_lines_of_a_drawn_program_are_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lines_of_a_drawn_program_are_as_they_are() -> None:
     drawing = inked(with_reliefs(), width_mm=WIDTH_MM, dpi=DPI, seed=1)
     setup = Setup(drawing.sheet, Settings(), Operator(marks="on"))
     found = found_lines(setup, "contours").lines
