@@ -46,6 +46,7 @@ from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_bare, is_cle
 from morfax.tracer.program.laid.rim_bays import RimBay
 from morfax.tracer.program.laid.spline_fit import (
     CORNER_RAD,
+    MAYBE_RAD,
     about_corners,
     corners_of,
     explained,
@@ -140,6 +141,14 @@ class _Way:
         return np.asarray(leaders[np.minimum(at, len(leaders) - 1)] == CELL)
 
     @cached_property
+    def turning(self) -> NDArray[np.bool_]:
+        """Whether the way turns at each place."""
+        count, over = len(self.places), round(TURNS_OVER / STEP_WIDTHS)
+        at = np.arange(-over, count + over)
+        way = self.places[at % count if self.is_closed else np.clip(at, 0, count - 1)]
+        return np.asarray(turns_rad(way, TURNS_OVER)[over:-over] > MAYBE_RAD)
+
+    @cached_property
     def corners(self) -> list[int]:
         """The places at which it turns sharply; of a closed way those a round before and behind, too."""
         if not self.is_closed:
@@ -169,6 +178,8 @@ class _Way:
         leg = round(LEGS[0] / STEP_WIDTHS)
         off = np.zeros(len(self.places), bool)
         for first, last in _runs(self._between_ends(~self.by_cell), leg, self.is_closed):
+            if not self.turning[np.arange(first, last + 1) % len(off)].any():
+                continue  # straight on over a crossing, it is on its ink
             for begin in range(first, last + 1, round(LONGEST / STEP_WIDTHS)):
                 end = min(begin + round(LONGEST / STEP_WIDTHS), last + 1)
                 ink, own = self._seen(begin - leg, end + leg, felt)
