@@ -66,18 +66,18 @@ def solved(sheet: FeltSheet) -> Junctions:
         }
         sheet.together.update(n for n in together if n in doubled or sheet.is_broad(n))
         too_long = parted.intersection(lines) - two - bare
-        more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
         if together or too_long:
             for stretch, width_mm in together.items():
                 sheet.widths_mm[stretch] = width_mm
             parted |= set(together)
             two |= too_long
             bare -= _beside(junctions.net, too_long.union(together))
-        elif more:
-            two |= more & (doubled | sheet.together)
-            bare |= more - two
-        else:
+            continue
+        more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
+        if not more:
             return junctions
+        two |= more & (doubled | sheet.together)
+        bare |= more - two
     return Junctions(net_of(sheet, two | bare), sheet.settings, known)
 
 
