@@ -28,7 +28,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from heapq import heappop, heappush
@@ -60,6 +60,8 @@ NEW_BY_END = 0.9  # of a way with an end is along no other
 # a way that turns by more than BACK_RAD goes back, but for a tip whose sides are so many times as long as the
 # ink that they share, and along that bend by no more of its angle; of circles that touch by 0.2 of it
 TIP, BENT = 10.0, 0.1
+
+Judge = Callable[[Outline], bool]
 
 NOT, PAST, CROSSES = 0, 1, 2  # how a line goes straight on where a way leaves it
 
@@ -96,13 +98,18 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     taken, aside = set(taken), lines_aside(junctions)
     search = _Search(junctions, Onward(junctions, aside), Onward(junctions))
 
-    def is_new(way: Outline, least: float = share) -> bool:
+    def is_new(way: Outline, least: float = share, may_be: Judge | None = None) -> bool:
         if share_beside(way.chain, taken, junctions) <= least:
+            return False
+        if may_be is not None and not may_be(way):
             return False
         if not goes_round_paper(way.chain, junctions):
             return False
         taken.update(link.line for link in way.chain.links)
         return True
+
+    def goes_on_or_round(way: Outline) -> bool:
+        return search.cost(way.chain) < math.inf or goes_round(way.chain, junctions, aside)
 
     # 1. straight on
     straight = (way for way in straight_chains(junctions) if search.cost(way.chain) == 0.0)
@@ -114,12 +121,8 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     yield from (it.way for it in by_cost if is_new(it.way, NEW_BY_END if it.ends else share))
     # 3. round what hangs together, and round what does without all these
     for without in (aside, taken | aside):
-        rest = [
-            way
-            for way in parts(junctions, without)
-            if search.cost(way.chain) < math.inf or goes_round(way.chain, junctions, aside)
-        ]
-        yield from filter(is_new, rest)
+        rest = parts(junctions, without)
+        yield from (way for way in rest if is_new(way, may_be=goes_on_or_round))
 
 
 def share_beside(chain: Chain, taken: set[int], junctions: Junctions) -> float:

@@ -48,6 +48,10 @@ TOUCHES = 1.0  # widths: two that both end here end beside each other, in ink th
 AHEAD = 12.0  # times its length a leg says where its line goes on
 BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
 STEP_MM = 0.01  # of ends that are tried
+FIRST_WIDTHS, MORE = (
+    4.0,
+    4,
+)  # ends that are tried first, and times as many if that was not enough
 ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
 ROUNDS = 3  # in which lines that end in each other's ink have their ends found
 EVERY_PX = 0.7  # a place is looked at
@@ -159,14 +163,37 @@ def _end_in_ink_mm(line: Loose, others: _Others, is_tip: bool) -> float | None:
 
 
 def _possible(line: Loose, others: _Others, ends_mm: Array) -> tuple[int, int]:
-    """The numbers of the nearest and the farthest of some ends that explain the ink as well as the best."""
+    """The numbers of the nearest and the farthest of some ends that explain the ink as well as the best.
+
+    Most lines soon come to paper: so the nearest ends are looked at first, and more only if none lies there.
+    """
+    pen = 0.5 * line.leg.width_mm, softness_of(line.view, line.leg)
+    count = round(FIRST_WIDTHS * line.leg.width_mm / STEP_MM)
+    while True:
+        misfits = _held_against_ink(line, others, pen, ends_mm, count)
+        if count >= len(ends_mm) or not np.isfinite(misfits[-1]):
+            break
+        count *= MORE
+    # those that differ from the best by no more than places do
+    good = np.flatnonzero(misfits < misfits.min() + (INEXACT * DEVIATIONS) ** 2)
+    return int(good[0]), int(good[-1])
+
+
+def _held_against_ink(
+    line: Loose, others: _Others, pen: tuple[float, float], ends_mm: Array, count: int
+) -> Array:
+    """How far the first of some ends are from explaining the ink about the line, see `_misfits`; infinite for
+    those beyond paper. The pen: half its width, softness, mm.
+    """
     view, leg = line.view, line.leg
-    # 1. places along the line, in its own directions
+    # 1. places along the line, in its own directions, as far as they tell of these ends
+    some, reach_mm = ends_mm[:count], _reach_mm(pen)
+    until_mm = min(ends_mm[-1], some[-1] + reach_mm) + leg.width_mm
     every_mm, beside_mm = EVERY_PX * view.pitch_mm, ASIDE_WIDTHS * leg.width_mm
     s, u = (
         grid.ravel()
         for grid in np.meshgrid(
-            np.arange(0.0, ends_mm[-1] + leg.width_mm, every_mm),
+            np.arange(0.0, until_mm, every_mm),
             np.arange(-beside_mm, beside_mm + every_mm, every_mm),
             indexing="ij",
         )
@@ -175,18 +202,22 @@ def _possible(line: Loose, others: _Others, ends_mm: Array) -> tuple[int, int]:
     places = leg.at(s) + u[:, None] * left_of_headings(heading)
     # 2. what the sheet shows there, and how far the others are, in which direction
     seen = np.minimum(view.darkness_along(places) / (2 * view.level), DARKEST)
-    softness_mm = softness_of(view, leg)
     away_mm, nearest_mm = others.nearest(places)
     off = (places - nearest_mm) / np.maximum(away_mm, NOT_ZERO)[:, None]
     off_s = off[:, 0] * np.cos(heading) + off[:, 1] * np.sin(heading)
     off_u = off[:, 1] * np.cos(heading) - off[:, 0] * np.sin(heading)
-    misfits = np.full(len(ends_mm), math.inf)
-    pen = 0.5 * leg.width_mm, softness_mm
-    columns = np.column_stack([s, u, away_mm, off_s, off_u, seen])
-    _misfits(columns, pen, ends_mm, np.empty((3, len(s) + 1)), misfits)
-    # 3. those that differ from the best by no more than places do
-    good = np.flatnonzero(misfits < misfits.min() + (INEXACT * DEVIATIONS) ** 2)
-    return int(good[0]), int(good[-1])
+    columns, misfits = (
+        np.column_stack([s, u, away_mm, off_s, off_u, seen]),
+        np.full(len(some), math.inf),
+    )
+    _misfits(columns, pen, some, np.empty((3, len(s) + 1)), misfits)
+    return misfits
+
+
+@njit(cache=True)
+def _reach_mm(pen):  # type: ignore[no-untyped-def]
+    """How far beyond its end a pen may leave ink: half its width, and the softness of that."""
+    return pen[0] + math.sqrt(2.0) * FADES * pen[1]
 
 
 @njit(cache=True, _nrt=False)
@@ -197,7 +228,7 @@ def _misfits(places, pen, ends_mm, sums, out):  # type: ignore[no-untyped-def]
     Places, in order: along the line, beside it, distance from the others, mm, the direction from them, in the
     line's own, and what is seen; (n, 6). The pen: half its width, softness, mm. `sums` is room: (3, n + 1).
     """
-    reach_mm, least = pen[0] + math.sqrt(2.0) * FADES * pen[1], math.inf
+    reach_mm, least = _reach_mm(pen), math.inf
     # 1. what all places come to that the line has passed, or has not come to
     count = len(places)
     passed, left, others = sums
