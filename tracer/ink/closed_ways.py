@@ -20,7 +20,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from morfax.motion.arrays import NOT_ZERO
 from morfax.tracer.ink.aside import lines_aside
@@ -37,6 +37,8 @@ from morfax.tracer.ink.way_round import FoundWay, Search
 
 NEW_BY_END = 0.9  # of a way with an end is along no other; by trial on synthetic nets
 
+Judge = Callable[[Outline], bool]
+
 
 def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator[Outline]:
     """The closed ways of a net of which more than a share is beside all others, and beside lines of the net
@@ -45,13 +47,18 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     taken, aside = set(taken), lines_aside(junctions)
     search = Search(junctions, Onward(junctions, aside), Onward(junctions))
 
-    def is_new(way: Outline, least: float = share) -> bool:
+    def is_new(way: Outline, least: float = share, may_be: Judge | None = None) -> bool:
         if share_beside(way.chain, taken, junctions) <= least:
+            return False
+        if may_be is not None and not may_be(way):
             return False
         if not goes_round_paper(way.chain, junctions):
             return False
         taken.update(link.line for link in way.chain.links)
         return True
+
+    def goes_on_or_round(way: Outline) -> bool:
+        return search.cost(way.chain) < math.inf or goes_round(way.chain, junctions, aside)
 
     # 1. straight on
     straight = (way for way in straight_chains(junctions) if search.cost(way.chain) == 0.0)
@@ -64,12 +71,8 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     yield from (it.way for it in ways if is_new(it.way, NEW_BY_END if it.ends else share))
     # 3. round what hangs together, and round what does without all these
     for without in (aside, taken | aside):
-        rest = [
-            way
-            for way in parts(junctions, without)
-            if search.cost(way.chain) < math.inf or goes_round(way.chain, junctions, aside)
-        ]
-        yield from filter(is_new, rest)
+        rest = parts(junctions, without)
+        yield from (way for way in rest if is_new(way, may_be=goes_on_or_round))
 
 
 def _silhouette(by_cost: list[FoundWay], search: Search) -> list[FoundWay]:
