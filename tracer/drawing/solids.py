@@ -36,9 +36,7 @@ SHAPE = 0.33  # of some ink is broader than that: it is no line
 LONG = 3.0  # times its breadth: a longer area is a wall or a line of a broad pen
 SWELLING = 4.0  # a narrower one through which a line goes on is that line
 CORNER = 4.0  # ink no larger that hangs on a solid area is its corner
-SPECK = (
-    0.25 * math.pi
-)  # square widths: paper in ink that is no larger than a round of a width ...
+SPECK = 0.785  # square widths: paper in ink that is no larger than a round of a width ...
 ABOUT, MANY = 4.0, 4  # ... crowds with so many within so far of it, across and along
 OPEN = 0.5  # of its rim is paper at least: round a place where lines meet it is lines
 LEAST_PX = 7.0  # a narrower one is a line: few pixels tell no breadth
@@ -135,10 +133,12 @@ def _walls(own: Mask, depth: NDArray[np.float32], usual_px: float) -> Mask:
     rule, or is no line by its breadth; else what is broader than a crossing of its own lines.
     """
     depth = np.where(own > 0, depth, np.float32(0))
-    own_px = usual_width_px(depth)
-    broad = _opened(own, depth, max(WALL * usual_px, CROSSING * own_px))
-    is_all = own_px > WALL * usual_px or float(broad.sum()) > SHAPE * float(own.sum())
-    return own if is_all else broad
+    wall_px, own_px = WALL * usual_px, usual_width_px(depth)
+    broad = _opened(own, depth, max(wall_px, CROSSING * own_px))
+    if own_px > wall_px or float(broad.sum()) > SHAPE * float(own.sum()):
+        return own
+    # its lines are a pixel wider than they are deep, and soft in the corners between them
+    return _opened(broad, depth, max(wall_px, CROSSING * (own_px + 1) + BROAD_PX))
 
 
 def _opened(ink: Mask, depth: NDArray[np.float32], across_px: float) -> Mask:

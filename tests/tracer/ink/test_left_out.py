@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -92,6 +93,21 @@ def test_black_that_grows_broad_is_solid_and_no_line_of_a_broad_pen() -> None:
     assert found[0].pixels * (MM_PER_INCH / 300) ** 2 == pytest.approx(80, rel=0.06)
 
 
+def test_black_of_several_breadths_is_solid_as_a_whole() -> None:
+    """Three beads of 3 mm on a string of 1.2 mm: more than a third of it is too broad for that pen."""
+    thin = [polyline((8, y), (34, y)) for y in np.arange(8.0, 34.0, 2.0)]
+    rows = [(6, 0.6), (16, 1.5), (19, 0.6), (29, 1.5), (32, 0.6), (42, 1.5), (45, 0.6), (49, 0)]
+    upper = [(x, 41 + half) for (a, half), (b, _) in pairwise(rows) for x in (a, b)]
+    lower = [(x, 41 - half) for (a, half), (b, _) in pairwise(rows) for x in (a, b)]
+    beads = polyline(*upper, *lower[::-1])
+    ink = (inked(*thin, width_mm=0.25, specks=(beads,), seed=2).darkness > 0.5).astype(np.uint8)
+    found = Solids.of(ink).each
+    assert len(found) == 1
+    assert found[0].pixels * (MM_PER_INCH / 300) ** 2 == pytest.approx(
+        3 * 9 + 34 * 1.2, rel=0.06
+    )
+
+
 def test_black_with_specks_of_paper_is_solid() -> None:
     ink = ink_of(FRAME, TO_DOT, specks=(polyline((8, 8), (20, 8), (20, 20), (8, 20)),))
     rows, columns = np.nonzero(ink)
@@ -107,6 +123,26 @@ def test_black_with_specks_of_paper_is_solid() -> None:
     for down, aside in ((0, 3), (6, 3), (3, 0), (3, 6)):
         within &= whole[down : down + len(within), aside : aside + within.shape[1]] > 0
     assert np.mean(found.mask[3:-3, 3:-3][within]) > 0.99
+
+
+def test_letters_with_counters_as_small_as_specks_are_no_solid_areas() -> None:
+    letters = list[Points]()
+    for x in np.arange(8.0, 30.0, 3.6):  # 1.9 mm high and wide, each with a counter of 0.34 mm
+        square = [(x, 40), (x + 1.9, 40), (x + 1.9, 41.9), (x, 41.9), (x, 40)]
+        y, far = 40.78, x + 0.78
+        counter = [(far, y), (far, y + 0.34), (far + 0.34, y + 0.34), (far + 0.34, y), (far, y)]
+        letters.append(polyline(*square, *counter))
+    assert not Solids.of(ink_of(FRAME, TO_DOT, specks=tuple(letters))).each
+
+
+def test_a_crossing_of_bold_lines_is_no_solid_area_where_they_are_nearly_walls() -> None:
+    """A pen of 1.2 mm beside one of 0.34 mm: into its crossings goes a disc as broad as a wall."""
+    thin = [polyline((8, y), (34, y)) for y in np.arange(8.0, 34.0, 1.0)]
+    ink = inked(*thin, width_mm=0.34, specks=(arc((42, 42), 1.0),), seed=2).darkness
+    bold = inked(FRAME, polyline((21, 0.5), (21, 41.5)), width_mm=1.2, seed=2).darkness
+    ink = np.maximum(ink[-len(bold) :, : bold.shape[1]], bold)
+    found = Solids.of((ink > 0.5).astype(np.uint8)).each
+    assert not found
 
 
 def test_hatching_on_a_broader_frame_is_known_and_the_frame_goes_straight_on() -> None:
