@@ -24,7 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.neighbours import pairs_within
 from morfax.motion.plane import unit
+from morfax.tracer.drawing.components import grouped
 from morfax.tracer.drawing.spacing import CLEAR, Pairs
 
 Grey = NDArray[np.float32]
@@ -89,17 +91,10 @@ def covers(share: Grey, pairs: Pairs, softness_px: float) -> Iterator[Cover]:
 
 def places_of(share: Grey, pairs: Pairs, pitch_mm: float) -> list[Closed]:
     """The slits and bridges that pairs of places are of, the longest first."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
     middles = pairs.places.mean(axis=1)
-    near = cKDTree(middles).query_pairs(TOGETHER_PX, output_type="ndarray")
-    ones = np.ones(len(near), np.int8)
-    links = coo_array((ones, (near[:, 0], near[:, 1])), shape=(len(middles),) * 2)
-    count, group = connected_components(links, directed=False)
+    group = grouped(pairs_within(middles, TOGETHER_PX), len(middles))
     slits, found = _are_slits(share, pairs), list[Closed]()
-    for number in range(count):
+    for number in range(group.max(initial=-1) + 1):
         mine = group == number
         row, column = np.median(middles[mine], axis=0)
         along = np.round(pairs.along[mine][:, 0]).astype(int)

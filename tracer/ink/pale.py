@@ -21,7 +21,7 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.drawing.components import INK, Mask, strips
+from morfax.tracer.drawing.components import INK, Mask, grouped, strips
 from morfax.tracer.drawing.contrast import ABOVE_NOISE
 from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
 from morfax.tracer.drawing.deepening import LEAST, shaded
@@ -113,16 +113,13 @@ def _noise_of_spots(drawing: Drawing) -> float:
 
 def _lines(mask: Mask, drawing: Drawing) -> Iterator[Pale]:
     """The patches of a mask that are lines."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
     rows, columns = thinned(mask)
     beside = neighbours(rows, columns)
     one, side = np.nonzero(beside >= 0)
     other = beside[one, side]
     steps_px = np.hypot(rows[other] - rows[one], columns[other] - columns[one])
-    joined = coo_matrix((steps_px, (one, other)), (len(rows),) * 2)
-    count, patch = connected_components(joined, directed=False)
+    patch = grouped(np.column_stack([one, other]), len(rows))
+    count = int(patch.max(initial=-1)) + 1
     depth = cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[rows, columns]
     pixels = np.maximum(np.bincount(patch, minlength=count), 1)
     lengths_px = 0.5 * np.bincount(

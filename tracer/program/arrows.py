@@ -51,12 +51,15 @@ def turned_round(setup: Setup, line: Line) -> Line:
         return replace(
             line, xy_mm=line.xy_mm[::-1], led=led, junctions_mm=line.junctions_mm[::-1]
         )
-    silent = replace(setup, progress=None)
+    silent, begin_mm, end_mm = replace(setup, progress=None), line.xy_mm[0], line.xy_mm[-1]
+    # other turns are for what closes, and what closes at the one end does not come to the other
+    may_close = np.hypot(*(end_mm - begin_mm)) < NEAR_WIDTHS * line.width_mm
+    turns = bool(may_close) or setup.operator.direction is not None
     try:
-        other = followed(silent, line.place(len(line.xy_mm) - 1), line.number)
+        other = followed(silent, line.place(len(line.xy_mm) - 1), line.number, turns)
     except LineFault:
         return line
-    there = np.hypot(*(other.xy_mm[-1] - line.xy_mm[0])) < line.width_mm
+    there = np.hypot(*(other.xy_mm[-1] - begin_mm)) < line.width_mm
     return other if there and _are_alike(other, line) else line
 
 
