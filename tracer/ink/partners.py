@@ -34,7 +34,7 @@ from morfax.tracer.sensing.leg import Leg, turn
 
 # All limits below were chosen by trial on drawings of nets.
 SMOOTHLY = math.radians(22)  # a way that turns by no more between two legs is smooth
-# widths from where all legs meet, or of how far apart their ends are: two legs that meet there may be a corner
+# widths from where all legs meet, or of how far apart their ends are: two that meet there may be a corner
 AT_VERTEX, OF_WIDE = 0.6, 0.07
 # a corner counts as turning so much: a smooth way is likelier. How far it turns tells next to nothing of
 # whether it is one, against by how much another line bends: a rad of it adds so many rad²
