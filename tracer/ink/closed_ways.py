@@ -20,11 +20,11 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from morfax.motion.arrays import NOT_ZERO
 from morfax.tracer.ink.aside import lines_aside
-from morfax.tracer.ink.chains import Chain, Junctions
+from morfax.tracer.ink.chains import Chain, Junctions, Side
 from morfax.tracer.ink.onward import Onward
 from morfax.tracer.ink.outlines import (
     Outline,
@@ -32,8 +32,10 @@ from morfax.tracer.ink.outlines import (
     goes_round_paper,
     parts,
     straight_chains,
+    turned_by,
 )
 from morfax.tracer.ink.way_round import FoundWay, Search
+from morfax.tracer.sensing.leg import FACING
 
 NEW_BY_END = 0.9  # of a way with an end is along no other; by trial on synthetic nets
 
@@ -73,6 +75,37 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     for without in (aside, taken | aside):
         rest = parts(junctions, without)
         yield from (way for way in rest if is_new(way, may_be=goes_on_or_round))
+
+
+def only_cross(ways: Sequence[Outline], junctions: Junctions) -> bool:
+    """Whether some closed ways share no line, and turn off at junctions only beside one other line that goes
+    straight on there: their corners lie on lines that they cross.
+    """
+    links = [link for way in ways for link in way.chain.links]
+    if len({link.line for link in links}) < len(links):
+        return False
+    return all(
+        _goes_past(Side(link.line, not link.back), Side(onto.line, onto.back), junctions)
+        for way in ways
+        for link, onto in zip(
+            way.chain.links, [*way.chain.links[1:], way.chain.links[0]], strict=True
+        )
+    )
+
+
+def _goes_past(far: Side, near: Side, junctions: Junctions) -> bool:
+    """Whether a way goes straight on at a junction, or at a corner there passes by a line that does."""
+    there = junctions.at(far)
+    others = [side for side in there.sides if side not in (far, near)]
+    pairs = (
+        [(far, near)]
+        if len(others) != len((far, near))
+        else [(far, near), (others[0], others[1])]
+    )
+    return not others or any(
+        turned_by(there.leg(one), there.leg(other).turned_round()) < FACING
+        for one, other in pairs
+    )
 
 
 def _silhouette(by_cost: list[FoundWay], search: Search) -> list[FoundWay]:

@@ -34,8 +34,11 @@ from morfax.tracer.sensing.leg import Leg, turn
 
 # All limits below were chosen by trial on drawings of nets.
 SMOOTHLY = math.radians(22)  # a way that turns by no more between two legs is smooth
-AT_VERTEX = 0.6  # widths from where all legs meet: two legs that meet there may be a corner
-CORNERED = math.radians(30)  # a corner counts as turning so much more: a smooth way is likelier
+# widths from where all legs meet, or of how far apart their ends are: two that meet there may be a corner
+AT_VERTEX, OF_WIDE = 0.6, 0.07
+# a corner counts as turning so much: a smooth way is likelier. How far it turns tells next to nothing of
+# whether it is one, against by how much another line bends: a rad of it adds so many rad²
+CORNERED, SHARPER = math.radians(120), 0.05
 HIDDEN_WIDTHS = 6.0  # a vertex further beyond both clean ends is told by neither leg
 STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning so much more
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
@@ -53,9 +56,11 @@ def turnings(legs: Sequence[Leg], width_mm: float) -> Array:
     count = len(legs)
     costs = np.full((count, count), math.inf)
     middle = meeting_place(legs)
+    wide_mm = float(np.hypot(*np.ptp([leg.end_mm for leg in legs], axis=0)))
+    about = middle, max(AT_VERTEX * width_mm, OF_WIDE * wide_mm)
     for a in range(count):
         for b in range(a + 1, count):
-            costs[a, b] = costs[b, a] = _turning(legs[a], legs[b], middle, width_mm)
+            costs[a, b] = costs[b, a] = _turning(legs[a], legs[b], about, width_mm)
     return costs
 
 
@@ -136,8 +141,11 @@ def _through_places(
     return through_nodes([begin, *zip(places, headings.tolist(), strict=True), end])
 
 
-def _turning(one: Leg, other: Leg, middle: Array, width_mm: float) -> float:
-    """By how much a way turns from one incoming leg onto another, rad; infinite if they are no line."""
+def _turning(one: Leg, other: Leg, about: tuple[Array, float], width_mm: float) -> float:
+    """By how much a way turns from one incoming leg onto another, rad; infinite if they are no line.
+
+    `about` is where all legs meet, and how near to that a corner is, mm.
+    """
     out = other.turned_round()
     chord = out.end_mm - one.end_mm
     long = float(np.hypot(*chord))
@@ -145,16 +153,23 @@ def _turning(one: Leg, other: Leg, middle: Array, width_mm: float) -> float:
         return abs(turn(one.heading_rad, out.heading_rad))
     along = math.atan2(chord[1], chord[0])
     natural = 0.25 * long * (one.bend_per_mm + out.bend_per_mm)
-    a, b = turn(one.heading_rad, along) - natural, turn(along, out.heading_rad) - natural
-    # a + b is the whole turn; a - b tells by how far the legs miss each other
-    turning = math.sqrt(max(a * a + b * b - a * b, 0.0))
+    before, after = turn(one.heading_rad, along), turn(along, out.heading_rad)
+    # a bend felt along a short leg beside other ink is none: over a long chord it tells nothing
+    turning = min(_bending(before - bend, after - bend) for bend in (0.0, natural))
     longer = STRETCHED * long / width_mm
     if turning < SMOOTHLY:
         return turning + longer
     corner = Corner.of(one, out)
-    if corner is None or np.hypot(*(corner.vertex_mm - middle)) > AT_VERTEX * width_mm:
+    if corner is None or math.dist(corner.vertex_mm, about[0]) > about[1]:
         return math.inf
-    return CORNERED + corner.deflection_rad + longer
+    return math.sqrt(CORNERED**2 + SHARPER * corner.deflection_rad + longer**2)
+
+
+def _bending(a: float, b: float) -> float:
+    """The turning of the cubic that turns by `a` onto its chord and by `b` off it, rad: a + b is the whole
+    turn, and a - b tells by how far the legs miss each other.
+    """
+    return math.sqrt(max(a * a + b * b - a * b, 0.0))
 
 
 def _pairings(left: tuple[int, ...]) -> Iterator[tuple[Pair, ...]]:

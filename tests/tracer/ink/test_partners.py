@@ -53,6 +53,18 @@ def test_three_walls_that_meet_are_a_corner_and_an_end() -> None:
     assert len(paired([leg(0), leg(120), leg(240)])) == 1
 
 
+def test_a_corner_where_another_line_passes_takes_no_partner_from_that() -> None:
+    """It turns by 90 degrees, or by 81 onto the other line, which would then bend by 9."""
+    legs = [leg(99, 1.5), leg(279, 4.0), leg(180, 1.5), leg(270, 4.0)]
+    assert paired(legs) == {frozenset({0, 1}), frozenset({2, 3})}
+
+
+def test_a_bend_felt_along_a_short_leg_beside_other_ink_exchanges_no_partners() -> None:
+    """Two lines cross at 9 degrees; over the chord the bend would turn one of them by 30 degrees."""
+    legs = [leg(0, 4.0), leg(180, 4.0, bend_per_mm=0.26), leg(9, 4.0), leg(189, 4.0)]
+    assert paired(legs) == {frozenset({0, 1}), frozenset({2, 3})}
+
+
 def test_bends_are_allowed_for() -> None:
     """Two circles of 5 mm that touch from outside: each goes on round, neither onto the other."""
     bend = 1 / 5.0

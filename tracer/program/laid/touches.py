@@ -23,11 +23,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array, bounds
+from morfax.motion.crossings import crossings
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import at_lengths, evenly, length_mm, lengths_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.limits import TIP_RAD
 from morfax.tracer.program.against_ink.bars import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.laid.bay_run import Bay, laid
@@ -58,6 +60,8 @@ HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
 # for each width of the ways: head's ways that leave less explain the ink, and rims must leave so much less
 LEAVES, TIMES = 0.01, 2.0
 LONGER = 1.4  # a rim, than the head's way; and a width
+# lines that cross by more do not touch: at a corner of one, both went past the other
+CROSSES = TIP_RAD / 2
 
 
 class _Touch(NamedTuple):
@@ -164,6 +168,8 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
         for line, begin, end in zip((one, other), touch.first_mm, touch.last_mm, strict=True)
     )
     ways = _Ways(first, second if touch.is_parallel else second[::-1])
+    if _steepest_rad(ways) > CROSSES:
+        return None
     ink = ink_about(setup.sheet.drawing, np.vstack(ways), width_mm, REACH)
     rest_mm = _rest_mm(ink, lines, touch, whole)
     widths = sum(long) / width_mm
@@ -182,6 +188,21 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
     if not rims.is_exchanged:
         return _laid_each(setup, (one, other), touch, rims, whole)
     return _exchanged(setup, one, touch, rims) if one is other else None
+
+
+def _steepest_rad(ways: _Ways) -> float:
+    """The largest angle by which two ways cross, rad, over a width to either side; 0 if they do not."""
+    found = np.round(crossings(*ways)).astype(np.int64)
+    about = round(1 / STEP_WIDTHS)
+
+    def headings_rad(way: Array, at: NDArray[np.int64]) -> Array:
+        along = way[np.minimum(at + about, len(way) - 1)] - way[np.maximum(at - about, 0)]
+        return np.arctan2(along[:, 1], along[:, 0])
+
+    one, other = (headings_rad(way, found[:, k]) for k, way in enumerate(ways))
+    return float(
+        np.max(np.abs(np.arctan2(np.sin(one - other), np.cos(one - other))), initial=0)
+    )
 
 
 def _rest_mm(

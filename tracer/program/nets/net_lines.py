@@ -16,7 +16,9 @@ way past the bays. Such a net is not clear, and the head looks for its way itsel
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,6 +53,7 @@ from morfax.tracer.program.setup import Setup
 
 if TYPE_CHECKING:
     from morfax.tracer.ink.chains import Chain
+    from morfax.tracer.ink.outlines import Outline
 
 
 def net_of(setup: Setup, contour: Contour) -> NetLines | None:
@@ -106,14 +109,24 @@ class NetLines:
     @property
     def is_clear(self) -> bool:
         """Whether the junctions show its lines: it is not one line that touches itself."""
+        from morfax.tracer.ink.closed_ways import only_cross
         from morfax.tracer.ink.outlines import straight_chains
 
         if not touches_itself(self._junctions):
             return True
-        closed_mm = sum(way.length_mm for way in straight_chains(self._junctions))
-        return closed_mm > NEARLY_ALL * sum(
-            line.length_mm for line in self._junctions.net.lines
-        )
+        least_mm = NEARLY_ALL * sum(line.length_mm for line in self._junctions.net.lines)
+        if _length_mm(straight_chains(self._junctions)) > least_mm:
+            return True
+        ways = self._closed_ways
+        crosses = len(ways) > 1 and only_cross(ways, self._junctions)
+        return crosses and _length_mm(ways) > least_mm
+
+    @cached_property
+    def _closed_ways(self) -> list[Outline]:
+        """All closed ways."""
+        from morfax.tracer.ink.closed_ways import closed_ways
+
+        return list(closed_ways(self._junctions, set(), NEW))
 
     @property
     def ends_in_marks(self) -> bool:
@@ -126,12 +139,10 @@ class NetLines:
         """All lines, the longest closed one first, however short that is; none if it leaves out much of a
         stroke that does not come round.
         """
-        from morfax.tracer.ink.closed_ways import closed_ways
-
         junctions = self._junctions
         strokes_mm = (chain_mm(chain, junctions) for chain in junctions.chains())
         least_mm = CLOSES * max(strokes_mm, default=0.0)
-        ways = [w for w in closed_ways(junctions, set(), NEW) if w.length_mm > least_mm]
+        ways = [way for way in self._closed_ways if way.length_mm > least_mm]
         if not ways:
             return []
         return self.lines() or [self._run(max(ways, key=lambda way: way.length_mm).chain)]
@@ -162,7 +173,8 @@ class NetLines:
         from morfax.tracer.ink.outlines import is_free
 
         junctions, shortest_mm = self._junctions, float(least_mm(self._width_mm))
-        closed = [way.chain for way in closed_ways(junctions, taken, NEW)]
+        ways = closed_ways(junctions, taken, NEW) if taken else self._closed_ways
+        closed = [way.chain for way in ways]
         taken = taken.union(*({link.line for link in chain.links} for chain in closed))
         across = [
             chain
@@ -179,6 +191,11 @@ class NetLines:
         """The head's run along a chain."""
         line = line_along(self._setup, chain, self._junctions)
         return replace(line, number=self._number, ink_mm=self._ink_mm)
+
+
+def _length_mm(ways: Iterable[Outline]) -> float:
+    """The length of some ways, mm."""
+    return sum(way.length_mm for way in ways)
 
 
 def or_outline(setup: Setup, contour: Contour, line: Line | None) -> Line | None:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 import shapely
+import shapely.affinity
 
 from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.line import Line
@@ -37,11 +38,11 @@ def cut(*lines: Points) -> list[Line]:
     return list(trace_lines(inked(*lines, seed=3)).lines)
 
 
-def are(lines: Sequence[Line], *drawn: Points) -> bool:
+def are(lines: Sequence[Line], *drawn: Points, within_mm: float = CORNERS_MM) -> bool:
     """Whether lines are just the closed ones that were drawn, each once."""
     ways = [shapely.LinearRing(line.loop_mm[::20]) for line in lines if line.ending == "closed"]
     near = [
-        sum(way.hausdorff_distance(shapely.LineString(line)) < CORNERS_MM for way in ways)
+        sum(way.hausdorff_distance(shapely.LineString(line)) < within_mm for way in ways)
         for line in drawn
     ]
     return len(ways) == len(lines) == len(drawn) and near == [1] * len(drawn)
@@ -198,6 +199,23 @@ def test_a_hole_with_an_arrowhead_and_short_ends_of_other_lines_comes_round_once
     lines = trace_lines(drawing).lines
     assert [line.ending for line in lines] == ["closed", "closed"]
     assert min(line.length_mm for line in lines) == pytest.approx(math.tau * radius_mm, abs=0.1)
+
+
+@pytest.mark.usefixtures("no_trials")
+@pytest.mark.parametrize(
+    ("aside_mm", "within_mm"),
+    [(0.0, CORNERS_MM), (1.0, CORNERS_MM), (-1.0, 0.2)],  # the last is round within their ink
+)
+def test_rectangles_that_cross_at_a_flat_angle_are_cut_as_the_pen_drew_them(
+    aside_mm: float, within_mm: float
+) -> None:
+    """A corner of either lies on a side of the other; the head took the way round the outside of both, and
+    within their rims they exchanged their ways between two crossings.
+    """
+    one = polyline((8, 10), (48, 10), (48, 34), (8, 34), (8, 10))
+    turned = shapely.affinity.rotate(shapely.LineString(one), 9.0, (27.0, 22.0))
+    other = shapely.get_coordinates(turned) + np.array([aside_mm, 0.0])
+    assert are(cut(one, other), one, other, within_mm=within_mm)
 
 
 def test_an_extension_line_from_a_centre_cross_is_no_lead_line() -> None:
