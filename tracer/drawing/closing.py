@@ -26,12 +26,12 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.plane import unit
 from morfax.tracer.drawing.spacing import CLEAR, Pairs
+from morfax.tracer.limits import DETAIL_PX
 
 Grey = NDArray[np.float32]
 
 BEYOND = 2.0  # standard deviations of the lens: so far beyond the edges their softness goes
 STROKE_PX = 3  # of the strokes from edge to edge, which are a pixel apart
-TOGETHER_PX = 6.0  # places nearer to one another are of one slit
 TOLD = 3  # places that are told one by one
 ROOM = 1.15  # times the least distance: what is printed so large is followed
 TIP_PERCENT = 10.0
@@ -94,7 +94,7 @@ def places_of(share: Grey, pairs: Pairs, pitch_mm: float) -> list[Closed]:
     from scipy.spatial import cKDTree
 
     middles = pairs.places.mean(axis=1)
-    near = cKDTree(middles).query_pairs(TOGETHER_PX, output_type="ndarray")
+    near = cKDTree(middles).query_pairs(DETAIL_PX, output_type="ndarray")
     ones = np.ones(len(near), np.int8)
     links = coo_array((ones, (near[:, 0], near[:, 1])), shape=(len(middles),) * 2)
     count, group = connected_components(links, directed=False)

@@ -22,11 +22,12 @@ from morfax.motion.faults import LineFault
 from morfax.motion.polyline import area_mm2
 from morfax.tracer.following.direction import Arrow
 from morfax.tracer.following.line import Line
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed
 
 # Both limits below were chosen by trial.
-NEAR_WIDTHS, NEAR_MM = 3.0, 1.0  # an arrow further from a line is on none: the larger
+NEAR_MM = 1.0  # an arrow further from a line, and beyond `ABOUT_WIDTHS`, is on none
 ALIKE = 0.02  # a line is as long from another place, within this share
 
 
@@ -98,7 +99,7 @@ def _nearest(arrow: Arrow, lines: list[Line]) -> int:
     """The index of the line on which an arrow is; raises LineFault if it is on none."""
     away_mm = [float(np.hypot(*(line.places_mm - arrow.place_mm).T).min()) for line in lines]
     number = int(np.argmin(away_mm))
-    if away_mm[number] > max(NEAR_WIDTHS * lines[number].width_mm, NEAR_MM):
+    if away_mm[number] > max(ABOUT_WIDTHS * lines[number].width_mm, NEAR_MM):
         raise _refused(
             arrow, f"the nearest line that is followed is {away_mm[number]:.1f} mm away"
         )
