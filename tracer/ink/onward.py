@@ -48,7 +48,8 @@ class Onward:
         """
         there = self.junctions.at(one)
         widths_mm = [there.leg(side).width_mm for side in (one, other)]
-        if max(widths_mm) < OTHER_PEN * min(widths_mm):
+        whole_mm = [self._whole_mm(side) for side in (one, other)]
+        if any(max(mm) < OTHER_PEN * min(mm) for mm in (widths_mm, whole_mm)):
             return False
         others = [
             leg.width_mm
@@ -60,6 +61,14 @@ class Onward:
             or any(max(mm, own) < OTHER_PEN * min(mm, own) for own in others)
             for side, mm in zip((one, other), widths_mm, strict=True)
         )
+
+    def _whole_mm(self, side: Side) -> float:
+        """The width of all of a side's line, if that tells its pen: an arrowhead that touches the line next
+        to a junction makes it wider there.
+        """
+        if side.line in self._sure:
+            return self.junctions.net.lines[side.line].width_mm
+        return self.junctions.at(side).leg(side).width_mm
 
     @cached_property
     def _sure(self) -> set[int]:

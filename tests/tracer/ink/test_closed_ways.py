@@ -9,11 +9,11 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink import outlines
 from morfax.tracer.ink.aside import has_arrowhead
 from morfax.tracer.ink.chains import Chain, Junction, Junctions, Link, Side
-from morfax.tracer.ink.closed_ways import _Search
 from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.net import FeltLine, Net
 from morfax.tracer.ink.onward import Onward
 from morfax.tracer.ink.outlines import Outline, goes_round_paper
+from morfax.tracer.ink.way_round import Search
 from morfax.tracer.sensing.leg import Leg
 
 STEP_MM, LINE_MM = 0.05, 0.4
@@ -39,6 +39,25 @@ def test_lines_of_two_pens_are_told_from_ink_that_two_lines_share(
     onward = Onward(Junctions(Net([]), Settings()))
     assert onward.are_of_two_pens(sides[0], sides[1]) == are_two
     assert not onward.are_of_two_pens(sides[0], sides[2])
+
+
+def test_an_arrowhead_that_touches_a_long_line_makes_no_other_pen_of_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ends_mm, whole_mm = (0.7, 0.5, 0.7, 0.5), (0.5, 0.5)
+    sides = [Side(n, False) for n in range(len(ends_mm))]
+    legs = [
+        Leg(np.zeros(2), float(n), 0.0, mm, np.empty((0, 3))) for n, mm in enumerate(ends_mm)
+    ]
+    there = Junction(sides, False, Crossing(legs, [], Settings()))
+    monkeypatch.setattr(Junctions, "at", lambda *_: there)
+    lines = [
+        FeltLine([], [], (0, 1), mm, 30.0, n, np.empty(0)) for n, mm in enumerate(whole_mm)
+    ]
+    onward = Onward(Junctions(Net(lines), Settings()))
+    assert onward.are_of_two_pens(sides[0], sides[1])  # what of them tells no pen
+    monkeypatch.setitem(onward.__dict__, "_sure", {0, 1})
+    assert not onward.are_of_two_pens(sides[0], sides[1])
 
 
 def widths(*pieces_mm: tuple[float, float, float]) -> np.ndarray:
@@ -85,7 +104,7 @@ def test_a_sharp_tip_is_one_of_long_straight_lines(
     monkeypatch.setattr(Junctions, "at", lambda *_: there)
     lines = [FeltLine([], [], (0, 1), LINE_MM, long_mm) for _ in sides]
     junctions = Junctions(Net(lines), Settings())
-    search = _Search(junctions, Onward(junctions), Onward(junctions))
+    search = Search(junctions, Onward(junctions), Onward(junctions))
     assert search._is_tip(*sides, np.radians(160)) == is_tip
 
 

@@ -33,6 +33,7 @@ from morfax.tracer.program.lines.selection import (
     Contour,
     least_mm,
 )
+from morfax.tracer.program.nets.centre_crosses import is_centre_cross
 from morfax.tracer.program.nets.net_outline import (
     CLOSES,
     NEARLY_ALL,
@@ -85,7 +86,11 @@ def _is_lead(setup: Setup, contour: Contour) -> bool:
     """Whether a line of a patch comes from a reference point."""
     sheet, operator = setup.sheet, setup.operator
     ends = ends_of(sheet, contour.stroke, setup.settings, operator.reference_mm)
-    return any(stance.reference_mm is not None for stance, _ in ends)
+    leads = [stance for stance, _ in ends if stance.reference_mm is not None]
+    if not leads or operator.reference_mm is not None:
+        return bool(leads)
+    junctions = junctions_of(setup, contour.stroke.patch)
+    return not all(is_centre_cross(junctions, stance) for stance in leads)
 
 
 class NetLines:

@@ -36,6 +36,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
+from morfax.tracer.program.nets.centre_crosses import is_centre_cross
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.behind_spot import ABOUT_MM
 
@@ -186,11 +187,15 @@ def _is_program(setup: Setup) -> bool:
 
 def _has_reference(setup: Setup) -> bool:
     """Whether a line leads away from a reference point that is drawn."""
+    sheet = setup.sheet
     try:
-        stance, _ = next(put_down(setup.sheet, settings=setup.settings))
+        stance, _ = next(put_down(sheet, settings=setup.settings))
     except LineFault:
         return False
-    return stance.reference_mm is not None
+    if stance.reference_mm is None:
+        return False
+    patch = sheet.longest().patch
+    return not are_nets(sheet)[patch] or not is_centre_cross(junctions_of(setup, patch), stance)
 
 
 def are_nets(sheet: Sheet) -> NDArray[np.bool_]:

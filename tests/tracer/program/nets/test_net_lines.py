@@ -12,6 +12,7 @@ import shapely
 from morfax.tracer.following.attempts import Attempts
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import found_lines, trace_lines
 from tests.tracer.inked import Points, arc, inked, polyline
 
@@ -197,3 +198,37 @@ def test_a_hole_with_an_arrowhead_and_short_ends_of_other_lines_comes_round_once
     lines = trace_lines(drawing).lines
     assert [line.ending for line in lines] == ["closed", "closed"]
     assert min(line.length_mm for line in lines) == pytest.approx(math.tau * radius_mm, abs=0.1)
+
+
+def test_an_extension_line_from_a_centre_cross_is_no_lead_line() -> None:
+    """A lead line ends at the contour; this one crosses it, from the middle of a slot that is dimensioned."""
+    edge = polyline((20, 8), (20, 44))
+    cross = polyline((38, 26), (42, 26)), polyline((40, 24), (40, 28))
+    beside = polyline((42, 26), (70, 26)), polyline((68, 26), (68, 34))
+    drawing = inked(FRAME, edge, *cross, *beside, seed=3)
+    lines = trace_lines(drawing).lines
+    (first,) = [line for line in lines if line.ending == "closed"]
+    assert are([first], FRAME)
+    assert all(line.reference_mm is None for line in lines)
+    assert are(trace(drawing).lines, FRAME)
+
+
+def test_the_silhouette_goes_before_the_figures_of_which_it_is_made() -> None:
+    """A bracket on a plate whose edge runs on below it, from the corner of which an extension line comes."""
+    quarter = np.linspace(-math.pi / 2, 0, 60)
+    feet = [
+        np.c_[x + way * 5 * np.cos(quarter), 21 + 5 * np.sin(quarter)]
+        for x, way in ((20, 1), (46, -1))
+    ]
+    sides = polyline((25, 21), (25, 36)), polyline((41, 21), (41, 36))
+    plate = polyline((8, 8), (58, 8), (58, 16), (8, 16), (8, 8))
+    boss, below = arc((33, 36), 8), polyline((58, 8), (58, 0))
+    first = max(cut(plate, boss, *feet, *sides, below), key=lambda line: line.length_mm)
+    figure = shapely.union_all(
+        [shapely.Polygon(plate), shapely.Polygon(boss), shapely.box(25, 16, 41, 36)]
+        + [
+            shapely.box(x, 16, x + 5, 21).difference(shapely.Point(x0, 21).buffer(5, 64))
+            for x, x0 in ((20, 20), (41, 46))
+        ]
+    )
+    assert are([first], shapely.get_coordinates(figure.exterior))
