@@ -43,8 +43,8 @@ GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
 
 class Profiles(NamedTuple):
     """Profiles across lines: darkness (n, k) at distances (k,) px from their middles, the middles (n, 2) row
-    and column, the unit vectors (n, 2) across, and how dark the paper beside them is in the mean: its 0 is the
-    level of its lighter pixels (see `levelling`).
+    and column, the unit vectors (n, 2) across, and how dark the paper beside them is in the mean: its 0 is
+    the level of its lighter pixels (see `levelling`).
     """
 
     seen: Array

@@ -4,9 +4,10 @@
         ╰──╯         bend shorter than a leg is felt as an average, and the way bulges or cuts it short
 
 Wherever the swinging cell did not lead along a closed line, or an open one between its ends, the pen's ink
-along the way is held against the sheet's, place by place. Where it leaves more than noise does, a spline is laid by the ink (see `tangles.spline`) between clean
-places of the way on either side, with the corners of the way, or some more or fewer. If it explains the ink,
-and the head's own way does not, the head runs along it from memory.
+along the way is held against the sheet's, place by place. Where it leaves more than noise does, a spline is
+laid by the ink (see `tangles.spline`) between clean places of the way on either side, with the corners of the
+way, or some more or fewer. If it explains the ink, and the head's own way does not, the head runs along it
+from memory.
 
 Signals: the sheet and lines in; the lines with those stretches bent onto their ink out.
 

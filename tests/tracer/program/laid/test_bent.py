@@ -57,7 +57,10 @@ def stairs() -> Points:
     corners = complex(4, 12) + np.cumsum([0, *(4 * [3, -rise]), *(4 * [3, rise]), 3])
     way, radius_mm = [corners[0]], 0.5 * WIDTH_MM
     for before, corner, after in zip(corners, corners[1:], corners[2:], strict=False):
-        come, go = (corner - before) / abs(corner - before), (after - corner) / abs(after - corner)
+        come, go = (
+            (corner - before) / abs(corner - before),
+            (after - corner) / abs(after - corner),
+        )
         turns = np.linspace(0.0, np.pi / 2, 30)
         way.extend(corner + radius_mm * ((np.sin(turns) - 1) * come + (1 - np.cos(turns)) * go))
     places = np.array([*way, corners[-1]])
@@ -70,8 +73,7 @@ def test_steps_of_an_open_line_are_followed_as_they_are_drawn(seed: int) -> None
     (own,), (line,) = before_and_after(stairs(), seed=seed)
     inner = shapely.box(5.0, 0.0, stairs()[-1, 0] - 1.0, 30.0)
     true, *ways = (
-        shapely.LineString(way).intersection(inner)
-        for way in (stairs(), own.xy_mm, line.xy_mm)
+        shapely.LineString(way).intersection(inner) for way in (stairs(), own.xy_mm, line.xy_mm)
     )
     away = [true.hausdorff_distance(way) for way in ways]
     assert own.ending == line.ending == "ended"
