@@ -22,6 +22,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
+from morfax.motion.usual import AT_ONCE
 from morfax.tracer.drawing import memory
 from morfax.tracer.drawing.sharpening import Edge
 from morfax.tracer.limits import DETAIL_PX
@@ -32,7 +33,6 @@ FINEST = 4
 CLEAR = 2.0  # standard deviations of the lens: edges that are nearer move one another
 # times as far along the edge as straight across: it comes back, as round a hole (1.57)
 BACK = 1.5
-AT_ONCE = 1 << 17  # pairs: 20 MB of places and lengths
 LEG = 0.95  # of the way along the edge is straight to a corner and straight on from it: legs of one corner
 # times as far along, and it is another edge, and no corner that the lens has blurred
 ROUND_ABOUT = 8

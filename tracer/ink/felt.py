@@ -32,13 +32,21 @@ from morfax.tracer.junctions.rings import CHORD, SKIPPED
 from morfax.tracer.limits import AS_WIDE, LONGER_WIDTHS
 from morfax.tracer.sensing.leg import LEAST_WIDTHS, TURNS_OFF
 from morfax.tracer.sensing.ray import edges
-from morfax.tracer.sensing.scout import CLEAN, CLEAN_PX, LEAP, LEAP_PX, SPECK_MM, SPECK_PX
+from morfax.tracer.sensing.scout import (
+    CLEAN,
+    CLEAN_PX,
+    LEAP,
+    LEAP_PX,
+    REACH_PX,
+    SPECK_MM,
+    SPECK_PX,
+)
 from morfax.tracer.sensing.view import View
 
 Flags = NDArray[np.bool_]
 
 # All limits below were chosen by trial on drawings of nets.
-REACH, REACH_PX = 1.0, 3.0  # widths and pixels within which the edges are looked for
+REACH = 1.0  # widths and pixels within which the edges are looked for
 GUIDED_WIDTHS = 0.75  # to either side of a place: what its heading is taken over
 ROUGHER = 2.5  # standard deviations of a rough line's own width: so far a station may differ
 FEWEST_STATIONS = 5  # of a clean run

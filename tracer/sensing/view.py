@@ -17,7 +17,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, FOLLOWS
 from morfax.tracer.sensing import edge_scout, photocell, ray
 from morfax.tracer.sensing.gauge import gauge
 from morfax.tracer.sensing.photocell import STEP_PX, Cells
@@ -155,7 +155,7 @@ class View:
                 seen.append((x, y, width))
         return np.array(seen).reshape(-1, 3)
 
-    def like(self, place: Array, heading: float, follows: float = 0.1) -> View:
+    def like(self, place: Array, heading: float, follows: float = FOLLOWS) -> View:
         """The view with the line's width and darkness about a place, if they are like those before.
 
         Lines swell and fade. The usual width follows by a share of how far the width differs from it.
