@@ -27,12 +27,12 @@ from morfax.motion.compiled import njit
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
 from morfax.motion.neighbours import Neighbours
+from morfax.motion.usual import AT_ONCE
 
 SAMPLE_MM = 0.01
 # beyond 10 m of path the samples stand further apart: memory stays below 200 MB
 LARGEST_SAMPLES = 1_000_000
-_NEIGHBOURS = 4  # nearest samples whose pieces are tried, see Questions
-_SAMPLES_AT_ONCE = 100_000  # so that memory stays small
+NEIGHBOURS = 4  # nearest samples whose pieces are tried, see Questions
 _P95 = 0.95  # of the length is nearer than this distance
 
 
@@ -173,14 +173,14 @@ class _Finder:
     def distances_mm(self, points: Array, tell: Tell = lambda share: None) -> Array:
         """Distance of each point (n, 2) from the nearest straight piece, mm; `tell` hears how far it is."""
         parts = list[Array]()
-        for first in range(0, len(points), _SAMPLES_AT_ONCE):
+        for first in range(0, len(points), AT_ONCE):
             tell(first / len(points))
-            parts.append(self._some(points[first : first + _SAMPLES_AT_ONCE]))
+            parts.append(self._some(points[first : first + AT_ONCE]))
         return np.concatenate(parts)
 
     def _some(self, points: Array) -> Array:
         """The same for a few points, so that memory stays small."""
-        k = min(_NEIGHBOURS, len(self._sampled.points_mm))
+        k = min(NEIGHBOURS, len(self._sampled.points_mm))
         near = self._neighbours.several(points, k)
         best = np.hypot(*(points - self._sampled.points_mm[near[:, 0]]).T)
         _to_pieces(points, near, (self._sampled.points_mm, self._sampled.leads_on), best)

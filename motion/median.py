@@ -14,7 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
-ONE_ABOVE = 84.13  # percentile one standard deviation above the median
+MIDDLE = 50.0  # percentile: the median
+ONE_BELOW = 15.87  # percentile one standard deviation below it, ...
+ONE_ABOVE = 100 - ONE_BELOW  # ... and above
+TWO_BELOW = 2.28  # two below
 OUTLIERS = 3.0  # robust standard deviations: what is further off is left out
 MANY = 500  # numbers: to find their middle takes less time than to put them in order
 

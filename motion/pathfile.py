@@ -37,10 +37,10 @@ from morfax.motion.faults import MotionFault
 from morfax.motion.files import written_beside
 from morfax.motion.motion import AXES, IN_WORK_BELOW_MM, Path
 from morfax.motion.pathtable import LONGEST_S, PathTable, read_table
+from morfax.motion.usual import AT_ONCE
 from morfax.motion.usual import FEED_MM_S as FEED_MM_S
 
 CLEARANCE_MM = 2.0  # where the tool stands when it is up, docs/design.md
-_ROWS_AT_ONCE = 4096  # that are written
 
 
 def write_path(path: Path, file: str | os.PathLike[str]) -> None:
@@ -56,8 +56,8 @@ def write_rows(path: Path, out: TextIO, *, header: bool = False) -> None:
     places_mm = path.positions_mm
     rows = np.column_stack([path.t_s, places_mm[:, :3], path.tool, places_mm[:, 3:]])
     decimals = [7, 5, 5, 5, 0, *[5] * len(path.axes[3:])]
-    for first in range(0, len(rows), _ROWS_AT_ONCE):
-        out.write(lines_of(rows[first : first + _ROWS_AT_ONCE], decimals))
+    for first in range(0, len(rows), AT_ONCE):
+        out.write(lines_of(rows[first : first + AT_ONCE], decimals))
 
 
 def _header(path: Path) -> str:

@@ -23,6 +23,7 @@ from morfax.panel import commands, keepsake
 from morfax.panel.corrected import asked_words
 from morfax.panel.history import Step
 from morfax.panel.own_files import as_paths
+from morfax.player.tape.setting import OVERRIDES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 PAGE = ".html"
 PROGRAM = "program"  # in the words of the machine that is set
 SAVED_AS = (".wav", ".steps", ".cubic", ".ngc", ".dxf", ".svg", ".plt", ".csv", PROGRAM, PAGE)
-OVERRIDES = (0.1, 2.0)  # of the program's feed
 PACES = (0.1, 100.0)  # times the head's own speed
 LONGEST_VALUE = 200  # characters of an option
 OF_SETTINGS = ("open", "set", "correct", "undo", "redo")

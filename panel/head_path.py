@@ -13,10 +13,12 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
+from morfax.motion.polyline import UM
+
 FRAME_S = 1 / 30  # between two frames to a page
 AT_ONCE = 5_000  # places to a frame: 60 kB of text
 MOST = 400_000
-PER_MM = 1000  # a place is kept in whole um, 4 bytes each way: an hour takes 3 MB
+PER_MM = round(1 / UM)  # a place is kept in whole um, 4 bytes each way: an hour takes 3 MB
 DOWN = -(2**31)  # in place of X: the head was put down anew
 
 

@@ -21,4 +21,7 @@ NEAR = 0.3  # widths from a line's middle: so near a place is on that line
 CLEAR_WIDTHS = 1.5  # from a place where lines meet: further on, the ink is that of one line
 ABOUT_WIDTHS = 3.0  # about a place: so far what belongs to it is looked for
 LONGER_WIDTHS = 4.0  # what goes on beside a line for longer is no corner, crossing or blot
+PIECE_MM = 3.0  # of line, which shows how it runs
+DETAIL_PX = 6.0  # neither lens nor cells part places that are nearer
+FOLLOWS = 0.1  # share by which what is usual follows what is seen, again and again
 FADES = 3.0  # softnesses from its edge, ink is whole or none: erfc is within 1e-5 of that

@@ -25,10 +25,10 @@ import numpy as np
 
 from morfax.motion.faults import ProgramFault
 from morfax.motion.plane import NOTHING_MM
-from morfax.motion.usual import PLOTTER_MM
+from morfax.motion.usual import INCREMENT_MM, PLOTTER_MM
 from morfax.player.gcode.gcode_text import text_of
 from morfax.player.gcode.moves import LINE, RAPID, Move, Program
-from morfax.recorder.drawings.curve_chords import FLAT_MM, bulged
+from morfax.recorder.drawings.curve_chords import bulged
 from morfax.recorder.gcode.machine import Machine
 
 ABOVE_MM = 2.0  # where the pen stands when it is up
@@ -172,7 +172,7 @@ class _Pen:
             if abs(end - begin) < NOTHING_MM:
                 continue
             ends = np.array(self.place), np.array([end.real, end.imag])
-            for x, y in bulged(*ends, half_rad, FLAT_MM).tolist():
+            for x, y in bulged(*ends, half_rad, INCREMENT_MM).tolist():
                 self._to(number, (x, y))
 
     def _circle(self, number: int, radius_mm: float) -> None:

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
+from morfax.motion.usual import MOTION_RATE_HZ
 from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, Side, side
 from morfax.player.tape.discriminator import Discriminator
 from morfax.player.tape.motion_edges import END_ROWS, furthest
@@ -43,7 +44,7 @@ from morfax.recorder.tape.format import TapeFormat
 
 LEVEL_KEPT = 0.2  # of the level at standstill
 STEADY_S = 0.02  # ago: the level that a row is compared with
-SIDE_S = 0.006  # of sound tape on each side
+SIDE_S = SIDE_ROWS / MOTION_RATE_HZ  # of sound tape on each side
 LONGEST_S = 0.1  # a track that is away longer has ended
 # the same with a check signal: 1 s is asked, and the filter reaches 2 ms further; levels need some time
 LONGEST_CHECKED_S = 1.1

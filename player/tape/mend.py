@@ -40,12 +40,10 @@ from morfax.player.tape.end_count import Place, lost_cycles, not_whole
 from morfax.player.tape.lost_ways import Laid
 from morfax.player.tape.playback import TapePlayback, play
 from morfax.player.tape.reader import TapeReader
-from morfax.player.tape.standstill import STANDSTILL_S
+from morfax.player.tape.standstill import REFERENCE_BAND, STANDSTILL_S
 from morfax.recorder.tape.format import SURE_CYCLES, TapeFormat
 from morfax.recorder.tape.recording import Progress, Recording, record
 from morfax.recorder.tape.stated import TapeEntries
-
-KEPT_DWELL = 0.1  # of the standstills: the tape may have run this much fast, and gets new ones
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +170,8 @@ def _end_mm(playback: TapePlayback) -> Array:
 def _motion(playback: TapePlayback) -> Iterator[Motion]:
     """The motion between the standstills at both ends; the recorder makes the standstills anew."""
     fmt, rate_hz = playback.format, playback.format.motion_rate_hz
-    still = round((1 - KEPT_DWELL) * fmt.dwell_s * rate_hz)
+    # the tape may have run as much too fast; it gets new standstills
+    still = round((1 - REFERENCE_BAND) * fmt.dwell_s * rate_hz)
     end = -(-playback.frames // fmt.samples_per_motion) - still
     ends_mm = np.full(len(fmt.axes), np.nan)
     for first, places_mm in _read(playback):

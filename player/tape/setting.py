@@ -21,11 +21,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.axis import TRAVEL_MM
 from morfax.player.tape.phase_lock import MOTORS, PhaseLock
 from morfax.player.tape.sector_wheel import SectorWheel
 
 OVERRIDES = 0.1, 2.0  # what a transport of variable speed does
-LARGEST_ZERO_MM = 1000.0  # half of the machine's travel to either side
+LARGEST_ZERO_MM = TRAVEL_MM / 2  # half of the machine's travel to either side
 
 
 @dataclass(frozen=True, slots=True)

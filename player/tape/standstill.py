@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import LockFault, TapeFault
+from morfax.motion.median import TWO_BELOW
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.recorder.tape.check_signal import CYCLES_PER_SUBCARRIER
 from morfax.recorder.tape.format import SURE_CYCLES, TapeFormat
@@ -143,7 +144,7 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
 
 def _standing(cycles: Float64s, zero: Float64s, fmt: TapeFormat, least: int) -> int:
     """Rows of the standstill at the start, as long as all axes stay near their zero."""
-    stated = min(round(0.9 * fmt.dwell_s * fmt.motion_rate_hz), len(cycles))
+    stated = min(round((1 - REFERENCE_BAND) * fmt.dwell_s * fmt.motion_rate_hz), len(cycles))
     if stated < least:
         return 0
     # one that starts in the last of these rows is known by those behind them
@@ -170,7 +171,9 @@ def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
 def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
     """Raise TapeFault for phases that swing too far at standstill for a certain position."""
     # dropouts left out
-    swing = np.diff(np.percentile(standing, [2.3, 97.7], axis=0), axis=0)[0] / 4
+    swing = (
+        np.diff(np.percentile(standing, [TWO_BELOW, 100 - TWO_BELOW], axis=0), axis=0)[0] / 4
+    )
     axis = int(np.argmax(swing))
     if not swing[axis] <= UNSTEADY_CYCLES:
         raise TapeFault(

@@ -24,10 +24,9 @@ from morfax.player.tape.discriminator import Frames
 from morfax.player.tape.standstill import track_name
 from morfax.recorder.tape.format import TapeFormat
 
-MOMENTS = 64  # in a block
+MOMENTS = 64  # in a block: before one is full, nothing is said
 STEADIER = 4.0  # of the mean square, before another track is taken for the reference
 LEAST_MOTION_HZ = 8.0  # of track 1, RMS: 0.4 mm/s; 30 dB of noise leave 3
-FEWEST_MOMENTS = 64  # one block, before anything is said
 MOVED = 2.0  # of the mean square at standstill: a track that moved against track 1
 LEAST_APART_HZ = 1.0  # RMS: 0.05 mm/s, below which a track stands against track 1
 
@@ -57,7 +56,7 @@ class Steadiest:
             if self._noise is None:
                 first = self._found[: MOMENTS // 2]
                 self._noise = np.square(first - first[:, :1]).mean(axis=0)
-        if self._moments < FEWEST_MOMENTS:
+        if self._moments < MOMENTS:
             return None
         sums = self._sums[0].tolist()
         least = min(sums)
@@ -79,7 +78,7 @@ class Steadiest:
 
     def doubtful(self, time_s: float) -> Fault | None:
         """The fault of a track that moved against track 1 and was steadier over the whole tape."""
-        if self._moments < FEWEST_MOMENTS or self._noise is None:
+        if self._moments < MOMENTS or self._noise is None:
             return None
         mean, apart = self._sums / self._moments
         steadier = (mean < mean[0]) & (apart > MOVED * self._noise + LEAST_APART_HZ**2)

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array, median
 from morfax.motion.compiled import njit
+from morfax.motion.median import ROBUST
 from morfax.player.tape.phases import Phases
 from morfax.player.tape.predictor import count_turns
 from morfax.player.tape.standstill import SILENT_LEVEL
@@ -43,7 +44,6 @@ from morfax.recorder.tape.format import TapeFormat
 SETTLED_ROWS = 400
 SMALL_CYCLES = 1e-3  # of the jump that is tried, so that no turn is miscounted
 NOISE_SIGMAS = 6.0  # one row in 5e8
-MEDIAN_SIGMAS = 0.6745  # median of |noise| that is normal
 # A tenth of what is allowed: rounding, what the band filter bends at a corner, and the end of an MP3 of 128
 # kbit/s, 0.0044.
 LEAST_CYCLES = 0.005
@@ -150,7 +150,7 @@ def _noise(sizes: NDArray[np.float32]) -> Array:
     """So many standard deviations of each column, told by its median."""
     medians = np.empty(sizes.shape[1], np.float32)
     _medians(sizes, medians)
-    return np.asarray(medians * (NOISE_SIGMAS / MEDIAN_SIGMAS))
+    return np.asarray(medians * (NOISE_SIGMAS * ROBUST))
 
 
 @njit(cache=True, nogil=True)

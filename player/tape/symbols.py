@@ -32,7 +32,7 @@ GATES = 3  # of a symbol: early, on, late
 # of the full strength, a quarter of a symbol beside one that passes over to the other sign: cos pi/4
 PASSING = math.sqrt(0.5)
 PARTS = 4  # of a frame, each with its own phase
-FIGURES = PARTS + 3  # of a track's times
+FIGURES = PARTS + GATES  # of a track's times
 WORD = SYNC.astype(np.float64)
 
 

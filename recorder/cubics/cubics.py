@@ -33,6 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, ROUNDED, Array
+from morfax.motion.contour import NEIGHBOURS
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.plane import BEND_RAD
@@ -50,7 +51,6 @@ Words = NDArray[np.int64]
 TOLERANCE_MM = 0.002  # four counts
 LONGEST_S, SHORTEST_S = 0.512, 0.004  # of the intervals tried, each half of the one before
 POINT_RATE_HZ = 4000.0  # nearly, of the interpolated points: the servo is as fast
-_NEIGHBOURS = 4  # places whose pieces are tried
 STRETCH = 1.1  # of the motion's own time
 CHECK_EVERY = 64  # intervals from one checked position to the next
 LIMITS = Limits(100.0, 500.0, spacing_mm=0.005, window_mm=0.02, corner_rad=BEND_RAD)
@@ -257,7 +257,7 @@ def _nearest_mm(places: Array, run_mm: Array) -> Array:
     """
     from scipy.spatial import cKDTree
 
-    _, near = cKDTree(places).query(run_mm, k=min(_NEIGHBOURS, len(places)))
+    _, near = cKDTree(places).query(run_mm, k=min(NEIGHBOURS, len(places)))
     best = np.full(len(run_mm), np.inf)
     for piece in (*(near.T - 1), *near.T):
         first = np.clip(piece, 0, len(places) - 2)

@@ -18,8 +18,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 
-FLAT_MM = 1e-3  # curves from CAD are flattened to this
-MOST_CHORDS = 100_000  # of one curve; a circle of 1 m has 2 223 at FLAT_MM
+MOST_CHORDS = 100_000  # of one curve; a circle of 1 m has 2 223 at INCREMENT_MM
 
 
 def chords_of(radius: float, turned_rad: float, off: float) -> int:

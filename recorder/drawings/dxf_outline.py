@@ -29,7 +29,8 @@ import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import DrawingFault, FileFault
-from morfax.recorder.drawings.curve_chords import FLAT_MM, bulged
+from morfax.motion.usual import INCREMENT_MM
+from morfax.recorder.drawings.curve_chords import bulged
 from morfax.recorder.drawings.drawn_units import NO_UNIT, unit_mm
 from morfax.recorder.drawings.outline import Outline
 
@@ -84,7 +85,7 @@ def _pieces(file: FilePath, unit: str | None) -> tuple[list[Array], Counter[str]
     for count, entity in enumerate(_Shown.by(file, document).of(document.modelspace())):
         if count > MOST:
             raise DrawingFault(f"{file} holds more than {MOST} entities; save the part alone")
-        places = _places(entity, FLAT_MM / scale)
+        places = _places(entity, INCREMENT_MM / scale)
         if places is None:
             left_out[entity.dxftype()] += 1
         elif len(places):

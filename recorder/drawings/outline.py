@@ -24,7 +24,7 @@ from morfax.motion.motion import Path
 from morfax.motion.pathfile import FEED_MM_S, at_feed
 from morfax.motion.pathtable import PathTable
 from morfax.motion.units import LONGEST_MM
-from morfax.recorder.drawings.curve_chords import FLAT_MM
+from morfax.motion.usual import INCREMENT_MM
 
 # the tolerance of a program: ends that CAD has snapped agree to a millionth of it
 JOINED_MM = 0.01
@@ -72,7 +72,7 @@ def _once(pieces_mm: Sequence[Array]) -> list[Array]:
     """The pieces without those that are there already, this way round or the other."""
     seen, kept = set[bytes](), list[Array]()
     for piece in pieces_mm:
-        key = np.round(piece / FLAT_MM).astype(np.int64)
+        key = np.round(piece / INCREMENT_MM).astype(np.int64)
         if key.tobytes() in seen:
             continue
         seen |= {key.tobytes(), np.ascontiguousarray(key[::-1]).tobytes()}

@@ -24,7 +24,8 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
-from morfax.recorder.drawings.curve_chords import FLAT_MM, bezier, chords_of
+from morfax.motion.usual import INCREMENT_MM
+from morfax.recorder.drawings.curve_chords import bezier, chords_of
 from morfax.recorder.drawings.outline import Outline
 from morfax.recorder.drawings.svg_sheet import sheet_of
 
@@ -46,7 +47,7 @@ def read_svg(file: FilePath, unit: str | None = None) -> Outline:
     sheet = sheet_of(file, root, unit)
     try:
         _demand_few(file, root)
-        off = FLAT_MM / max(sheet.x_mm, sheet.y_mm)
+        off = INCREMENT_MM / max(sheet.x_mm, sheet.y_mm)
         pieces = [
             sheet.placed(places) for shape in _shapes(root) for places in _flattened(shape, off)
         ]

@@ -167,7 +167,7 @@ def test_a_single_point_has_a_distance() -> None:
 
 
 def test_how_far_a_long_comparison_is_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(contour, "_SAMPLES_AT_ONCE", 1000)
+    monkeypatch.setattr(contour, "AT_ONCE", 1000)
     told = list[float]()
     distance(circle(2, 2000), circle(2.1, 2000), told.append)
     assert len(told) > 4 and told == sorted(told)

@@ -12,7 +12,8 @@ import pytest
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
-from morfax.recorder.drawings.curve_chords import FLAT_MM, bulged
+from morfax.motion.usual import INCREMENT_MM
+from morfax.recorder.drawings.curve_chords import bulged
 from morfax.recorder.drawings.cut_lines import CutLine
 from morfax.recorder.drawings.drawings import _dxf, _svg
 from morfax.recorder.drawings.outline import Outline
@@ -80,7 +81,7 @@ def test_an_svg_s_curves_are_within_a_micrometre_and_y_is_up(tmp_path: Path) -> 
     )
     outline = read_outline(svg(tmp_path / "a.svg", body))
     circle, arc, turned, line, hole = outline.contours_mm
-    allowed = FLAT_MM + 0.01 * UM  # the file's own digits
+    allowed = INCREMENT_MM + 0.01 * UM  # the file's own digits
     assert off_circle(circle, (30, 30), 10) <= allowed
     assert off_circle(arc[:-1], (70, 29.9995), 10) <= allowed
     assert off_circle(turned, (80, 30), 10) <= allowed
@@ -161,7 +162,7 @@ def test_what_is_written_is_read_back_within_a_micrometre(
     file = tmp_path / f"part{suffix}"
     file.write_text(write(cut()), encoding="ascii")
     outline = read_outline(file)
-    fine = [drawn_out(line, FLAT_MM / 100) for line in cut()]
+    fine = [drawn_out(line, INCREMENT_MM / 100) for line in cut()]
     # the arc on the half circle is a line of its own
     assert len(outline.contours_mm) == len(fine)
     for contour, line in zip(outline.contours_mm, fine, strict=True):

@@ -30,13 +30,12 @@ from morfax.motion.polyline import (
     lengths_mm,
     with_places,
 )
-from morfax.motion.usual import THINNED
+from morfax.motion.usual import INCREMENT_MM, THINNED
 
 LOOP_MM = 1.0  # a shorter loop is the head's swivel, and not drawn; by trial
 CELLS = 500  # of the grid, along the longer side of what is looked at
 MARGIN = 2  # cells about it
 FINER = 10  # times, again and again about the best cell
-WITHIN_MM = 0.001  # the circle's diameter is true to this
 PASSES_MM = 0.05  # steps of the diameters that are named, and room that a cutter needs at least
 
 
@@ -125,7 +124,7 @@ def room(curves: Sequence[DriveCurve], number: int) -> Room | None:
     place = grid.low_mm + (np.array([column, row]) - MARGIN) * grid.cell_mm
     # 2. finer grids about the best cell
     near, cell_mm = Nearest(near_by, float(away.max()) * grid.cell_mm), grid.cell_mm
-    while cell_mm > WITHIN_MM:
+    while cell_mm > INCREMENT_MM:
         steps = np.arange(-FINER, FINER + 1) * 2 * cell_mm / FINER
         places = place + np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
         away_mm = near.distances_mm(places)

@@ -28,12 +28,12 @@ from morfax.motion.neighbours import pairs_within
 from morfax.motion.plane import unit
 from morfax.tracer.drawing.components import grouped
 from morfax.tracer.drawing.spacing import CLEAR, Pairs
+from morfax.tracer.limits import DETAIL_PX
 
 Grey = NDArray[np.float32]
 
 BEYOND = 2.0  # standard deviations of the lens: so far beyond the edges their softness goes
 STROKE_PX = 3  # of the strokes from edge to edge, which are a pixel apart
-TOGETHER_PX = 6.0  # places nearer to one another are of one slit
 TOLD = 3  # places that are told one by one
 ROOM = 1.15  # times the least distance: what is printed so large is followed
 TIP_PERCENT = 10.0
@@ -92,7 +92,7 @@ def covers(share: Grey, pairs: Pairs, softness_px: float) -> Iterator[Cover]:
 def places_of(share: Grey, pairs: Pairs, pitch_mm: float) -> list[Closed]:
     """The slits and bridges that pairs of places are of, the longest first."""
     middles = pairs.places.mean(axis=1)
-    group = grouped(pairs_within(middles, TOGETHER_PX), len(middles))
+    group = grouped(pairs_within(middles, DETAIL_PX), len(middles))
     slits, found = _are_slits(share, pairs), list[Closed]()
     for number in range(group.max(initial=-1) + 1):
         mine = group == number

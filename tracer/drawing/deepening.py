@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from morfax.tracer.drawing.components import INK, Mask, strips
 from morfax.tracer.drawing.contrast import DARKER, LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.noise import measured
+from morfax.tracer.drawing.solids import LONG
 from morfax.tracer.drawing.spots import (
     PART_PX,
     SPOT_PX,
@@ -51,7 +52,6 @@ BEYOND_PX = 2
 TOUCHED = 0.7  # of a pale line's darkness: within the rim of ink it goes on where it is as dark
 # letters are as low (see `lettering`): a shorter line than others counts if it stands out so much farther
 LETTER_MM, TWICE = 1.0, 2.0
-SLENDER = 3.0  # times its breadth: a shorter patch is a blot
 BROAD, BROAD_PX = 2.0, 2.0  # usual widths and pixels: a broader patch is shade
 FULL = 0.9  # a thin line may be as dark as ink and be seen pale behind the spot: it stays
 ROUNDS = 3  # each reaches what is half as dark: three reach an eighth
@@ -151,7 +151,7 @@ def _lines(
     lengths_px = areas / broad_px
     long_px = boxes[:, 2:4].max(axis=1)
     are_lines = long_px >= max(LEAST_STROKE_PX, LETTER_MM / pitch_mm)
-    are_lines &= lengths_px > SLENDER * broad_px
+    are_lines &= lengths_px > LONG * broad_px
     are_lines &= broad_px < BROAD * usual_px + BROAD_PX
     are_lines[0] = False
     dark = _usual(darkness[rows, columns], patch, count)

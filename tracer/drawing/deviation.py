@@ -28,7 +28,7 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.plane import left_of_headings
-from morfax.motion.polyline import lengths_mm
+from morfax.motion.polyline import APART_MM, lengths_mm
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.components import (
     INK,
@@ -41,10 +41,9 @@ from morfax.tracer.drawing.components import (
 )
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.pen_edges import PenEdges
+from morfax.tracer.effort import LOOKED_MM
 
-EVERY_MM = 0.1  # between the places that are measured
-TOUCH_MM = 0.02  # between the places of a cutter's path
-# of TOUCH_MM: where the cutter's edge moves less it stands, as at a corner; where it moves more it leaps from
+# of APART_MM: where the cutter's edge moves less it stands, as at a corner; where it moves more it leaps from
 # one leg to the other: there the edge is not on the line
 STANDS, LEAP = 0.1, 10.0
 WIDEST = 1.3  # of the usual width: beyond this the ink's middle means nothing
@@ -140,21 +139,21 @@ def touched(drawing: Drawing, path: Path, radius_mm: float) -> list[Array]:
     """
     polylines = []
     for run in path.runs():
-        points, headings = _places(run, TOUCH_MM)
+        points, headings = _places(run, APART_MM)
         if not len(points):
             continue  # a hole
         both = darkness_across(drawing, points, headings, np.array([radius_mm, -radius_mm]))
         left, right = both.mean(axis=0)
         arm_mm = radius_mm if left >= right else -radius_mm
         edge = points + arm_mm * left_of_headings(headings)
-        steps = np.hypot(*np.diff(edge, axis=0).T) / TOUCH_MM
+        steps = np.hypot(*np.diff(edge, axis=0).T) / APART_MM
         on_line = (steps > STANDS) & (steps < LEAP)
         ends = np.flatnonzero(np.diff(np.r_[False, on_line, False].astype(np.int8)))
         polylines += [edge[a : b + 1] for a, b in ends.reshape(-1, 2)]
     return polylines
 
 
-def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
+def _places(run: Array, every_mm: float = LOOKED_MM) -> tuple[Array, Array]:
     """Places every so many mm along a polyline, and the heading there."""
     steps = np.hypot(*np.diff(run, axis=0).T)
     keep = np.r_[True, steps > 1e-9]
@@ -162,7 +161,7 @@ def _places(run: Array, every_mm: float = EVERY_MM) -> tuple[Array, Array]:
     s = lengths_mm(run)
     at = np.arange(0.5 * every_mm, s[-1], every_mm)
     points, behind, ahead = (
-        np.column_stack([np.interp(at + d * EVERY_MM, s, column) for column in run.T[:2]])
+        np.column_stack([np.interp(at + d * LOOKED_MM, s, column) for column in run.T[:2]])
         for d in (0.0, -0.5, 0.5)
     )
     way = ahead - behind
@@ -237,7 +236,7 @@ def _across(drawing: Drawing, points: Array, headings: Array, width_mm: float) -
 
 def _averaged(errors: Array) -> Array:
     """Running mean along the path, over what could be measured."""
-    span = np.ones(max(1, round(AVERAGED_MM / EVERY_MM)))
+    span = np.ones(max(1, round(AVERAGED_MM / LOOKED_MM)))
     good = np.isfinite(errors)
     first = len(span) // 2
     total = np.convolve(np.where(good, errors, 0.0), span)[first : first + len(errors)]

@@ -27,11 +27,12 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import at_lengths, length_mm
+from morfax.tracer.limits import PIECE_MM
 
 # darkness (n, k) at places (n, 2) mm, across their headings (n,) rad, at distances (k,) mm to the left
 Seen = Callable[[Array, Array, Array], Array]
 
-PIECE_MM, PIECE_PX = 3.0, 24.0
+PIECE_PX = 24.0
 AT_ONCE = 256  # pieces that are looked at in one go
 FEWEST_PIECES = 2  # in a row: one alone is where a line crosses, or a wall's end
 APART_PX = 2.0  # stations: pixels so far apart have noise of their own

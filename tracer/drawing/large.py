@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
-from morfax.motion.median import ONE_ABOVE
+from morfax.motion.median import MIDDLE, ONE_ABOVE
 from morfax.tracer.drawing.components import FRINGE_PX, Patches, runs_of
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
@@ -72,7 +72,7 @@ def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes, float]:
     look = _look(grey, by)
     paper = Paper.of_reduced(look.reduced, by, grey.shape[1], pitch_mm)
     sample = _sample(look, paper)
-    centre, darker = (float(v) for v in np.percentile(sample, [50.0, ONE_ABOVE]))
+    centre, darker = (float(v) for v in np.percentile(sample, [MIDDLE, ONE_ABOVE]))
     noise = darker - centre  # by the darker ones: scanners clip the white
     marked = _inked(grey, look, paper, max(LEAST_CONTRAST, centre + ABOVE_NOISE * noise))
     inked_px = TILE_PX**2 * int(np.count_nonzero(marked != PAPER))

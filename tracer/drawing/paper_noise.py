@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import ONE_ABOVE, percentile
+from morfax.motion.median import MIDDLE, ONE_ABOVE, percentile
 from morfax.tracer.limits import PAPER
 
 PAPER_SAMPLES = 1 << 16  # pixels of paper: they give its standard deviation to 1/360
@@ -29,7 +29,7 @@ def paper_noise(sample: NDArray[np.float32]) -> float:
     paper = sample[sample < PAPER]
     if not len(paper):
         return math.nan
-    usual, darker = (percentile(paper, percent, np.float64) for percent in (50.0, ONE_ABOVE))
+    usual, darker = (percentile(paper, percent, np.float64) for percent in (MIDDLE, ONE_ABOVE))
     return darker - usual
 
 

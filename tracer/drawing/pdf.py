@@ -32,6 +32,7 @@ from morfax.motion.faults import DrawingFault
 from morfax.motion.units import MM_PER_INCH, POINTS_PER_INCH
 from morfax.tracer.drawing import exif
 from morfax.tracer.drawing import memory as room
+from morfax.tracer.drawing.coarse import DPI_STEP
 from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.scale import LARGEST_PITCH_MM, LEAST_PITCH_MM
 from morfax.tracer.drawing.scan import (
@@ -49,7 +50,6 @@ if TYPE_CHECKING:
 LINES_DPI = 600.0  # drawn lines: a pen of 0.13 mm, the finest of ISO 128, is three pixels wide
 # of a scanned page, chosen: a coarser picture is a colour spread over the page, a finer one an ornament
 COARSEST_DPI, FINEST_DPI = 50.0, 4800.0
-SCANNERS_DPI = 50  # resolutions of scanners are multiples of it
 ASKEW = 1e-4  # slope of a picture on its page; at less it is off its pixels by less than a pixel of 10 000
 ROUNDING_PX = 1e-2  # pdfium's figures have 24 bits: 5e-4 pixel of 10 000, and twenty times that
 LONGEST_PACKED = 1 << 24  # bytes of an object stream that are looked through
@@ -77,7 +77,7 @@ class _Axis(NamedTuple):
 
     def rounded_dpi(self) -> float | None:
         """The scanner's resolution if the picture's length looks like it in whole points; None if not."""
-        dpi = SCANNERS_DPI * round(self.per_pt * POINTS_PER_INCH / SCANNERS_DPI)
+        dpi = DPI_STEP * round(self.per_pt * POINTS_PER_INCH / DPI_STEP)
         length_pt = self.length_px / self.per_pt
         is_whole = abs(length_pt - round(length_pt)) < ROUNDING_PX
         if not dpi or not is_whole:

@@ -24,13 +24,12 @@ from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.tiles import Kept, Tiles
-from morfax.tracer.limits import PAPER
+from morfax.tracer.limits import DETAIL_PX, PAPER
 
 SEARCHED = 1 << 18  # pixels of the rows that are searched for ink, and of the columns
 MOST_PROFILES = 1000  # their median is 25 times as certain as one profile
 FEWEST_PROFILES = 20  # fewer tell nothing: there is hardly a line
 STEP_PX = 0.5  # between the samples of a profile: edges are no sharper than a pixel
-BESIDE_PX = 6.0  # of paper to each side of a profile, and half a width of the line
 SLOPE_PX = 1.5  # to both sides of an edge, for its direction
 # darkness per pixel: where many are flatter at both edges, they are lines of a pixel that no lens has
 # softened, beyond which both places lie on paper; they are nearer there. A soft line of that width has 0.3
@@ -57,7 +56,7 @@ class Profiles(NamedTuple):
     @property
     def width_px(self) -> float:
         """How wide the lines usually look where a row or column meets them."""
-        return float(-self.at_px[0]) - BESIDE_PX
+        return float(-self.at_px[0]) - DETAIL_PX
 
 
 def profiles_of(darkness: Kept) -> Profiles | None:
@@ -84,7 +83,7 @@ def profiles_of(darkness: Kept) -> Profiles | None:
     steep = facing > OBLIQUE
     if np.count_nonzero(steep) < FEWEST_PROFILES:
         return None
-    half_px = median(widths_px[steep]) + BESIDE_PX
+    half_px = median(widths_px[steep]) + DETAIL_PX
     at_px = np.arange(-half_px, half_px, STEP_PX)
     # a place anywhere between two pixels of the line, not always on a row: so noise is averaged alike
     share = np.arange(len(places)) * GOLDEN % 1.0 - 0.5

@@ -27,9 +27,9 @@ from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing.edge_leg import EdgeLeg
 from morfax.tracer.drawing.lens import radius_of, way_inside
+from morfax.tracer.limits import FADES
 
 APART_PX = 0.25  # between the places of an outline
-CLEAR = 3.0  # standard deviations: a leg is where it is when the other is as far away as this
 LEG = 20.0  # standard deviations: length of a leg that is felt, at most
 SHORTEST_LEG = 2.5
 LEAST_TURN = math.radians(15)
@@ -100,7 +100,7 @@ def _corners(places: Array, softness_px: float, is_closed: bool) -> list[int]:
     """Places about which the outline turns most, in order."""
     from scipy.ndimage import uniform_filter1d
 
-    reach = max(2, min(round(CLEAR * softness_px / APART_PX), len(places) // 4))
+    reach = max(2, min(round(FADES * softness_px / APART_PX), len(places) // 4))
     turned = uniform_filter1d(turned_at(places, reach), reach, mode="wrap")
     if not is_closed:  # about the ends it turns from one to the other
         turned[: 2 * reach] = turned[-2 * reach :] = 0.0
@@ -145,7 +145,7 @@ def _room(places: Array, turns: list[int], k: int, blur_px: float, is_closed: bo
     at, count = turns[k], len(places)
     before = (at - turns[k - 1] - 1) % count + 1.0
     after = (turns[(k + 1) % len(turns)] - at - 1) % count + 1.0
-    clear = CLEAR * blur_px / APART_PX
+    clear = FADES * blur_px / APART_PX
     if not is_closed:
         before = at + clear if k == 0 else before
         after = count - 1 - at + clear if k == len(turns) - 1 else after
@@ -196,7 +196,7 @@ def _corner(
     # 1. feel the legs, from further away where the corner that they make is narrow or round
     fit, angle, touch = None, math.pi / 2, 0.0
     for _ in range(TRIES):
-        clear = CLEAR / max(math.sin(min(angle, math.pi / 2)), 0.2)
+        clear = FADES / max(math.sin(min(angle, math.pi / 2)), 0.2)
         away = max(clear, touch + CLEAR_OF_ROUND) * dense
         ends = [
             min(away + LEG * dense, left, len(places) / 2) for left in (room.before, room.after)

@@ -23,13 +23,11 @@ from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.effort import MANY
-from morfax.tracer.limits import AHEAD_RAD
+from morfax.tracer.limits import AHEAD_RAD, LONGER_WIDTHS, PIECE_MM
 
 # All limits below were chosen by trial on `python -m benchmarks rough`.
 WIDEST_MM = 1.0  # over a wider gap a leg's own bend does not lead any more
 FEWEST = 3  # fewer may be meant
-PIECE_MM = 3.0  # of line, at least
-INWARD_WIDTHS = 4.0  # over which an end shows its direction
 FACING_COS = math.cos(AHEAD_RAD)
 MOST_ENDS = 3  # of a piece, one of them a burr; a piece with more is a net
 STEP_PX = 0.25  # in which the end of the ink is looked for
@@ -72,7 +70,7 @@ def _ends(stroke: Stroke, drawing: Drawing) -> list[End]:
     ends = []
     for place in places[:2]:  # the likeliest are first
         away = stroke.middles_mm - place
-        near = np.hypot(*away.T) < INWARD_WIDTHS * stroke.width_mm
+        near = np.hypot(*away.T) < LONGER_WIDTHS * stroke.width_mm
         outward = -unit(away[near].mean(axis=0))
         ends.append(End(_tip_mm(place, outward, stroke.width_mm, drawing), outward))
     return ends

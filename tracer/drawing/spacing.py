@@ -22,16 +22,17 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
+from morfax.motion.usual import AT_ONCE
 from morfax.tracer.drawing import memory
 from morfax.tracer.drawing.sharpening import Edge
+from morfax.tracer.limits import DETAIL_PX
 
 # three widths of the line along the edges (see `shapes`): it is drawn as much finer as they are nearer
-APART_MM, APART_PX = 1.2, 6.0
+APART_MM = 1.2
 FINEST = 4
 CLEAR = 2.0  # standard deviations of the lens: edges that are nearer move one another
 # times as far along the edge as straight across: it comes back, as round a hole (1.57)
 BACK = 1.5
-AT_ONCE = 1 << 17  # pairs: 20 MB of places and lengths
 LEG = 0.95  # of the way along the edge is straight to a corner and straight on from it: legs of one corner
 # times as far along, and it is another edge, and no corner that the lens has blurred
 ROUND_ABOUT = 8
@@ -39,7 +40,7 @@ ROUND_ABOUT = 8
 
 def finer(edges: list[Edge], shape: tuple[int, ...], pitch_mm: float) -> int:
     """By how much finer the line has to be drawn for edges that are near one another."""
-    clear_mm = max(APART_MM, APART_PX * pitch_mm)
+    clear_mm = max(APART_MM, DETAIL_PX * pitch_mm)
     comes_back = Pairs.of(edges, clear_mm / pitch_mm, BACK)
     apart_mm = comes_back.some(~_legs_of_corners(edges, comes_back)).nearest_px * pitch_mm
     times = FINEST if apart_mm * FINEST < clear_mm else max(1, math.ceil(clear_mm / apart_mm))

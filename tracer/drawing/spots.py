@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import percentile
+from morfax.motion.median import MIDDLE, ONE_BELOW, TWO_BELOW, percentile
 from morfax.tracer.drawing.components import INK, Mask
 
 Darkness = NDArray[np.float32]
@@ -26,11 +26,10 @@ STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that 
 ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
 # percentiles half a standard deviation apart: rims of ink are on one side, and pale lines, which may be a
 # fifth of the paper that is near ink, beyond the other
-MIDDLE_AND_HIGH, APART = (50.0, 69.15), 0.5
+HALF_ABOVE, APART = 69.15, 0.5
 FAR_PX = 7  # from ink: its rims are no paper
 PART_PX = 96  # of the sheet: light and noise change little over it
 # percentiles a standard deviation apart on the bright side; 1.35 where pale lines cover a quarter of a part
-BRIGHT = 2.28, 15.87
 LEAST_PAPER = 0.2  # of a part: less paper tells no noise
 # of ink's darkness, behind a spot: half of a scan's noise. Quieter paper counts as so noisy: what differs
 # there is shade, and rims that a JPEG leaves
@@ -53,7 +52,7 @@ def noise_of_spots(darkness: Darkness) -> float:
     paper = np.concatenate(seen)
     if not len(paper):
         return 0.0
-    middle, high = (percentile(paper, percent) for percent in MIDDLE_AND_HIGH)
+    middle, high = (percentile(paper, percent) for percent in (MIDDLE, HALF_ABOVE))
     return (high - middle) / APART
 
 
@@ -69,10 +68,10 @@ def times_as_noisy(darkness: Darkness) -> NDArray[np.float32]:
             part = slice(n * PART_PX, (n + 1) * PART_PX)
             paper = soft[:, part][is_paper[:, part]]
             if len(paper) > LEAST_PAPER * PART_PX**2:
-                low, high = (percentile(paper, percent) for percent in BRIGHT)
+                low, high = (percentile(paper, percent) for percent in (TWO_BELOW, ONE_BELOW))
                 found[k, n] = high - low
     known = found[found > 0]
-    usual = percentile(known, 50.0) if len(known) else QUIET
+    usual = percentile(known, MIDDLE) if len(known) else QUIET
     return np.maximum(found / np.float32(max(usual, QUIET)), np.float32(1))
 
 

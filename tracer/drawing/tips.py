@@ -20,7 +20,8 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import meeting
 from morfax.motion.polyline import evenly
-from morfax.tracer.drawing.sharpening import APART_PX, CLEAR, Edge, most_turned, turned_at
+from morfax.tracer.drawing.sharpening import APART_PX, Edge, most_turned, turned_at
+from morfax.tracer.limits import FADES
 
 SHARPEST, BLUNTEST = math.radians(3), math.radians(45)  # between the legs of a tip
 TURNED = math.radians(100)  # the outline about it, at least
@@ -40,7 +41,7 @@ class Tip(NamedTuple):
 def tips_of(edge: Edge, softness_px: float) -> list[Tip]:
     """The tips of a closed outline that end short, the worst first."""
     places = evenly(edge.outline, APART_PX)
-    reach = max(2, round(CLEAR * softness_px / APART_PX))
+    reach = max(2, round(FADES * softness_px / APART_PX))
     if len(places) < 2 * round(FAR * softness_px / APART_PX):
         return []
     found = most_turned(turned_at(places, reach), TURNED, 2 * reach)

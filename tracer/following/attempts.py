@@ -34,6 +34,7 @@ from morfax.tracer.following.follower import Follower
 from morfax.tracer.following.ways_out import Turns
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
+from morfax.tracer.limits import LONGER_WIDTHS
 from morfax.tracer.sensing.side import SIDES, Side
 from morfax.tracer.sensing.view import STEP_WIDTHS
 
@@ -44,7 +45,6 @@ TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
 FINE_PX = 4.0  # of the scan: a finer line is run by stations, too
 TWICE = 0.1  # of a run: crossing lines and legs that end in one tip run together for less
-AGAIN = 4  # widths on from a place, the run may come by that place again
 OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out
 LONGEST = 4.0  # times all the ink, and ...
 LONGEST_MM = 20.0  # ... this: a run that goes further is going round in circles
@@ -287,8 +287,8 @@ def _goes_twice(run: Followed) -> bool:
     step_mm = STEP_WIDTHS * run.view.width_mm
     places = evenly(run.positions_mm[::THINNED], step_mm)
     near = cKDTree(places).query_pairs(2 * step_mm, output_type="ndarray")
-    again = near[np.ptp(near, axis=1) * STEP_WIDTHS > AGAIN] if len(near) else near
-    return len(set(again[:, 1].tolist())) > TWICE * len(places) + AGAIN / STEP_WIDTHS
+    again = near[np.ptp(near, axis=1) * STEP_WIDTHS > LONGER_WIDTHS] if len(near) else near
+    return len(set(again[:, 1].tolist())) > TWICE * len(places) + LONGER_WIDTHS / STEP_WIDTHS
 
 
 def _kind(put_down: Stance) -> type[Follower]:

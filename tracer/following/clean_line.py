@@ -34,6 +34,7 @@ from morfax.tracer.head.state import JUNCTION, MORE, TIGHT, Home
 from morfax.tracer.head.trail import is_near_itself, mark_along, place_back
 from morfax.tracer.junctions.felt_corner import AHEAD, LEG_STATIONS
 from morfax.tracer.junctions.rings import corner_at, fork_at
+from morfax.tracer.limits import FOLLOWS
 from morfax.tracer.sensing.gauge import gauge
 from morfax.tracer.sensing.leg import FEWEST_STATIONS
 from morfax.tracer.sensing.photocell import Cells
@@ -41,7 +42,6 @@ from morfax.tracer.sensing.scout import felt, leg_mm
 from morfax.tracer.sensing.view import View
 
 CHUNKS = 4  # seconds of motion in one call at the most
-USUAL_FOLLOWS = 0.1  # as `View.like` has it
 
 
 class Knows(NamedTuple):
@@ -137,7 +137,7 @@ def _felt_clean(cells, head, known, gauged):  # type: ignore[no-untyped-def]
     else:
         back_mm = come_mm
     level, width_mm, usual_mm = gauge(
-        cells, pose, (gauged[1], gauged[2]), line.step_mm, USUAL_FOLLOWS
+        cells, pose, (gauged[1], gauged[2]), line.step_mm, FOLLOWS
     )
     if math.isnan(level):
         level, width_mm, usual_mm = cells.level, gauged[1], gauged[2]

@@ -21,16 +21,17 @@ from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import APART_MM, lengths_mm, with_places
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.slow_cell import CHECKED
+from morfax.tracer.limits import DETAIL_PX
 
 # a tip of 15 degrees that one of both has put back, and the other has left round, is as far off: six standard
 # deviations of a lens (see `drawing.lens`); of a lens as soft as a pixel, where pixels are large
-OFF_MM, OFF_PX = 0.5, 6.0
+OFF_MM = 0.5
 LEFT_MM = 0.15  # where the run was so far off it had left the edge; further than the head cuts a corner
 
 
 def most_off_mm(pitch_mm: float) -> float:
     """How far from the edges a run may be on pixels of a size, mm; beyond `OFF_MM` it is told."""
-    return max(OFF_MM, OFF_PX * pitch_mm)
+    return max(OFF_MM, DETAIL_PX * pitch_mm)
 
 
 def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:

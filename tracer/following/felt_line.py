@@ -21,6 +21,7 @@ from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.slow_cell import Stretch, keeps_mm, keeps_straight_mm, rough_mm
 from morfax.tracer.head.windows import shortest_lead_mm
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
 from morfax.tracer.sensing.ray import edges
 from morfax.tracer.sensing.scout import REACH, REACH_PX
@@ -31,7 +32,7 @@ FROM_BEHIND = (1.0, 0.6, 0.3)  # legs behind the axis: nearer, if a speck spoils
 ROOM_LEADS = 0.4
 # where a line is wider something leaves it: of its width, and wider by so many standard deviations of the
 # middle of a rough line, whose edges differ by twice as much; by trial
-STUB_WIDTHS, STUB_ROUGH = 1.5, 8.0
+STUB_ROUGH = 8.0
 Anchor = tuple[Array, float, float]  # where the line begins to be clean: place, heading, travel
 
 
@@ -89,7 +90,7 @@ def _bare_mm(view: View, way: Array, seen: Array) -> float:
     places = at_lengths(way, np.arange(0.0, length_mm(way), view.step_mm))
     reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
     width_mm = max(view.width_mm, view.usual_mm or 0.0)
-    broadest_mm = max(STUB_WIDTHS * width_mm, width_mm + STUB_ROUGH * rough_mm(seen))
+    broadest_mm = max(CLEAR_WIDTHS * width_mm, width_mm + STUB_ROUGH * rough_mm(seen))
     bare = int(_bare(view.cells, places, float(reach_mm), float(broadest_mm)))
     return length_mm(way) if bare == len(places) - 1 else bare * view.step_mm
 

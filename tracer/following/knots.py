@@ -43,7 +43,7 @@ APART_MM = 6.0  # of travel between two knots: to keep them takes 3 % of the hea
 MOST_KNOTS = 64  # of a run, some 60 kB each; beyond, every second one is dropped
 MOST_RUNS = 8  # the last ones that are remembered: a line is tried both ways round, and with a few turns
 # how far ahead of the axis a told turn may count: twice its reach, and the legs that are felt there
-REACHES, LEGS = 3.0, 3.0
+REACHES = 3.0
 APART_PX = 16  # changed pixels that are nearer to each other are one change
 MOST_CHANGES = 200  # places of changed ink; more are another drawing
 
@@ -215,7 +215,7 @@ def _reach_mm(head: Follower) -> float:
     """How near to a told turn's place the head may be without knowing of it, mm."""
     view = head.view
     turns_mm = REACHES * max(REACH_MM, REACH_WIDTHS * view.width_mm)
-    return turns_mm + LEGS * view.leg_mm + head.carriage.tuning.guard_lead_mm
+    return turns_mm + REACHES * view.leg_mm + head.carriage.tuning.guard_lead_mm
 
 
 def copied(head: Follower, other: dict[int, Darkness] | None = None) -> Follower:

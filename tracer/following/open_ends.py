@@ -24,7 +24,7 @@ from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.plain_places import local_view
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.junctions.line_ahead import straight_on
-from morfax.tracer.limits import AHEAD_RAD
+from morfax.tracer.limits import AHEAD_RAD, CLEAR_WIDTHS, DETAIL_PX
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, leg_of, turn
@@ -36,7 +36,6 @@ LEAD_MM = 11.0  # at most, from the middle of a reference point to its lead line
 NAMED_MM = 5.0  # a cross or ring nearer to the named reference point is that point, drawn
 AT_IT = 0.5  # widths: an end as near to the reference point begins at it, whatever its heading
 LEAD_LEGS = 1.5  # lengths of a leg: a lead line is longer than this
-RING_WIDTHS, RING_PX = 1.5, 6.0  # radius of the ring of cells about an end: the larger
 WIDTH_OFF, WIDTH_OFF_PX = 0.25, 0.5  # of the width, and pixels: the end is as wide as the line
 SPUR_WIDTHS = 2.7  # a line that ends sooner is a burr
 BEYOND_WIDTHS = 2.0  # ink that reaches no further beyond an end leaves a stop mark on one side
@@ -148,7 +147,7 @@ def _at_end(view: View, place: Array, gap_mm: float) -> Stance | None:
     """A stance at an open end of the line, heading inward; None if this place is no open end."""
     # 1. one stroke leads away from the place, as wide as the line
     local = local_view(view, place)
-    radius = max(RING_WIDTHS * view.width_mm, RING_PX * view.pitch_mm)
+    radius = max(CLEAR_WIDTHS * view.width_mm, DETAIL_PX * view.pitch_mm)
     arcs = strokes_on(local, place, radius)
     if len(arcs) != 1 or arcs[0, 1] - arcs[0, 0] > math.pi / 2:
         return None

@@ -42,7 +42,7 @@ STEPS_PX, STEPS_WIDTHS = 1.3, 0.45
 HARD_STEPS_PX, HARD_STEPS_WIDTHS = 1.4, 1.0
 EDGE_APERTURE_PX = 2.8  # on an edge: a spot of 0.7 pixels, standard deviation
 PLACES = 80  # tried along a line
-ABOUT_WIDTHS = 2.0  # to either side of a place that was asked for, places are tried
+ROUND_WIDTHS = 2.0  # to either side of a place that was asked for, places are tried
 FAINTEST = 0.2  # darkness: fainter ink is taken for this dark
 RING_WIDTHS, RING_PX = 0.9, 4.5  # radius of the ring of cells about a place: the larger
 NARROWEST, WIDEST = 0.4, 2.5  # times the line's width: a line of another width is another line
@@ -93,13 +93,13 @@ def local_view(view: View, place: Array) -> View:
 
 def stance_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> Stance | None:
     """The plainest stance near a place of a line; None if the line is clean nowhere there."""
-    about_mm = ABOUT_WIDTHS * stroke.width_mm
+    about_mm = ROUND_WIDTHS * stroke.width_mm
     return next(plainest_first(view, places_of(stroke, place_mm, about_mm)), None)
 
 
 def stands_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> bool:
     """Whether there is such a stance: the first that is found will do."""
-    places = places_of(stroke, place_mm, ABOUT_WIDTHS * stroke.width_mm)
+    places = places_of(stroke, place_mm, ROUND_WIDTHS * stroke.width_mm)
     return any(_stance_at(view, place) is not None for place in places)
 
 

@@ -27,16 +27,15 @@ from morfax.motion.usual import THINNED
 from morfax.tracer.effort import MANY
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
+from morfax.tracer.limits import DETAIL_PX, PIECE_MM
 from morfax.tracer.sensing.edge_scout import CIRCLE_PX
 from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import View
 
-PIECE_MM = 3.0  # longer waves are the shape; clean parts stray by 8 um at most
 FEWEST_PIECES = 3
 FELT = 0.9  # of a piece: where less is felt the edge ends, or turns back
 # from the first third of a piece to its last: a parabola follows that within 2 um
 BENT_RAD = 0.5
-BESIDE_PX = 6.0  # from the edge: neither lens nor circle reaches so far
 EVERY = 3  # one station in so many has circles beside it, as far apart as a circle is wide
 AROUND = np.arange(12) * (2 * np.pi / 12)  # where a circle looks, as the scout's does
 
@@ -89,7 +88,7 @@ def _deviations_mm(view: View, place_mm: Array, heading: float) -> tuple[float, 
     x, y = x - x.mean(), y - y.mean()
     strays_mm = float(np.std(y - np.polyval(np.polyfit(x, y, 2), x)))
     heard = [
-        np.std(_circles(view, seen[::EVERY, :2] + side * BESIDE_PX * view.pitch_mm * left))
+        np.std(_circles(view, seen[::EVERY, :2] + side * DETAIL_PX * view.pitch_mm * left))
         for side in (-1, 1)
     ]
     per_mm = median(seen[:, 2]) / (CIRCLE_PX * view.pitch_mm)

@@ -24,7 +24,7 @@ from morfax.tracer.drawing.narrow import PARTED, narrow_strip_of
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.open_ends import at_ends, stances_at
 from morfax.tracer.following.plain_places import (
-    ABOUT_WIDTHS,
+    ROUND_WIDTHS,
     edge_view_of,
     places_of,
     plainest_first,
@@ -33,12 +33,13 @@ from morfax.tracer.following.plain_places import (
 from morfax.tracer.following.unchanged import changed_of, is_far, on_ink
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.marks.reference import references
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on the test drawings.
 CATCH_MM, CATCH_PX = 3.0, 12.0  # how far from a given place the line may be: the larger
-AT_END_MM, AT_END_WIDTHS = 1.5, 3.0  # a start nearer to an open end is that end: the larger
+AT_END_MM = 1.5  # a start nearer to an open end, or within `ABOUT_WIDTHS`, is that end
 ENDS = 6  # open ends that are tried: a lead line may begin at any
 LISTED = 8  # reference points that a message lists
 
@@ -146,7 +147,7 @@ def _plain(
     if start_mm is None:
         yield from plainest_first(view, places_of(stroke, None))
         return
-    for about_mm in (ABOUT_WIDTHS * stroke.width_mm, catch_mm):
+    for about_mm in (ROUND_WIDTHS * stroke.width_mm, catch_mm):
         near = plainest_first(view, places_of(stroke, start_mm, about_mm))
         if (plainest := next(near, None)) is not None:
             yield plainest
@@ -182,7 +183,7 @@ def _ends_near(
 ) -> list[Stance]:
     """Stances at the open ends near a place."""
     ends = stroke.ends_mm()
-    near_mm = max(AT_END_MM, AT_END_WIDTHS * view.width_mm)
+    near_mm = max(AT_END_MM, ABOUT_WIDTHS * view.width_mm)
     near = ends[np.hypot(*(ends - np.asarray(start_mm)).T) < near_mm]
     return list(stances_at(view, near, gap_mm))
 

@@ -43,7 +43,7 @@ from morfax.motion.compiled import njit
 from morfax.tracer.head.screws import move, owed_s
 from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT
 from morfax.tracer.head.swinging import detect, seen, swing, way_of
-from morfax.tracer.limits import AHEAD_RAD
+from morfax.tracer.limits import AHEAD_RAD, FOLLOWS
 from morfax.tracer.sensing.moments import NO_PLACES, bend_of, parabola_of, with_place
 
 # Shares of the line's ink; all chosen by trial on the test drawings.
@@ -52,7 +52,6 @@ BESIDE = 0.4  # more under a guard cell at the side: there is ink beside the lin
 BLANK = 0.5  # less under a cell on the line: there is paper
 ALTERED = 0.2  # over a sweep: the line has swollen or faded since the head was tuned to it
 
-BEND_FOLLOWS = 0.1  # share by which the usual bend follows the bend, sweep by sweep
 GUARD_FOLLOWS = 0.5  # share by which a guard cell follows what it sees, sweep by sweep
 HOME_ASIDE = 0.3  # of the lead: home is on the line
 HOME_COSINE = math.cos(AHEAD_RAD)  # of the angle between the heading and home's
@@ -154,7 +153,7 @@ def _look_at_edge(cells, state, t):  # type: ignore[no-untyped-def]
         return JUNCTION
     if t.direct_rad_s_mm > 0:
         return MORE
-    state.usual_bend_per_mm += BEND_FOLLOWS * (_bend(state, t) - state.usual_bend_per_mm)
+    state.usual_bend_per_mm += FOLLOWS * (_bend(state, t) - state.usual_bend_per_mm)
     if state.usual_bend_per_mm > t.narrowest_per_mm:
         return TIGHT
     if not _is_trusted(state) and (state.guard_left > BESIDE or state.guard_ahead < BLANK):
@@ -191,7 +190,7 @@ def _look(cells, state, t):  # type: ignore[no-untyped-def]
     if state.swept_ink < LOST:
         return JUNCTION
     bend = _bend(state, t)
-    state.usual_bend_per_mm += BEND_FOLLOWS * (bend - state.usual_bend_per_mm)
+    state.usual_bend_per_mm += FOLLOWS * (bend - state.usual_bend_per_mm)
     if _is_trusted(state):
         return TIGHT if state.usual_bend_per_mm > t.narrowest_per_mm else MORE
     if max(state.guard_left, state.guard_right) > BESIDE or state.guard_ahead < BLANK:

@@ -49,7 +49,7 @@ STATE = np.dtype(
     + [("drum_mm", np.float64, (DRUM, 2))],  # the places of the line seen last, round and round
 )
 
-MORE, JUNCTION, TIGHT, HOME, CHANGED = range(5)  # why the kernel returned
+MORE, JUNCTION, TIGHT, HOME, CHANGED = 0, 1, 2, 3, 4  # why the kernel returned
 
 
 class Home(NamedTuple):

@@ -25,10 +25,10 @@ import math
 
 from morfax.motion.compiled import njit
 from morfax.tracer.head.state import DRUM
+from morfax.tracer.limits import FOLLOWS
 from morfax.tracer.sensing.photocell import darkness_at
 
 # Shares of the line's ink; chosen by trial on the test drawings.
-INK_FOLLOWS = 0.1  # share of a sweep's difference by which the ink is corrected
 PALEST, DARKEST = 0.3, 2.0  # a sweep counts as no less and no more of the ink than this
 BALANCED = 0.5  # of the sweep is dark, when its middle is on the edge of a shape
 # of the lead aside: a line that turns more than 50 degrees is no arc up to there
@@ -101,7 +101,7 @@ def detect(state, t):  # type: ignore[no-untyped-def]
     first = 2.0 * state.first_sum / t.sweep_periods
     if t.balance_per_mm == 0.0:
         state.swept_ink = mean / t.mean
-        state.ink += INK_FOLLOWS * (min(max(state.swept_ink, PALEST), DARKEST) - state.ink)
+        state.ink += FOLLOWS * (min(max(state.swept_ink, PALEST), DARKEST) - state.ink)
         aside = t.detector_gain * first / (t.slope_per_mm * state.ink)
     else:
         state.swept_ink = abs(first) / t.mean

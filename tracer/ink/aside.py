@@ -27,12 +27,11 @@ from morfax.tracer.ink.hatching import ALIKE, STRAIGHT, Hatching, hatching
 from morfax.tracer.ink.onward import Onward
 from morfax.tracer.ink.outlines import spurs
 from morfax.tracer.ink.partners import meeting_place
-from morfax.tracer.limits import CLEAR_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS
 
 # An arrowhead, by trial on drawings of parts; ISO 129 draws it 15 to 30 degrees wide.
 LEAST_WIDTHS, MOST_WIDTHS = 2.5, 45.0  # of its line: how long it is
 BASE = 1.6  # widths: as broad it is at the least where it is broadest
-TIP_WIDTHS = 3.0  # from the end of its line, at the most, it begins to grow
 LINE = 1.25  # times as wide as its line, and as far as that: line
 GROWN = 1.3  # times as broad as its tip is its foot, where it is broadest, ...
 FOOT, AT_FOOT = 2.1, 0.85  # widths: two lines are less broad; and of its greatest breadth
@@ -68,7 +67,7 @@ def has_arrowhead(widths_mm: Array, step_mm: float, width_mm: float) -> bool:
     narrow = np.flatnonzero(widths[: max(base - drop // 2, 0)] < LINE)
     tip = int(narrow[-1]) + 1 if len(narrow) else 0
     head = np.minimum(widths[tip : base + 1], BROADEST)
-    if tip > TIP_WIDTHS * one or len(head) < LEAST_WIDTHS * one:
+    if tip > ABOUT_WIDTHS * one or len(head) < LEAST_WIDTHS * one:
         return False
     quarter = len(head) // 4
     foot = float(np.median(head[-quarter:]))

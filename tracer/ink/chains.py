@@ -29,13 +29,14 @@ from morfax.tracer.ink.net import Inner, Net, net_of
 from morfax.tracer.ink.partners import Pair, meeting_place
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.swelling import TWO
+from morfax.tracer.limits import LONGER_WIDTHS
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on drawings of nets.
 # widths: legs of a wider junction are taken from further off, by a share of its size, and longer
-WIDE_WIDTHS, TRIM, LEGS = 4.0, 0.1, 0.5
+TRIM, LEGS = 0.1, 0.5
 # of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it
 NARROWER = 0.8
 
@@ -204,7 +205,7 @@ class Junctions:
             ]
         for number, there in ends.items():
             wide_mm = self._wide_mm(number, [leg for _, leg in there])
-            if wide_mm > WIDE_WIDTHS * there[0][1].width_mm:
+            if wide_mm > LONGER_WIDTHS * there[0][1].width_mm:
                 for side, _ in there:
                     trim_mm, legs_mm = TRIM * wide_mm, LEGS * wide_mm
                     trimmed(self.net.lines[side.line], side.last, trim_mm, legs_mm)

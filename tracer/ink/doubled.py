@@ -93,7 +93,7 @@ class Doubled(NamedTuple):
             return cls()
         if not beside_mm > 0:  # where all lines run in pairs no ink is one line's
             found = _of_the_pen(found, patch_of, pen_mm)
-        # 2. those that swell and shrink, and even ones where these go on
+        # 2. those that swell and shrink
         broad = {
             n: flags
             for n, some in found.items()
@@ -104,10 +104,6 @@ class Doubled(NamedTuple):
         swell = {n for n in broad if spreads[n] > (SWELLS if are_several else EVEN)}
         if not beside_mm > 0:
             swell -= _nibs({n: found[n] for n in swell}, patch_of, onward, pen_mm)
-        while not are_several and (
-            more := {n for n in broad.keys() - swell if _goes_on(felt, n, swell, pen_mm)}
-        ):
-            swell |= more
         stations = {n: broad[n] for n in sorted(swell)}
         if ink == Ink.EITHER:
             told = {n: stations[n] for n in stations if like_two_lines(found[n], pen_mm)}
@@ -185,15 +181,6 @@ def _are_several_pens(felt: Sequence[Run], spreads: Mapping[int, float]) -> bool
     """Whether most ink broader than the pen's is even: pens of several widths have drawn the sheet."""
     even_mm = sum(felt[n].length_mm for n, spread in spreads.items() if spread <= EVEN)
     return even_mm > HALF * sum(felt[n].length_mm for n in spreads)
-
-
-def _goes_on(felt: Sequence[Run], number: int, doubled: set[int], pen_mm: float) -> bool:
-    """Whether a doubled stretch, as broad there, goes straight on into a stretch.
-
-    A line of a broader pen that only comes by is one line.
-    """
-    ends = felt[number], felt[number].turned_round()
-    return any(_is_straight_on(run, felt[n], pen_mm) for run in ends for n in doubled)
 
 
 def _cut(

@@ -29,15 +29,24 @@ from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.ink.run import Run, smooth
 from morfax.tracer.junctions.rings import CHORD, SKIPPED
+from morfax.tracer.limits import AS_WIDE, LONGER_WIDTHS
 from morfax.tracer.sensing.leg import LEAST_WIDTHS, TURNS_OFF
 from morfax.tracer.sensing.ray import edges
-from morfax.tracer.sensing.scout import CLEAN, CLEAN_PX, LEAP, LEAP_PX, SPECK_MM, SPECK_PX
+from morfax.tracer.sensing.scout import (
+    CLEAN,
+    CLEAN_PX,
+    LEAP,
+    LEAP_PX,
+    REACH_PX,
+    SPECK_MM,
+    SPECK_PX,
+)
 from morfax.tracer.sensing.view import View
 
 Flags = NDArray[np.bool_]
 
 # All limits below were chosen by trial on drawings of nets.
-REACH, REACH_PX = 1.0, 3.0  # widths and pixels within which the edges are looked for
+REACH = 1.0  # widths and pixels within which the edges are looked for
 GUIDED_WIDTHS = 0.75  # to either side of a place: what its heading is taken over
 ROUGHER = 2.5  # standard deviations of a rough line's own width: so far a station may differ
 FEWEST_STATIONS = 5  # of a clean run
@@ -45,7 +54,6 @@ MARGIN = 2  # stations at the ends of a run that may have felt what ends it
 MEANT = 2.0  # lengths of a leg: a longer line's own width counts, and not its neighbours'
 # a part at an end of the ink that is as long is line, however it tapers, if so much of it has two edges
 TAPERED_WIDTHS, FELT_SHARE = 1.0, 0.7
-STEADY_WIDTHS, STEADY = 4.0, 0.15  # as long, and so evenly wide: that is the line's own width
 
 
 Parted = tuple[
@@ -162,10 +170,10 @@ def is_steady(run: Run, width_mm: float) -> bool:
     fifth = len(run) // 5
     widths = run.widths_mm[fifth : len(run) - fifth]
     known = widths[np.isfinite(widths)]
-    if run.length_mm < STEADY_WIDTHS * width_mm or len(known) < len(widths):
+    if run.length_mm < LONGER_WIDTHS * width_mm or len(known) < len(widths):
         return False
     narrow_mm, wide_mm = np.percentile(known, (10, 90))
-    return bool(wide_mm - narrow_mm < STEADY * wide_mm)
+    return bool(wide_mm - narrow_mm < AS_WIDE * wide_mm)
 
 
 def whole(stations: Run) -> Run:

@@ -25,13 +25,13 @@ from morfax.motion.polyline import evenly
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
+from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.ink.graph import Graph
 from morfax.tracer.ink.hatching import Hatching, hatching
 from morfax.tracer.ink.left_out import Area, InkLeft
 from morfax.tracer.ink.pale import Pale, pale_lines
 from morfax.tracer.ink.stretches import FeltSheet
 
-EVERY_MM = 0.1  # ways are held against the ink so often
 BESIDE_WIDTHS = 0.7  # ink nearer to a way than this is that way's; by trial on drawings of nets
 SPECK_MM = 2.0  # a shorter patch of ink on which no stroke runs is a speck ...
 DOT_WIDTHS = 2.5  # ... and one that is no longer in its own widths a dot; 1.8 is a round one
@@ -102,7 +102,7 @@ def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> 
     usual_mm = _usual_mm(sheet, left)
     wide_mm = np.where(left.solid_px > 0, usual_mm, np.maximum(sheet.widths_mm, usual_mm))
     near_mm = BESIDE_WIDTHS * wide_mm[patch]
-    run = np.vstack([evenly(one_in(way, THINNED), EVERY_MM) for way in ways])
+    run = np.vstack([evenly(one_in(way, THINNED), LOOKED_MM) for way in ways])
     is_near = Neighbours(run).nearest(places)[0] < near_mm
     # 2. by patches; a burr of a line's edge is the middle of no line
     are_on, count = graph.on_stretches(), sheet.patches.count
@@ -160,7 +160,7 @@ def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[Patch]:
     doubled, found = felt.doubled, list[Patch]()
     if not doubled.stations:
         return
-    # 1. how much of the ways, places `EVERY_MM` apart, each thinned pixel has
+    # 1. how much of the ways, places `LOOKED_MM` apart, each thinned pixel has
     away, nearest = Neighbours(places).nearest(run)
     come = np.bincount(nearest[away < TWO_LINES * doubled.pen_mm], minlength=len(places))
     for n, flags in doubled.stations.items():
@@ -168,7 +168,7 @@ def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[Patch]:
         pixels = felt.graph.stretches[n].pixels
         at = np.round(np.linspace(0, len(flags) - 1, len(pixels))).astype(int)
         there, long_mm = pixels[flags[at]], doubled.length_mm(felt.felt, n)
-        left_mm = float(np.clip(2 * long_mm - come[there].sum() * EVERY_MM, 0.0, long_mm))
+        left_mm = float(np.clip(2 * long_mm - come[there].sum() * LOOKED_MM, 0.0, long_mm))
         if len(there) and left_mm > ONCE_SHARE * long_mm:
             x, y = places[there[len(there) // 2]]
             found.append((round(float(x), 1), round(float(y), 1), round(left_mm, 1)))

@@ -23,12 +23,12 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import INK, SOFTENED_PX, Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.large import HALO_PX
 from morfax.tracer.drawing.lettering import lettering, lower_than
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.effort import FEW_PX
 
-HALO_PX = 8  # beside a strip: softening looks no further
 OUTLINE_PX = 0.5  # so near an outline is drawn, for the eye
 RIM_PX = 1  # of a solid area beyond the place where it is half as dark
 

@@ -29,7 +29,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.neighbours import Neighbours, those_near
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.effort import EVERY_MM
-from morfax.tracer.limits import FADES
+from morfax.tracer.limits import FADES, LONGER_WIDTHS, NEAR
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.probe import reach_of_ink
@@ -39,14 +39,13 @@ from morfax.tracer.tangles.sketch import softness_of
 from morfax.tracer.tangles.tangle import DARKEST
 
 # All limits below were chosen by trial on drawings of two lines and of nets.
-FOOT_WIDTHS, FOOT_MM = 4.0, 1.0  # as far ahead a line that bends ends on others; both together
+FOOT_MM = 1.0  # as far ahead a line that bends ends on others; both together
 # as far where it comes onto another at a small angle: 15 widths at 4 degrees
 FARTHEST_WIDTHS = 30.0
 POKES_WIDTHS = 5.0  # the end of a line that pokes out further has a stretch of its own
 ON_IT = 0.5  # widths: its straight way on has come to the others
 TOUCHES = 1.0  # widths: two that both end here end beside each other, in ink that runs together
 AHEAD = 12.0  # times its length a leg says where its line goes on
-BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
 STEP_MM = 0.01  # of ends that are tried
 FIRST_WIDTHS, MORE = (
     4.0,
@@ -151,7 +150,7 @@ def _end_in_ink_mm(line: Loose, others: _Others, is_tip: bool) -> float | None:
     # 2. up to where it may end: beyond the last of the others, if no paper lies before
     ends_mm = ahead_mm[: come[-1] + round(POKES_WIDTHS * width_mm / STEP_MM)]
     seen_mm = math.dist(leg.seen[0, :2], leg.seen[-1, :2]) if len(leg.seen) else 0.0
-    is_unknown = 0.5 * abs(leg.bend_per_mm) * ends_mm**2 > BENT_WIDTHS * width_mm
+    is_unknown = 0.5 * abs(leg.bend_per_mm) * ends_mm**2 > NEAR * width_mm
     is_unknown |= ends_mm > AHEAD * seen_mm
     ends_mm = ends_mm[~is_unknown]
     # 3. the ends that explain the ink
@@ -159,7 +158,7 @@ def _end_in_ink_mm(line: Loose, others: _Others, is_tip: bool) -> float | None:
         low, high = _possible(line, others, ends_mm)
         if high < len(ends_mm) - 1 or not (is_tip and is_unknown.any()):
             return float(ends_mm[low + int(np.argmin(away_mm[low : high + 1]))])
-    return foot_mm if foot_mm < FOOT_WIDTHS * width_mm + FOOT_MM else None
+    return foot_mm if foot_mm < LONGER_WIDTHS * width_mm + FOOT_MM else None
 
 
 def _possible(line: Loose, others: _Others, ends_mm: Array) -> tuple[int, int]:

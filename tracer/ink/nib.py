@@ -25,6 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.ink.swelling import Swelling
+from morfax.tracer.limits import CLEAR_WIDTHS
 
 HEADINGS, NIBS = 48, 24  # sectors of half a turn, and at how many angles in it nibs are tried
 # of the widths' spread: what no nib explains. Measured on 122 strokes and 27 pairs of lines: rigid nibs 0.03
@@ -37,7 +38,9 @@ FALLS = 0.05  # of the thinnest width: behind a maximum
 # a sine of any height 0.66 and 0.60
 UP = 0.2, 0.4, 0.8
 STRAIGHT, LEVELS_OFF = 0.62, (0.3, 0.56)
-BESIDE, FURTHER = 1.5, 3.5  # widths to either side of a step: it is averaged over two
+FURTHER = (
+    3.5  # widths to either side of a step, from `CLEAR_WIDTHS` on: it is averaged over two
+)
 # of the thinnest width: so near to it is one line; so much broader are two
 ONE, STEP = 0.06, 0.2
 LEVEL = 0.3  # of the step, by which the ink beyond it may differ
@@ -153,7 +156,7 @@ def _is_straight(slopes: Sequence[Array], least_mm: float) -> bool:
 
 def _steps(averaged: Array, thin_mm: float, step_mm: float) -> list[int]:
     """The stations at which the ink narrows from that of two lines to that of one within a width."""
-    near, far = (round(widths * thin_mm / step_mm) for widths in (BESIDE, FURTHER))
+    near, far = (round(widths * thin_mm / step_mm) for widths in (CLEAR_WIDTHS, FURTHER))
     if len(averaged) < 2 * far + 1:
         return []
     rises, middle = averaged / thin_mm - 1, slice(far, len(averaged) - far)

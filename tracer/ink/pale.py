@@ -21,6 +21,7 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import MIDDLE, ONE_BELOW
 from morfax.tracer.drawing.components import INK, Mask, grouped, strips
 from morfax.tracer.drawing.contrast import ABOVE_NOISE
 from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
@@ -34,7 +35,6 @@ LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white 
 # of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
 STRIP_PX = 24  # high: strips of the sheet that tell its noise
 # percentiles one standard deviation apart; ink and its rims are above the middle
-LOW_AND_MIDDLE = 15.87, 50.0
 # pixels, and spots of the picture's softness: so near to ink is its own rim
 RIM_PX, SPOTS = 3, 3.0
 LEAST_MM = 5.0  # a shorter pale line is a smudge
@@ -107,7 +107,7 @@ def _noise_of_spots(drawing: Drawing) -> float:
     paper = np.concatenate(seen)
     if not len(paper):
         return 0.0
-    low, middle = np.percentile(paper, LOW_AND_MIDDLE)
+    low, middle = np.percentile(paper, (ONE_BELOW, MIDDLE))
     return float(middle - low)
 
 

@@ -34,14 +34,13 @@ from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.ink.track import InkStroke
-from morfax.tracer.limits import WIDER
+from morfax.tracer.limits import LONGER_WIDTHS, WIDER
 
 # All limits but `SAME` were chosen by trial on wedges, lines that touch, and colouring pages.
 EVERY = 0.2  # widths: between places along a stroke
 SAME = WIDER - 1.0  # widths: ink of two lines as near as that is as narrow as one's
 BESIDE = 0.5  # widths: a line further from another has ink of its own
 ALONG_COS = 0.97  # 14 degrees: a line that turns off by more crosses the other
-ROUND = 4.0  # widths along one stroke: nearer places of it are the same line
 PAST = 2.0  # places: another line is beside one so little beyond its own end
 MANY = 16  # nearest places, of which some are another line's
 HALF = 0.5  # of a line's darkness: what is darker is ink
@@ -122,7 +121,7 @@ class _Struck:
         own = own[self.are_left[own]][:: -1 if last else 1]
         width_mm = self.widths_mm[own[0]] if len(own) else 0.0
         count = best = votes = 0
-        some = max(1, round(ROUND * width_mm / self.every_mm))
+        some = max(1, round(LONGER_WIDTHS * width_mm / self.every_mm))
         for first in range(0, len(own), some):
             for k, vote in enumerate(self._votes(own[first : first + some]).tolist()):
                 votes += vote
@@ -158,7 +157,7 @@ class _Struck:
         aside, ahead = (np.sum(off * way[:, None], axis=2) for way in (normals, along))
         is_other = self.stroke[others] != self.stroke[some, None]
         come_mm = np.abs(self.come_mm[others] - self.come_mm[some, None])
-        is_other |= come_mm > ROUND * widths_mm
+        is_other |= come_mm > LONGER_WIDTHS * widths_mm
         cosines = np.abs(np.sum(self.along[others] * along[:, None], axis=2))
         is_beside = is_other & self.are_left[others] & (cosines > ALONG_COS)
         is_beside &= np.abs(aside) < BESIDE * widths_mm

@@ -28,7 +28,7 @@ from morfax.tracer.limits import CLEAR_WIDTHS
 AVERAGED = 2.0  # widths over which a width is averaged
 NARROWEST = 0.02  # of the ink is narrower than the pen's width: junctions, ends
 # of the pen's width about it; of the ink, which is as narrow
-SO_NARROW, LEAST_NARROW = 0.05, 0.05
+SO_NARROW = 0.05
 MUCH_NARROW = 0.3  # of the ink: that is the pen's width, however rough its edges are
 # times as much ink is as narrow as the pen as is a little broader, or more: of 14 nets of one pen 3.9 or more
 ONE_WIDTH = 2.0
@@ -81,7 +81,7 @@ def pen_of(some: Sequence[Swelling]) -> float:
         return math.nan
     lengths = np.array([len(each.known) * each.run.view.step_mm for each in some])
     rough = float(np.average([each.rough for each in some], weights=lengths))
-    return narrow_of(some, LEAST_NARROW) if rough < SMOOTH_EDGES else math.nan
+    return narrow_of(some, SO_NARROW) if rough < SMOOTH_EDGES else math.nan
 
 
 def narrow_of(some: Sequence[Swelling], least: float = MUCH_NARROW) -> float:

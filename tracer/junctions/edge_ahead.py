@@ -29,7 +29,7 @@ from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.sharpening import APART_PX, PutBack, corners_of
-from morfax.tracer.head.course import FELT_LEGS
+from morfax.tracer.head.course import FELT_LEGS, NODES
 from morfax.tracer.head.leaders import MEMORY, STATIONS
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.sensing.edge_scout import CIRCLE_PX
@@ -40,7 +40,6 @@ from morfax.tracer.sensing.view import View
 # that the edge may turn within half of the length over which stations are averaged
 AVERAGED_RAD = 0.36
 LEAST_AVERAGED_PX = 1.6  # half of that length at least
-NODES = 3  # within that half
 # stations to either side of a tip, that turn by so much
 TIP_STATIONS, TIP_RAD = 4, math.radians(100)
 STEEPEST = 0.55  # of the fundamental: no edge is steeper behind an aperture

@@ -29,7 +29,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.tracer.junctions.corner import Corner, hides_outside, rounding
-from morfax.tracer.limits import ABOUT_WIDTHS, LONGER_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, TURNS_BACK, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
@@ -47,7 +47,7 @@ FEWEST_BACK = 6  # stations that make a way to a tip, or back from it
 
 # of the way clear of a vertex: a line that passes is seen there
 PASSED = np.array([0.4, 0.6, 0.8, 1.0])
-CLEAR_WIDTHS, CLEAR_ACROSS, LEAST_SINE = 1.5, 1.2, 0.1  # that way: beyond the other leg's ink
+CLEAR_ACROSS, LEAST_SINE = 1.2, 0.1  # that way: beyond the other leg's ink
 # of the width: by so much a line that passes may be wider, and off the leg's line
 LIKE, CENTRED = 0.2, 0.8
 BEFORE, BEYOND = 0.5, 1.0  # widths that a vertex may move towards the legs, and away from them

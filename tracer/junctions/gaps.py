@@ -18,13 +18,13 @@ import numpy as np
 from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.motion.plane import heading_of
+from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.probe import END_WIDTHS
 from morfax.tracer.sensing.view import View
 
-EVERY_MM = 0.1  # gaps are tried in these steps: the option shows as many digits
 FELT_LEGS = 1.5  # of a leg's length, before the end
 
 
@@ -58,7 +58,7 @@ def _gap_mm(view: View, way_mm: Array) -> float | None:
     most_mm = END_WIDTHS * view.width_mm
     if straight_on(view, leg, most_mm) is None:
         return None
-    gaps = np.arange(EVERY_MM, most_mm, EVERY_MM)
+    gaps = np.arange(LOOKED_MM, most_mm, LOOKED_MM)
     return next(
         (round(float(gap), 1) for gap in gaps if straight_on(view, leg, gap) is not None), None
     )

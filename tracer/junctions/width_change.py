@@ -30,6 +30,7 @@ from morfax.tracer.head.course import SMOOTH, ahead_mm
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.junctions.choice import WayIn, survey
 from morfax.tracer.junctions.corner import Corner
+from morfax.tracer.limits import LONGER_WIDTHS
 from morfax.tracer.sensing.leg import Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
 
@@ -40,7 +41,7 @@ ALIKE = 0.1  # no other pen
 STEP = 0.2  # another pen, and no swelling of the line
 # so long and so evenly: two lines that run together do not stay so
 STEADY_WIDTHS, STEADY = 8.0, 0.06
-AHEAD_WIDTHS, AHEAD_STEP = 4.0, 0.5  # as far, and in such steps, the other line is looked for
+AHEAD_STEP = 0.5  # widths: in such steps, up to `LONGER_WIDTHS`, the other line is looked for
 FAR_LEGS = 2.0  # the vertex lies further off than at a corner of one width
 ASIDE = 0.4  # of what a line beside it would set the middle off: it is in line
 LEAST_ASIDE_MM = 0.015  # the way ahead is known as well as this
@@ -88,7 +89,7 @@ def another_pen(view: View, leg: Leg) -> bool:
 def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:
     """Lines of another width in line with a leg."""
     step = AHEAD_STEP * view.width_mm
-    for along in np.arange(step, AHEAD_WIDTHS * view.width_mm, step):
+    for along in np.arange(step, LONGER_WIDTHS * view.width_mm, step):
         place, heading = incoming.at(along), incoming.heading_at(along)
         reach_mm = WIDEST * view.width_mm
         right, left = view.edges(place, heading, reach_mm)

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import blocks, released
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS
 from morfax.tracer.marks import dots, sizes
 from morfax.tracer.marks.head_path import HeadPath
 from morfax.tracer.marks.ticks import Base, SideStroke, crossing_mm, felt
@@ -39,7 +40,6 @@ from morfax.tracer.sensing.view import View
 
 Bits = NDArray[np.uint8]  # eight to a byte
 SPACING_PX = 0.5  # how closely the cells look along the path
-TOUCHES_DOT = 3.0  # widths: a tick nearer to a dot is the dot's own ink
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ def marks_along(view: View, positions: Array) -> list[Mark]:
     at = np.minimum(np.searchsorted(path.position, [dot.at for dot in found]), last)
     dots_mm = path.at_mm[at]
     for foot_mm in _ticks(view, path):
-        if np.all(np.abs(foot_mm - dots_mm) > TOUCHES_DOT * view.width_mm):
+        if np.all(np.abs(foot_mm - dots_mm) > ABOUT_WIDTHS * view.width_mm):
             found.append(Mark("tick", path.place(foot_mm), path.position_at(foot_mm)))
     return sorted(found, key=lambda mark: mark.at)
 
@@ -251,7 +251,7 @@ def _beside_dot(view: View, path: HeadPath, begin: int, end: int) -> View:
 
     A ragged line is wide in places.
     """
-    reach = int(sizes.BESIDE_DOT * view.width_mm / path.step_mm)
+    reach = int(CLEAR_WIDTHS * view.width_mm / path.step_mm)
     before = range(begin - 2 * reach, begin - reach)
     behind = range(end + reach, end + 2 * reach)
     near = [*before, *behind]

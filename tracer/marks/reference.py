@@ -34,7 +34,7 @@ from morfax.motion.median import median
 from morfax.motion.plane import direction
 from morfax.tracer.drawing.holes import holes
 from morfax.tracer.drawing.strokes import Sheet, Stroke
-from morfax.tracer.limits import WIDER
+from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
 from morfax.tracer.marks.crosses import crosses
 from morfax.tracer.marks.sizes import BOX, CROSS_MM, RING_LIKE, RING_ROUND, RING_SEEN
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
@@ -46,7 +46,6 @@ LEAST_MM, LARGEST_MM = CROSS_MM
 MOST_PX = 50_000_000  # of a patch that is searched for holes: a tenth of a second
 BESIDE = np.arange(SPOKES) - 1  # of each spoke, the one before it
 BEYOND = np.array([1.5, 1.9, 2.3])  # widths beyond the arms, at which the lead line is sought
-PARTING = 3.0  # widths round a cross or a ring: two lines that leave it nearer to each other part there
 
 Kind = Literal["cross", "ring", "symbol"]
 
@@ -192,7 +191,7 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
     middles_mm = radius_mm * arcs.mean(axis=1)
     for arc, middle_mm in zip(arcs, middles_mm, strict=True):
         apart_mm = np.abs(_round(middles_mm - middle_mm, math.tau * radius_mm))
-        if np.count_nonzero(apart_mm < PARTING * view.width_mm) > 1:
+        if np.count_nonzero(apart_mm < ABOUT_WIDTHS * view.width_mm) > 1:
             continue
         heading = float(arc.mean())
         way = direction(heading)

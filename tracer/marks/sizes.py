@@ -26,11 +26,12 @@ LIKE, SEEN = (0.5, 1.6), (0.3, 2.0)
 INK = (0.65, 1.4)  # darkness, of the line's: one pen draws both
 # widths from the line's middle: nearer, the ink of tick and line runs together
 CLEAR_OF_LINE = 0.9
-# paper to both sides: of a tick that touches the line, and of one that does not, for lettering stands there
-CLEAR_WIDTHS, APART_MM, APART_WIDTHS = 1.5, 1.5, 3.0
+# paper to both sides of a tick that does not touch the line, for lettering stands there; or, if that is
+# more, `limits.ABOUT_WIDTHS`; of one that touches it, `limits.CLEAR_WIDTHS`
+APART_MM = 1.5
 SOILED, APART_SOILED = 0.15, 0.03  # share of that paper that may be ink
 CLEAR_OF_EDGE = 0.4  # widths from the tick's edge to where that paper begins
-DASH_MM, DASH_WIDTHS = 2.0, 4.0  # dashes of one line are no further apart
+DASH_MM = 2.0  # dashes of one line are no further apart, or `limits.LONGER_WIDTHS`
 SAME_WIDTHS = 0.6  # feet on both sides that are nearer along the line are one tick's
 # so far the line is straight about a tick, widths aside
 CORNER_WIDTHS, CORNER_MM, CORNER_ASIDE = 1.2, 0.5, 0.25
@@ -42,7 +43,6 @@ DOT_FULL = 0.65  # its area over that of its box, at least; a disc has 0.785
 DOT_ROUND = 0.15  # its spokes differ by less than this share
 DOT_EVEN = 0.6  # share of the spokes that are alike, at least: the line covers the others
 DOT_ALONG = AHEAD_RAD  # the line leaves it within this of its heading
-BESIDE_DOT = 1.5  # widths, from a dot's edge to where the line is by itself
 
 # a reference point: a cross or a ring
 CROSS_MM = (1.5, 10.0)  # across

@@ -24,8 +24,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import left_of
+from morfax.motion.usual import INCREMENT_MM
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.marks import sizes
-from morfax.tracer.sensing.parabola import LEAST_OFF_MM, OUTLIERS
+from morfax.tracer.sensing.parabola import OUTLIERS
 from morfax.tracer.sensing.photocell import LEVEL, STEP_PX
 from morfax.tracer.sensing.probe import is_tip
 from morfax.tracer.sensing.ray import Ray, end_of_ink, seen_on
@@ -36,7 +38,6 @@ TURNS = 3  # the cells are turned this often: by then they stand square to a str
 ACROSS = 1.2  # widths, along the path from a stroke's middle: its edges are nearer
 # widths: a dash is no wider, and its middle no further from the stroke's own line
 WIDE, STRAY = 1.6, 0.25
-DASH = 1.5  # widths: ink in line with a stroke that goes on for longer is a dash
 # of paper on a stroke, at most as long as a speck
 SPECK_WIDTHS = 0.6
 NEAREST = 0.4  # widths from the path: the line's own ink is not felt
@@ -144,16 +145,16 @@ def _ends(view: View, base: Base, seen: Array, touches: bool) -> bool:
         if not is_tip(view, base.place + u * base.along + v * across):
             return False
     middles = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width]
-    others_mm = max(sizes.DASH_MM, sizes.DASH_WIDTHS * width)
+    others_mm = max(sizes.DASH_MM, LONGER_WIDTHS * width)
     return not _goes_on(view.cells, base, middles, others_mm, width)
 
 
 def _is_clear(view: View, base: Base, middles: Array, touches: bool) -> bool:
     """Whether there is paper to both sides of a stroke."""
     width = view.width_mm
-    clear_mm = sizes.CLEAR_WIDTHS * width
+    clear_mm = CLEAR_WIDTHS * width
     if not touches:
-        clear_mm = max(sizes.APART_MM, sizes.APART_WIDTHS * width)
+        clear_mm = max(sizes.APART_MM, ABOUT_WIDTHS * width)
     beside_mm = sizes.CLEAR_OF_EDGE * width, clear_mm
     soiled = float(_soiled(view.cells, base, middles, beside_mm))
     return soiled < (sizes.SOILED if touches else sizes.APART_SOILED)
@@ -198,7 +199,7 @@ def _robust_line(x: Array, y: Array) -> tuple[float, float]:
     """Slope and offset of the straight line y(x), without places that a speck has drawn aside."""
     for _ in range(2):
         rest = np.abs(y - np.polyval(np.polyfit(x, y, 1), x))
-        good = rest <= OUTLIERS * max(ROBUST * median(rest), LEAST_OFF_MM)
+        good = rest <= OUTLIERS * max(ROBUST * median(rest), INCREMENT_MM)
         x, y = x[good], y[good]
     slope, offset = np.polyfit(x, y, 1)
     return float(slope), float(offset)
@@ -249,7 +250,7 @@ def _goes_on(cells, base, middles, beyond_mm, width_mm):  # type: ignore[no-unty
         stray = abs(0.5 * (left + right) - there)
         like = left - right < WIDE * width_mm and stray < STRAY * width_mm
         run = run + step if like else 0.0
-        if run > DASH * width_mm:
+        if run > CLEAR_WIDTHS * width_mm:
             return True
     return False
 

@@ -30,6 +30,7 @@ from typing import Literal, Protocol
 from morfax.motion.faults import CardFault
 from morfax.tracer.following.direction import Arrow, Direction
 from morfax.tracer.following.line import Line
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.operator.card import Card, Drill, Stop
 from morfax.tracer.operator.work import Action, Descent, Halt, Work
 from morfax.tracer.operator.zunit import COUNTS_PER_MM, QuillMove
@@ -39,7 +40,6 @@ Marks = Literal["auto", "on", "off"]
 
 STAND_S = 0.5  # at a stop without an entry on the card: our own figure
 # a dot as near to the end of a guide line is the hole drilled there; by trial
-NEAR_WIDTHS = 3.0
 
 
 class Panel(Protocol):
@@ -115,7 +115,7 @@ class Operator:
         tips: list[float] = [guide.tip for guide in line.guides]
         if line.is_guide:
             tips.append(len(line.xy_mm) - 1)
-        near_mm = NEAR_WIDTHS * line.width_mm
+        near_mm = ABOUT_WIDTHS * line.width_mm
         for tip in tips:
             place = line.place(tip)
             dots = [

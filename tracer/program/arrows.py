@@ -22,11 +22,12 @@ from morfax.motion.faults import LineFault
 from morfax.motion.polyline import area_mm2
 from morfax.tracer.following.direction import Arrow
 from morfax.tracer.following.line import Line
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed
 
 # Both limits below were chosen by trial.
-NEAR_WIDTHS, NEAR_MM = 3.0, 1.0  # an arrow further from a line is on none: the larger
+NEAR_MM = 1.0  # an arrow further from a line, and beyond `ABOUT_WIDTHS`, is on none
 ALIKE = 0.02  # a line is as long from another place, within this share
 
 
@@ -53,7 +54,7 @@ def turned_round(setup: Setup, line: Line) -> Line:
         )
     silent, begin_mm, end_mm = replace(setup, progress=None), line.xy_mm[0], line.xy_mm[-1]
     # other turns are for what closes, and what closes at the one end does not come to the other
-    may_close = np.hypot(*(end_mm - begin_mm)) < NEAR_WIDTHS * line.width_mm
+    may_close = np.hypot(*(end_mm - begin_mm)) < ABOUT_WIDTHS * line.width_mm
     turns = bool(may_close) or setup.operator.direction is not None
     try:
         other = followed(silent, line.place(len(line.xy_mm) - 1), line.number, turns)
@@ -101,7 +102,7 @@ def _nearest(arrow: Arrow, lines: list[Line]) -> int:
     """The index of the line on which an arrow is; raises LineFault if it is on none."""
     away_mm = [float(np.hypot(*(line.places_mm - arrow.place_mm).T).min()) for line in lines]
     number = int(np.argmin(away_mm))
-    if away_mm[number] > max(NEAR_WIDTHS * lines[number].width_mm, NEAR_MM):
+    if away_mm[number] > max(ABOUT_WIDTHS * lines[number].width_mm, NEAR_MM):
         raise _refused(
             arrow, f"the nearest line that is followed is {away_mm[number]:.1f} mm away"
         )

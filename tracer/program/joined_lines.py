@@ -31,6 +31,7 @@ from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.program.against_ink.left_ink import LeftInk
 from morfax.tracer.program.lines.selection import LETTER_MM, NEW, SAME_WIDTHS, Contour, least_mm
 from morfax.tracer.program.setup import Setup
@@ -38,7 +39,7 @@ from morfax.tracer.program.trace import followed_through
 
 # All limits below were chosen by trial on the test drawings.
 # ink nearer to a way is that way's; where that is all of it, a line may run close beside: then so near
-BESIDE_WIDTHS, CLOSE_WIDTHS = 1.5, 1.2
+CLOSE_WIDTHS = 1.2
 RUNS = 60  # tried on a patch, ...
 TRIED_MM = 1500.0  # ... and travel, besides the length of its ink, in runs that are no lines
 
@@ -92,7 +93,7 @@ def joined_to(
     if setup.sheet.drawing.edges_mm:  # every edge is a line of its own
         return [], 0.0
     shortest_mm = float(least_mm(stroke.width_mm))
-    for beside in (BESIDE_WIDTHS, CLOSE_WIDTHS):
+    for beside in (CLEAR_WIDTHS, CLOSE_WIDTHS):
         found = _Found(line, stroke, beside)
         left = found.left()
         if left.length_mm >= shortest_mm:
@@ -122,7 +123,7 @@ def _lines_among(strokes: list[Line], line: Line, contour: Contour) -> tuple[lis
     for stroke in strokes:
         if _is_line(stroke, lines):
             lines.append(stroke)
-    return lines[1:], _left_over_mm(contour.stroke, lines, BESIDE_WIDTHS)
+    return lines[1:], _left_over_mm(contour.stroke, lines, CLEAR_WIDTHS)
 
 
 def _left_over_mm(stroke: Stroke, lines: list[Line], beside_widths: float) -> float:

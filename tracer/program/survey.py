@@ -26,6 +26,7 @@ from typing import Literal
 import numpy as np
 
 from morfax.motion.faults import LineFault
+from morfax.motion.polyline import APART_MM
 from morfax.tracer.drawing.enclosure import NONE, Enclosure
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
@@ -46,7 +47,6 @@ Kind = Literal["closed", "open", "several", "dot", "joined", "lost"]
 Place = tuple[float, float]
 
 # cells whose apertures differ by less find the same ends and places; by trial
-APERTURE_MM = 0.02
 FIRST_LOOKS = 2  # places at which the head looks before it asks as a run asks; by trial
 
 
@@ -150,7 +150,7 @@ def _viewed(setup: Setup, contours: list[Contour]) -> Iterator[tuple[Contour, Vi
     for contour in sorted(contours, key=lambda contour: contour.stroke.width_mm):
         width_mm = setup.settings.line_width_mm or contour.stroke.width_mm
         aperture_mm = setup.settings.aperture_mm or aperture_for(setup.sheet.drawing, width_mm)
-        if view is None or abs(aperture_mm - seen_mm) > APERTURE_MM:
+        if view is None or abs(aperture_mm - seen_mm) > APART_MM:
             view, seen_mm = view_of(setup.sheet, aperture_mm, width_mm), aperture_mm
         yield contour, replace(view, width_mm=width_mm)
 

@@ -19,10 +19,10 @@ from morfax.motion.arrays import median as median_of
 from morfax.motion.compiled import njit
 from morfax.motion.median import OUTLIERS, ROBUST
 from morfax.motion.plane import heading_between, length_between
+from morfax.motion.usual import INCREMENT_MM
 from morfax.tracer.sensing.moments import LEAST_WEIGHT, bend_of
 
 BITTEN = 0.06  # of the width: more than a scan's noise
-LEAST_OFF_MM = 0.001  # of a station: nearer ones stay in
 FEWEST = 8  # stations: a parabola through fewer follows their noise
 # standard errors: neighbouring stations share their ink, so that a bend has to stand out further than three
 BEND_STANDS_OUT = 5.0
@@ -44,7 +44,7 @@ def leg_through(seen, last, length_mm):  # type: ignore[no-untyped-def]
     best, limit = _leg(clean, end, 0.5 * length_mm)
     for share in (0.75, 1.0):
         longer, misfit = _leg(clean, end, share * length_mm)
-        if misfit > MISFIT * limit + LEAST_OFF_MM:
+        if misfit > MISFIT * limit + INCREMENT_MM:
             break
         best, limit = longer, misfit
     return best, begin, stop
@@ -125,7 +125,7 @@ def fit(x, y):  # type: ignore[no-untyped-def]
     # 1. without outliers
     for _ in range(2):
         away = np.abs(y - found[0] - found[1] * x - found[2] * x * x)
-        good = away <= OUTLIERS * max(ROBUST * median_of(away), LEAST_OFF_MM)
+        good = away <= OUTLIERS * max(ROBUST * median_of(away), INCREMENT_MM)
         if good.all() or good.sum() < FEWEST:
             break
         x, y = x[good], y[good]

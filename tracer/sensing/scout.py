@@ -13,6 +13,7 @@ import numpy as np
 
 from morfax.motion.compiled import njit
 from morfax.motion.plane import heading_between
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.sensing.ray import edges
 
 # widths and pixels from where a line is expected, within which its edges are
@@ -23,7 +24,6 @@ LEAP, LEAP_PX = 1 / 6, 0.4
 FOLLOWS_PER_MM = 0.2  # of the difference: a line may swell, and the expected width follows it
 LEG_MM = 1.2  # how much of a leg is felt for its direction, at a line of 0.5 mm
 LEG_PX = 12  # and at least so many pixels
-LEG_WIDTHS = 1.5  # and so many widths of a wide line
 FEWEST = 4  # stations that a line is felt along at the least
 # along the line, that a speck spoils: two pixels through the aperture
 SPECK_MM, SPECK_PX = 0.16, 2.5
@@ -76,7 +76,7 @@ def scout(cells, pose, width_mm, step_mm, stations):  # type: ignore[no-untyped-
 @njit(cache=True)
 def leg_mm(width_mm, pitch_mm):  # type: ignore[no-untyped-def]
     """How much of a leg is felt for its direction, for kernels (see `View.leg_mm`)."""
-    return max(LEG_MM, LEG_PX * pitch_mm, LEG_WIDTHS * width_mm)
+    return max(LEG_MM, LEG_PX * pitch_mm, CLEAR_WIDTHS * width_mm)
 
 
 @njit(cache=True)

@@ -17,7 +17,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.limits import ABOUT_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, FOLLOWS
 from morfax.tracer.sensing import edge_scout, photocell, ray
 from morfax.tracer.sensing.gauge import gauge
 from morfax.tracer.sensing.photocell import STEP_PX, Cells
@@ -26,7 +26,6 @@ from morfax.tracer.sensing.scout import (
     FEWEST,
     LEG_MM,
     LEG_PX,
-    LEG_WIDTHS,
     REACH,
     REACH_PX,
     scout,
@@ -78,7 +77,7 @@ class View:
     def leg_mm(self) -> float:
         """How much of a leg is felt for its direction."""
         pixels = EDGE_LEG_PX if self.on_edge else LEG_PX
-        return max(LEG_MM, pixels * self.pitch_mm, LEG_WIDTHS * self.width_mm)
+        return max(LEG_MM, pixels * self.pitch_mm, CLEAR_WIDTHS * self.width_mm)
 
     def at_level(self, level: float) -> View:
         """The view with another darkness at an edge."""
@@ -156,7 +155,7 @@ class View:
                 seen.append((x, y, width))
         return np.array(seen).reshape(-1, 3)
 
-    def like(self, place: Array, heading: float, follows: float = 0.1) -> View:
+    def like(self, place: Array, heading: float, follows: float = FOLLOWS) -> View:
         """The view with the line's width and darkness about a place, if they are like those before.
 
         Lines swell and fade. The usual width follows by a share of how far the width differs from it.

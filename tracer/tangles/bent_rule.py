@@ -20,6 +20,7 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.compiled import njit
 from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.least_squares import NUDGE
 
 # between the places of an arc: they lie within 1 um of one of 0.7 mm
 ARC_RAD = math.radians(6.0)
@@ -27,7 +28,6 @@ MOST_OF_ARC = 2 + math.ceil(math.pi / ARC_RAD)
 STRAIGHT = 1e-3  # tangent of half a turn: a smaller one is not rounded
 # of a piece: an arc takes half of it at the most, and all but this of one that ends where it is sharp
 KEPT = 0.02
-STEP = 1e-4  # of a figure, by which it is moved to see what that changes
 
 
 @njit(cache=True)
@@ -121,7 +121,7 @@ def changes(ink, rule, figures):  # type: ignore[no-untyped-def]
     wrong(ink, rule, figures, now)
     for i in range(len(figures)):
         old = figures[i]
-        figures[i] = old + STEP * old if old != 0.0 else STEP
+        figures[i] = old + NUDGE * old if old != 0.0 else NUDGE
         wrong(ink, rule, figures, then)
         by = figures[i] - old
         figures[i] = old

@@ -46,8 +46,7 @@ from morfax.tracer.tangles.tangle import Tangle
 # Chosen by trial on the test drawings.
 MOST_LEGS = 4  # of a tangle: there are three ways to join them, and fifteen for six
 MOST_ADDED = 6  # vertices and strokes
-MOST_IMPROVED = 4  # plain redrawings
-MOST_SETTLED = 4  # rough ones
+MOST_SETTLED = 4  # redrawings, plain and rough ones
 LEFT_OVER = 0.4  # of the line's darkness: ink that is not drawn
 PLAN_EVERY = 4  # of the places of a stretch, 20 um apart
 # rounds in which vertices settle: at last, of a plain redrawing, of a try
@@ -215,7 +214,7 @@ class Sketch:
 def redrawings(sketch: Sketch) -> list[Redrawing]:
     """Redrawings of a tangle, the best first."""
     plain = [sketch.plainest(pairs) for pairs in matchings(len(sketch.poses))]
-    plain = sorted(plain, key=lambda way: way.cost)[:MOST_IMPROVED]
+    plain = sorted(plain, key=lambda way: way.cost)[:MOST_SETTLED]
     return sorted((sketch.improved(way) for way in plain), key=lambda way: way.cost)
 
 

@@ -39,7 +39,6 @@ FEW = 2.5  # vertices: no more for that, if the plan leads there too
 # one explains the ink as well as another: so many times its misfit, and more
 TWICE, LEAST_MISFIT = 2.0, 0.02
 DOUBTFUL = 0.08  # straight on stands unless the ink tells against it by more
-AS_GOOD = 0.02  # of a plan that needs no other to be compared with
 GRAINY = 3.0  # times as much as the line beside it leaves unexplained: that is its grain
 LEG_WIDTHS = np.linspace(-0.2, 2.2, 13)  # from a leg's end, where it is looked at for that
 SLACK = 0.005  # misfit that noise makes up for, if there is little of it
@@ -83,7 +82,7 @@ def unravelled(sketch: Sketch, approach: Approach) -> Solution:
     plan, legs = approach.plan, sketch.tangle.legs
     # 1. a plan between two legs that explains the ink needs no other
     planned = _planned_misfit(sketch, plan)
-    if len(legs) == 2 and planned < AS_GOOD and _leads_to(sketch, plan, 1):
+    if len(legs) == 2 and planned < LEAST_MISFIT and _leads_to(sketch, plan, 1):
         return Solution(plan, Redrawing(((0, 1),), (NONE,)))
     # 2. the best redrawing by each leg, of those that explain the ink
     best = _by_leg(sketch, approach, planned)

@@ -24,6 +24,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.tracer.drawing.drawing import Darkness
 from morfax.tracer.junctions.rings import FARTHEST_MM, FARTHEST_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
@@ -31,7 +32,7 @@ from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 Flags = NDArray[np.bool_]
 
 # Chosen by trial on the test drawings.
-STUB_WIDTHS, STUB_MM = 3.0, 1.5  # ink that ends sooner than either is a tip
+STUB_MM = 1.5  # ink that ends sooner, and within `ABOUT_WIDTHS`, is a tip
 BEGIN_WIDTHS = 0.6  # from the start: a leg begins no nearer
 # of the line's width, as a mean of so many fronts
 LEAST_BROAD, MOST_BROAD, BROAD_FRONTS = 0.6, 1.4, 3
@@ -106,7 +107,7 @@ def _tips(view: View, fronts: Fronts, reach_mm: float) -> Flags:
     """Which fronts lie in ink that ends soon, within the wave's reach."""
     beyond_mm = fronts.beyond_mm()
     ends_mm = fronts.at * fronts.step_mm + beyond_mm
-    soon = beyond_mm < min(STUB_WIDTHS * view.width_mm, STUB_MM)
+    soon = beyond_mm < min(ABOUT_WIDTHS * view.width_mm, STUB_MM)
     return np.asarray(soon & (ends_mm < reach_mm - 2 * fronts.step_mm))
 
 

@@ -17,12 +17,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from morfax.motion.usual import INCREMENT_MM
 from morfax.player.gcode.check.findings import Finding, Findings
 from morfax.player.gcode.check.steps import Step, bounds_mm
 from morfax.player.gcode.check.words import called
 from morfax.recorder.gcode.machine import Machine
 
-BELOW_MM = 1e-3  # as finely as programs are written
 _SAME = 3  # decimals of a mm within which a hole is the same hole
 
 
@@ -67,7 +67,7 @@ def check_rapids(steps: Sequence[Step], surface_mm: float, findings: Findings) -
             deepest[hole] = min(deepest.get(hole, surface_mm), end[2])
         elif step.across:
             findings.add(_THROUGH.at(step), _THROUGH.what)
-        elif end[2] < min(step.begin_mm[2], deepest.get(hole, surface_mm) - BELOW_MM):
+        elif end[2] < min(step.begin_mm[2], deepest.get(hole, surface_mm) - INCREMENT_MM):
             findings.add(_PLUNGES.at(step), _PLUNGES.what)
 
 
@@ -134,7 +134,7 @@ def check_travel(steps: Sequence[Step], machine: Machine, findings: Findings) ->
         return
     for axis, (name, most) in enumerate(zip("XYZ", machine.travel_mm, strict=True)):
         span = whole[1][axis] - whole[0][axis]
-        if span <= most + BELOW_MM:
+        if span <= most + INCREMENT_MM:
             continue
         low = steps[0].begin_mm[axis]
         high = steps[0].begin_mm[axis]
@@ -142,7 +142,7 @@ def check_travel(steps: Sequence[Step], machine: Machine, findings: Findings) ->
             lower, upper = step.bounds_mm()
             low = min(low, lower[axis])
             high = max(high, upper[axis])
-            if high - low > most + BELOW_MM:
+            if high - low > most + INCREMENT_MM:
                 what = f"the program needs {span:.1f} mm of {name}"
                 allowed = f"the machine travels {most:g} mm (travel_mm)"
                 do = "make the part smaller, or turn it"
@@ -173,7 +173,7 @@ def check_stock(steps: Sequence[Step], stock: Stock, findings: Findings) -> None
         if not step.in_work or step.is_rapid:
             continue
         low, high = step.bounds_mm()
-        if max(left - low[0], bottom - low[1], high[0] - right, high[1] - top) > BELOW_MM:
+        if max(left - low[0], bottom - low[1], high[0] - right, high[1] - top) > INCREMENT_MM:
             findings.add(beside.at(step), beside.kind)
-        if stock.thickness_mm is not None and step.lowest_mm < lowest_mm - BELOW_MM:
+        if stock.thickness_mm is not None and step.lowest_mm < lowest_mm - INCREMENT_MM:
             findings.add(below.at(step), below.kind)

@@ -108,7 +108,7 @@ def test_what_is_wrong_is_the_ink_along_the_way_and_changes_say_how_it_goes_on()
     assert np.allclose(out, wrong, atol=1e-9)  # of ink's darkness
     change = bent_rule.changes(ink.for_kernel(), ends, figures)
     for k, figure in enumerate(figures):
-        moved, by = figures.copy(), (figure or 1.0) * bent_rule.STEP
+        moved, by = figures.copy(), (figure or 1.0) * bent_rule.NUDGE
         moved[k] += by
         bent_rule.wrong(ink.for_kernel(), ends, moved, out)
         assert np.allclose(change[:, k], (out - wrong) / by, atol=1e-6)  # per mm

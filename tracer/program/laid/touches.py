@@ -29,7 +29,7 @@ from morfax.motion.polyline import at_lengths, evenly, length_mm, lengths_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
-from morfax.tracer.limits import TIP_RAD
+from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.program.against_ink.bars import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.laid.bay_run import Bay, laid
@@ -53,7 +53,6 @@ from morfax.tracer.tangles.seen_ink import LIKE, SeenInk
 STEP = 0.25  # between the places that are looked at
 NEAR = 1.3  # sides that are nearer leave one ink
 ON = 8.0  # of way between two sides of one line
-GAP = 4.0  # of way between two touches
 SHORT, LONG = 5.0, 60.0  # a shorter one is a crossing; a longer one is no touch
 LEG = 2.0  # of clean line before and after
 HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
@@ -123,7 +122,7 @@ def _grouped(
     first, last = shortest(near, len(ways[0]))
     if last >= len(ways[0]):  # over its beginning: in order from behind the widest gap
         near = np.concatenate([near[near >= first], near[near < first] + len(ways[0])])
-    for group in np.split(near, np.flatnonzero(np.diff(near) > GAP / STEP) + 1):
+    for group in np.split(near, np.flatnonzero(np.diff(near) > LONGER_WIDTHS / STEP) + 1):
         others = partner[group % len(ways[0])]
         begin, end = shortest(np.unique(others), len(ways[1]))
         long = max(group[-1] - group[0], end - begin) * STEP

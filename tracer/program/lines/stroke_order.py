@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM
+from morfax.tracer.program.lines.order import FIRSTS
 
 SPAN = 2000  # strokes in a stretch that is turned at most; by trial: the time stays that of the ink
 # strokes tried as the first: fewer, if there are many strokes; by trial
-FIRSTS, SOME = 16, 4000
+SOME = 4000
 PASSES = 60  # over all stretches; most orders need ten
 
 

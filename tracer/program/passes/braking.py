@@ -31,8 +31,8 @@ from morfax.motion.long_array import LongArray, blocks, released
 from morfax.motion.plane import CORNER_RAD, NOTHING_MM
 from morfax.motion.polyline import at_lengths, at_places, lengths_mm, steps_mm
 from morfax.motion.speed_limits import reachable
+from morfax.tracer.effort import LOOKED_MM
 
-RUN_MM = 0.1  # from node to node of a way that is run from memory
 BRAKED_ROWS = 600  # looked at first, back from a halt: from 10 mm/s the axis brakes in 120
 SLOWEST_MM_S = 0.02  # where the head swivels it stands: its time there is kept
 
@@ -68,12 +68,12 @@ def run(way_mm: Array, speed_mm_s: float, acceleration_mm_s2: float, rate_hz: fl
 
 
 def _nodes(way_mm: Array) -> Array:
-    """Nodes of a way (n, 2) mm: `RUN_MM` apart, and each place where the head swivelled."""
+    """Nodes of a way (n, 2) mm: `LOOKED_MM` apart, and each place where the head swivelled."""
     lengths = lengths_mm(way_mm)
     stood = np.unique(np.round(lengths[1:][steps_mm(way_mm) < NOTHING_MM], 6))
-    even = np.arange(0.0, lengths[-1], RUN_MM)
+    even = np.arange(0.0, lengths[-1], LOOKED_MM)
     if len(stood):
-        near = np.abs(even[:, None] - stood).min(axis=1) < 0.5 * RUN_MM
+        near = np.abs(even[:, None] - stood).min(axis=1) < 0.5 * LOOKED_MM
         even = even[~near]
     return at_lengths(way_mm, np.unique(np.r_[0.0, even, stood, lengths[-1]]))
 

@@ -29,6 +29,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.plane import CORNER_RAD, left_of_headings
 from morfax.motion.polyline import area_mm2, at_lengths
+from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.operator.work import Action, Tabs
@@ -38,7 +39,6 @@ from morfax.tracer.program.passes.way import Way
 MOST_SHARE = 0.5  # of a line: more would be less cut than held
 MOVED_SHARE = 0.25  # of its share of the line: neighbours stay half a share apart
 CLEAR_MM = 1.0  # from a tab to a corner, a halt, the beginning of the line
-APART_MM = 0.1  # between the places that are tried
 FELT_MM = 0.5  # to either side of a place: shows the heading there
 # turned over a tab: the first of these that it stays in counts
 STRAIGHT_RAD = np.radians([20, 45, 90])
@@ -123,7 +123,7 @@ def tabs_on(
         least = np.searchsorted(STRAIGHT_RAD, turned[near].min())
         straight = middles_mm[near & (turned <= STRAIGHT_RAD[least])]
         middle_mm = float(straight[np.argmin(np.abs(straight - wanted_mm))])
-        if abs(middle_mm - wanted_mm) < APART_MM:
+        if abs(middle_mm - wanted_mm) < LOOKED_MM:
             middle_mm = wanted_mm
         found.append(_tab(loop, middle_mm, long_mm))
     return tuple(found)
@@ -155,14 +155,14 @@ def _places(
     from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
     # 1. the heading at places along the loop
-    at_mm = np.arange(0.0, loop.length_mm, APART_MM)
+    at_mm = np.arange(0.0, loop.length_mm, LOOKED_MM)
     ahead, behind = (at_lengths(loop.places_mm, at_mm + felt) for felt in (FELT_MM, -FELT_MM))
     heading = np.unwrap(np.arctan2(*(ahead - behind).T[::-1]))
     # 2. how far it turns over a tab, and over the sharpest mm of it and beside it
-    wide = 2 * round(0.5 * long_mm / APART_MM) + 1
-    clear = 2 * round((0.5 * long_mm + CLEAR_MM) / APART_MM) + 1
+    wide = 2 * round(0.5 * long_mm / LOOKED_MM) + 1
+    clear = 2 * round((0.5 * long_mm + CLEAR_MM) / LOOKED_MM) + 1
     turned = maximum_filter1d(heading, wide) - minimum_filter1d(heading, wide)
-    felt = 2 * round(FELT_MM / APART_MM) + 1
+    felt = 2 * round(FELT_MM / LOOKED_MM) + 1
     bend = maximum_filter1d(heading, felt) - minimum_filter1d(heading, felt)
     sharpest = maximum_filter1d(bend, clear)
     # 3. clear of corners and of bends of less than 3 mm radius, of the ends of the loop and the halts on it
