@@ -23,6 +23,8 @@ from __future__ import annotations
 from typing import Any
 
 SHOWN = 40  # characters of a wrong line or value: a fault is one line
+# exit codes; 1 is a fault of no kind, 2 wrong use
+DRAWING, LINE, TAPE, LOCK, MOTION, FILE, CARD, DEVICE = 3, 4, 5, 6, 7, 8, 9, 10
 
 
 class Fault(Exception):
@@ -38,13 +40,13 @@ class Fault(Exception):
 class DrawingFault(Fault, ValueError):
     """The drawing cannot be used."""
 
-    exit_code = 3
+    exit_code = DRAWING
 
 
 class LineFault(Fault):
     """No line at the place asked for (`nearest_mm`: the nearest), or the head lost it; sheet mm, rad."""
 
-    exit_code = 4
+    exit_code = LINE
 
     def __init__(
         self,
@@ -67,7 +69,7 @@ class LineFault(Fault):
 class TapeFault(Fault, ValueError):
     """The file is no tape that can be played; `time_s` is tape time where one is known."""
 
-    exit_code = 5
+    exit_code = TAPE
 
     def __init__(self, message: str, *, time_s: float | None = None) -> None:
         super().__init__(message)
@@ -87,7 +89,7 @@ class ProgramFault(TapeFault):
 class LockFault(Fault):
     """A drive left the comparator's range (fault circuit 162)."""
 
-    exit_code = 6
+    exit_code = LOCK
 
     def __init__(
         self, message: str, *, axis: str, time_s: float, error_cycles: float, position_mm: float
@@ -136,7 +138,7 @@ class DropoutFault(LockFault):
 class FollowingFault(Fault):
     """A drive is further behind its demand than the demand's speed allows (patent ES 414458, figure 1)."""
 
-    exit_code = 6
+    exit_code = LOCK
 
     def __init__(
         self,
@@ -156,7 +158,7 @@ class FollowingFault(Fault):
 class MotionFault(Fault, ValueError):
     """A motion or path file that cannot be recorded."""
 
-    exit_code = 7
+    exit_code = MOTION
 
     def __init__(
         self,
@@ -173,13 +175,13 @@ class MotionFault(Fault, ValueError):
 class FileFault(Fault, OSError):
     """A file that cannot be read or written."""
 
-    exit_code = 8
+    exit_code = FILE
 
 
 class CardFault(Fault, ValueError):
     """A mistake in the operator's card: the line of the file, the field, and what it holds."""
 
-    exit_code = 9
+    exit_code = CARD
 
     def __init__(
         self, message: str, *, line: int | None = None, field: str = "", holds: str = ""
@@ -191,7 +193,7 @@ class CardFault(Fault, ValueError):
 class DeviceFault(Fault, OSError):
     """A sound device that is not there, stopped, or left out samples `time_s` into the tape."""
 
-    exit_code = 10
+    exit_code = DEVICE
 
     def __init__(self, message: str, *, device: str = "", time_s: float | None = None) -> None:
         super().__init__(message)

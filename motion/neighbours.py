@@ -23,10 +23,12 @@ Questions: none.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array, bounds
 from morfax.motion.compiled import njit
 
 LEAF = 8  # points to a smallest box: 4 and 16 take a tenth longer
@@ -74,6 +76,19 @@ class Neighbours:
         _searched((self._points, self._numbers), self._boxes, at, squared, found)
         away = np.where(found < len(self._points), np.sqrt(squared), np.inf)
         return away, self._numbers[found]
+
+
+def those_near(ways: Sequence[Array], places: Array, reach: float) -> Iterator[Array]:
+    """Those of some ways (n, 2) whose box comes within a reach of the box of places (m, 2): what is nearer to
+    any of the places is among them.
+    """
+    low, high = bounds(places)
+    low, high = low - (1 + ROUNDED) * reach, high + (1 + ROUNDED) * reach
+    for way in ways:
+        if len(way):
+            first, last = bounds(way)
+            if (first <= high).all() and (last >= low).all():
+                yield way
 
 
 def pairs_within(points: ArrayLike, reach: float) -> NDArray[np.int64]:

@@ -19,14 +19,13 @@ from morfax.motion.arrays import Array
 from morfax.motion.units import POINTS_PER_INCH
 from morfax.reports import lettering
 from morfax.reports.canvas import DPI
-from morfax.reports.looks import SEE_THROUGH
+from morfax.reports.looks import AWAY_PT, SEE_THROUGH
 from morfax.reports.page import Box, Page
 from morfax.reports.pixels import Pixels, blend, dashes, polylines, seen, strokes_of
 from morfax.reports.plate import Area, Colours, Ground, Line, Plate, Spot, fitted, shades
 
 FINER = 2
 PX_PER_PT = FINER * DPI / POINTS_PER_INCH
-TICK_PT = 3.5  # length of a tick, matplotlib's
 SPOT_PX = 1.0 * PX_PER_PT  # edge of a spot, matplotlib's
 EDGE_GREY = "#cccccc"  # of a legend
 MANY = 2000  # places: fewer are drawn sooner than looked through
@@ -205,7 +204,7 @@ def _tick(
 ) -> None:
     """A tick below or to the left of axes, at a share of their width or height."""
     left, top, right, bottom = corners
-    long = round(TICK_PT * PX_PER_PT)
+    long = round(AWAY_PT / 2 * PX_PER_PT)
     if is_upright:
         row = round((bottom + share * (top - bottom)) / FINER) * FINER
         canvas[row : row + FINER, left - long : left] = 0

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.motion.files import printable, written_beside
+from morfax.motion.polyline import UM
 from morfax.reports.plate import Ground, View
 
 if TYPE_CHECKING:
@@ -21,11 +22,14 @@ if TYPE_CHECKING:
 
     from morfax.tracer.drawing.drawing import Drawing
 
-UM_PER_MM = 1000.0
-WIDTH_IN, SHEET_IN = 8.5, 8.0  # of a figure, and of the sheet in it
+UM_PER_MM = 1 / UM
+SMALLEST_UM = 0.01  # that a scale shows
+WIDTH_IN = 8.0  # of what is drawn
 WIDE_IN = 11.0  # a figure of several pictures
 PANEL_IN = 1.8  # height of a curve over time or way
-NUMBERS_IN = 1.4  # room for a title, and for the numbers along the axes
+ROOM_IN = 0.75  # beside axes, for the numbers along them and their names
+NUMBERS_IN = 2 * ROOM_IN
+LIGHT = 2.5  # ink is so much lighter, for a path to lie on
 FLATTEST, TALLEST = 0.2, 1.4  # height to width of what is drawn
 DPI = 130
 LARGEST_IMAGE_PX = 2000  # a larger drawing is reduced for the picture
@@ -50,7 +54,7 @@ def new_figure(
 def sheet_figure(width_mm: float, height_mm: float) -> Figure:
     """An empty figure for a sheet with its axes' numbers and a title."""
     high = min(max(height_mm / width_mm, FLATTEST), TALLEST)
-    return new_figure(WIDTH_IN, NUMBERS_IN + high * SHEET_IN, "compressed")
+    return new_figure(WIDTH_IN, NUMBERS_IN + high * WIDTH_IN, "compressed")
 
 
 def save(figure: Figure, file: FilePath, *, trim: bool = True) -> None:

@@ -20,7 +20,6 @@ from morfax.reports.looks import (
     BESIDE_PT,
     LINE_PT,
     NAMES,
-    NUMBERS_PT,
     ON_PATHS,
     ON_SPOTS,
     SPOT_PT,
@@ -226,7 +225,7 @@ def _marked(axes: Axes, findings: Sequence[Finding]) -> None:
             (place_mm[0], place_mm[1]),
             BESIDE_PT,
             textcoords="offset points",
-            fontsize=NUMBERS_PT,
+            fontsize=WORDS_PT,
             color=STOPS if any(each.stops for each in here) else REMARK,
             zorder=NAMES,
         )

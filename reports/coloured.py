@@ -17,15 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.reports.canvas import UM_PER_MM
+from morfax.reports.canvas import DPI, SMALLEST_UM, UM_PER_MM, WIDTH_IN
 from morfax.reports.looks import ON_PATHS
 from morfax.reports.plate import Colours, Line, View, shades
 
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
 SHADES = 64  # from no error to the largest: neighbours look alike
-DOTS = 2000  # half dots along the larger side of the axes: seven inches at 130 dots an inch
 BESIDE = 0.1  # of a view: points this far outside of it still belong to what is seen
-SMALLEST_UM = 1e-3  # of the scale of colours
 
 
 def error_lines(
@@ -55,7 +53,7 @@ def error_lines(
 
 def _seen(points: Array, way: Array, view: View) -> NDArray[np.int64]:
     """The first of each group of points that look like one in a view."""
-    half_dot = max(view[1] - view[0], view[3] - view[2]) / DOTS
+    half_dot = max(view[1] - view[0], view[3] - view[2]) / (2 * DPI * WIDTH_IN)
     inside = _within(np.stack([points, points], axis=1), view)
     # outside of the view one point in a thousand is enough
     fine = np.where(inside, way / half_dot, way / half_dot / 1000)

@@ -12,7 +12,7 @@ import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import left_of
-from morfax.reports.looks import BELOW_PT, LINE_PT, NAMES, NUMBERS_PT, SPOT_PT, SPOTS
+from morfax.reports.looks import BELOW_PT, LINE_PT, NAMES, SPOT_PT, SPOTS, WORDS_PT
 from morfax.reports.plate import Area, Line, Mark, Spot, Words
 
 if TYPE_CHECKING:
@@ -78,4 +78,4 @@ def _spot(shape: str, place_mm: PlaceMm) -> Spot:
 
 def _number(number: int, place_mm: PlaceMm) -> Words:
     """The number of a correction beside its place."""
-    return Words(place_mm, f"c{number}", NUMBERS_PT, COLOUR, BELOW_PT)
+    return Words(place_mm, f"c{number}", WORDS_PT, COLOUR, BELOW_PT)

@@ -15,9 +15,8 @@ import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.units import drawn_length_mm
-from morfax.reports.canvas import SHEET_IN, WIDE_IN, new_figure, save, show_drawing
-from morfax.reports.looks import GRID, NAME_PT
-from morfax.reports.sheet import DARKEST
+from morfax.reports.canvas import LIGHT, WIDE_IN, WIDTH_IN, new_figure, save, show_drawing
+from morfax.reports.looks import GRID, WORDS_PT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,16 +35,14 @@ def draw_flattening(drawing: Drawing, file: FilePath) -> None:
     made = drawing.flattening
     if made is None:
         return
-    figure = new_figure(WIDE_IN, SHEET_IN)
+    figure = new_figure(WIDE_IN, WIDTH_IN)
     photo, flat = figure.subplots(1, 2)
     _draw_photograph(photo, made)
-    extent = show_drawing(
-        flat, drawing, (0.0, drawing.width_mm, 0.0, drawing.height_mm), DARKEST
-    )
+    extent = show_drawing(flat, drawing, (0.0, drawing.width_mm, 0.0, drawing.height_mm), LIGHT)
     flat.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     finest_mm, coarsest_mm = (drawn_length_mm(pixel_mm) for pixel_mm in made.mm_per_px)
     flat.set_title(
-        f"flat: {made.told}; a pixel is {finest_mm} to {coarsest_mm}", fontsize=NAME_PT
+        f"flat: {made.told}; a pixel is {finest_mm} to {coarsest_mm}", fontsize=WORDS_PT
     )
     flat.grid(**GRID)
     save(figure, file)
@@ -70,7 +67,7 @@ def _draw_photograph(axes: Axes, made: Flattening) -> None:
     axes.set(
         xlim=(0, size.width), ylim=(size.height, 0), xlabel="px", ylabel="px", aspect="equal"
     )
-    axes.set_title(title, fontsize=NAME_PT)
+    axes.set_title(title, fontsize=WORDS_PT)
 
 
 def _draw_residual(axes: Axes, made: Flattening) -> str:

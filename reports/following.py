@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.files import written_beside
-from morfax.reports.canvas import NUMBERS_IN, PANEL_IN, UM_PER_MM, new_figure, save
+from morfax.reports.canvas import NUMBERS_IN, PANEL_IN, SMALLEST_UM, UM_PER_MM, new_figure, save
 from morfax.reports.looks import GRID, SPOT_PT, THIN_PT, TITLE_PT, WORDS_PT
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".svg", ".pdf", ".csv")
 ERROR, LIMIT, TRUE, PROGRAMMED = "#1f5fa8", "#c1121f", "#2a7f3f", "#555555"
-SMALLEST_UM = 0.01  # at the foot of the picture
 _HEADINGS = ("demand", "actual", "error", "limit")
 
 

@@ -4,7 +4,7 @@ Signals in: a plate and the size of its axes, points. Out: its words with other 
 
 The axes are a grid of small cells. Each name in turn tries places round its own, the nearest first, and takes
 the one with the fewest cells that are taken: by a line a little, by another name, a legend or the frame much.
-A thin line leads from a place to a name that stands further off than beside it.
+A thin line leads from a place to a name that stands further off than a title is high.
 
 Source: our own. Questions: none.
 """
@@ -20,13 +20,12 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.reports import lettering
 from morfax.reports.lettering import PX_PER_PT
-from morfax.reports.looks import ON_PATHS
+from morfax.reports.looks import ON_PATHS, THIN_PT, TITLE_PT
 from morfax.reports.plate import Line, Mark, Place, Plate, Spot, Words, filled_in, fitted
 
 CELL_PT = 2.0
 LETTER = 0.62  # width of a letter over its size; DejaVu's own is 0.6 on average
 AWAY_PT = (7.0, 14.0, 24.0, 36.0, 50.0)  # from a place to its name
-BESIDE_PT, LEADER_PT = 12.0, 0.4  # a name further off has a leader, so thick
 LINE_COST, SPOT_COST, NAME_COST = 1.0, 2.0, 100.0
 # more are shortened to a letter and a number; the legend says what the letter means
 FEW_NAMES = 12
@@ -109,12 +108,10 @@ class _Grid:
         """The line from a place to its name, where that does not stand beside it."""
         wide, (dx, dy) = _wide_pt(words), words.offset_pt
         nearest_pt = np.clip(0.0, [dx, dy], [dx + wide, dy + words.size_pt])
-        if np.hypot(*nearest_pt) < BESIDE_PT:
+        if np.hypot(*nearest_pt) < TITLE_PT:
             return []
         end_mm = words.place_mm + nearest_pt / self.pt_per_mm
-        return [
-            Line(np.array([words.place_mm, end_mm]), words.colour, LEADER_PT, order=ON_PATHS)
-        ]
+        return [Line(np.array([words.place_mm, end_mm]), words.colour, THIN_PT, order=ON_PATHS)]
 
     def _pt(self, places_mm: Array) -> Array:
         """Places from the lower left corner of the axes, points."""

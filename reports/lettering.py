@@ -6,7 +6,7 @@ words take. Lengths are pixels of the page, from its top left corner.
 The letters are those of matplotlib, which brings DejaVu Sans along; Pillow draws them. Where that font is not
 found, Pillow's own is taken.
 
-Source: distances between words and axes are matplotlib's. Questions: none.
+Source: our own; matplotlib is given the same distances (see `vector`). Questions: none.
 """
 
 from __future__ import annotations
@@ -40,10 +40,9 @@ from morfax.reports.plate import (
 )
 
 PX_PER_PT = DPI / POINTS_PER_INCH
-NUMBER_PT, NAME_PT, TITLE_PT = 7.0, 4.0, 6.0  # from axes: to numbers; on to names; to a title
 RING_PAD = 0.2  # round words in a ring, in times of their size
-# of a legend, in times of its letters' size: to the axes, round all, between rows, a sample, on to its words
-OUTSIDE, PAD, BETWEEN, SAMPLE, GAP = 0.5, 0.4, 0.5, 2.0, 0.8
+# of a legend, in times of its letters' size: to the axes, round all, between rows, on to words; a sample
+PAD, SAMPLE = 0.5, 2.0
 HALF_HIGH = 0.35  # of a legend's sample of an area
 FONT = "mpl-data/fonts/ttf/DejaVuSans.ttf"
 
@@ -86,11 +85,11 @@ def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
     rows, (wide, high) = len(plate.legend), _legend_px(plate)
     shown = replace(plate, view=fitted(plate.view, high_px / wide_px))
     is_upper, is_right = free_corner(shown, legend_share(plate, wide_px, high_px))
-    left = wide_px - OUTSIDE * em - wide if is_right else OUTSIDE * em
-    top = OUTSIDE * em if is_upper else high_px - OUTSIDE * em - high
+    left = wide_px - PAD * em - wide if is_right else PAD * em
+    top = PAD * em if is_upper else high_px - PAD * em - high
     begin = left + PAD * em
     end = left + (PAD + SAMPLE) * em
-    middles = [top + (PAD + 0.5 + row * (1 + BETWEEN)) * em for row in range(rows)]
+    middles = [top + (PAD + 0.5 + row * (1 + PAD)) * em for row in range(rows)]
     samples = [(begin, end, middle) for middle in middles]
     return Legend((left, top, left + wide, top + high), samples, HALF_HIGH * em)
 
@@ -98,7 +97,7 @@ def legend(plate: Plate, wide_px: float, high_px: float) -> Legend | None:
 def legend_share(plate: Plate, wide_px: float, high_px: float) -> tuple[float, float]:
     """How much of the width and height of axes of a size a plate's legend takes in its corner."""
     wide, high = _legend_px(plate)
-    outside = OUTSIDE * looks.WORDS_PT * PX_PER_PT
+    outside = PAD * looks.WORDS_PT * PX_PER_PT
     return (wide + outside) / wide_px, (high + outside) / high_px
 
 
@@ -106,7 +105,7 @@ def _legend_px(plate: Plate) -> tuple[float, float]:
     """Width and height of a plate's legend."""
     em, rows = looks.WORDS_PT * PX_PER_PT, len(plate.legend)
     longest = max(_font(looks.WORDS_PT).getlength(_plain(mark.label)) for mark in plate.legend)
-    return (2 * PAD + SAMPLE + GAP) * em + longest, (2 * PAD + rows + (rows - 1) * BETWEEN) * em
+    return (3 * PAD + SAMPLE) * em + longest, (2 * PAD + rows + (rows - 1) * PAD) * em
 
 
 def written(
@@ -138,8 +137,10 @@ class _Pen:
         """The title of a plate, the numbers along its axes, and their names."""
         left, top, right, bottom = self._sides(box)
         middle, size_pt = (left + right) / 2, plate.numbers_pt
-        away = NUMBER_PT * PX_PER_PT
-        self._write((middle, top - TITLE_PT * PX_PER_PT), plate.title, plate.title_pt, "ms")
+        away = looks.AWAY_PT * PX_PER_PT
+        self._write(
+            (middle, top - looks.AWAY_PT * PX_PER_PT), plate.title, plate.title_pt, "ms"
+        )
         farthest = 0.0
         for share, is_upright, text in _numbered(plate, box):
             if is_upright:
@@ -149,9 +150,9 @@ class _Pen:
             else:
                 self._write((left + share * (right - left), bottom + away), text, size_pt, "mt")
         if plate.names is not None:
-            below = bottom + away + (size_pt + NAME_PT) * PX_PER_PT
+            below = bottom + away + (size_pt + looks.AWAY_PT) * PX_PER_PT
             self._write((middle, below), plate.names[0], size_pt, "mt")
-            beside = left - away - farthest - NAME_PT * PX_PER_PT
+            beside = left - away - farthest - looks.AWAY_PT * PX_PER_PT
             self._upright((beside, (top + bottom) / 2), plate.names[1], size_pt)
 
     def legend(self, box: Box, plate: Plate) -> None:
@@ -161,7 +162,7 @@ class _Pen:
         if found is None:
             return
         for mark, (_, end, row) in zip(plate.legend, found.samples_px, strict=True):
-            beside = left + end + GAP * looks.WORDS_PT * PX_PER_PT
+            beside = left + end + PAD * looks.WORDS_PT * PX_PER_PT
             self._write((beside, top + row), mark.label, looks.WORDS_PT, "lm")
 
     def words(self, box: Box, plate: Plate) -> None:
@@ -180,12 +181,12 @@ class _Pen:
     def scale(self, box: Box, scale: Colours) -> None:
         """The numbers below a scale of colours, and what they are."""
         left, _, right, bottom = self._sides(box)
-        away = NUMBER_PT * PX_PER_PT
+        away = looks.AWAY_PT * PX_PER_PT
         for share, text in scale_numbers(scale, box):
             self._write(
                 (left + share * (right - left), bottom + away), text, looks.TITLE_PT, "mt"
             )
-        below = bottom + away + (looks.TITLE_PT + NAME_PT) * PX_PER_PT
+        below = bottom + away + (looks.TITLE_PT + looks.AWAY_PT) * PX_PER_PT
         self._write(((left + right) / 2, below), scale.label, looks.TITLE_PT, "mt")
 
     def _sides(self, box: Box) -> tuple[float, float, float, float]:

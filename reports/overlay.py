@@ -23,6 +23,8 @@ from morfax.reports import corrected, labels, leaders, left_out
 from morfax.reports.canvas import (
     COMPRESSION,
     DPI,
+    FLATTEST,
+    LIGHT,
     REFERENCE,
     UM_PER_MM,
     grey,
@@ -35,8 +37,6 @@ from morfax.reports.looks import (
     BESIDE_PT,
     BOLD_PT,
     LINE_PT,
-    NAME_PT,
-    NUMBERS_PT,
     ON_SPOTS,
     SPOT_PT,
     THIN_PT,
@@ -65,13 +65,11 @@ RAISED = "#1f5fbf"  # stops, and ways with the tool up
 UNMEASURED = "#8a8a8a"  # the path where its error cannot be measured
 MARGIN_SHARE = 0.06  # of the larger side, round the path
 MARGIN_RIGHT = 0.28  # of the width: room for a legend where no corner is free
-NARROWEST = 0.35  # shorter to longer side of what is shown
 # along an enlargement: each number of all takes a hundredth of a picture's time
 FEW_NUMBERS = 4
 PIXELS = ".png"
 MOST_NUMBERED = 60  # lines; chosen
 LETTERS_PER_IN = 11.0  # of a title of 10 points: capitals and underscores too
-LIGHT = 3.2  # ink as light grey, for a path to lie on
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +101,7 @@ def draw(picture: Picture, file: FilePath) -> None:
         at = (float(place_mm[0]), float(place_mm[1]))
         main.add(
             Spot(at, "+", SPOT_PT, BLACK, order=ON_SPOTS),
-            Words(at, str(number), NAME_PT, offset_pt=BESIDE_PT),
+            Words(at, str(number), WORDS_PT, offset_pt=BESIDE_PT),
         )
     labels.spread(
         main, page.main.width_in * POINTS_PER_INCH, page.main.height_in * POINTS_PER_INCH
@@ -255,7 +253,7 @@ def _enlarged(picture: Picture, place_mm: Array, number: int) -> Plate:
     view = (x - reach_mm, x + reach_mm, y - reach_mm, y + reach_mm)
     title = f"{number}: {error_mm * UM_PER_MM:.3g} µm at {x:.1f}, {y:.1f}"
     plate = Plate(
-        view, title, WORDS_PT, numbers_pt=NUMBERS_PT, most_numbers=FEW_NUMBERS, names=None
+        view, title, WORDS_PT, numbers_pt=WORDS_PT, most_numbers=FEW_NUMBERS, names=None
     )
     _ground(plate, picture)
     _contour(plate, picture)
@@ -289,6 +287,6 @@ def view_of(picture: Picture) -> View:
     every = np.vstack(parts) if parts else picture.path.xy_mm
     low, high = every.min(axis=0), every.max(axis=0)
     longer_mm = max(float((high - low).max()), 1.0)
-    margin = np.maximum(MARGIN_SHARE * longer_mm, (NARROWEST * longer_mm - (high - low)) / 2)
+    margin = np.maximum(MARGIN_SHARE * longer_mm, (FLATTEST * longer_mm - (high - low)) / 2)
     low, high = low - margin, high + margin
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])

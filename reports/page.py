@@ -19,17 +19,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from morfax.reports.canvas import FLATTEST, TALLEST
+from morfax.reports.canvas import FLATTEST, ROOM_IN, TALLEST, WIDTH_IN
 
 INSETS = 3  # at most
 WIDE = 0.6  # height to width, below which the enlargements stand below
-WIDTH_IN, BESIDE_IN = 7.4, 3.0  # of the main axes, and of a column of enlargements
-LEFT_IN, RIGHT_IN = 0.75, 0.25  # room for numbers and names beside axes
-TITLE_IN, NAMES_IN = 0.45, 0.6  # above and below the main axes
-BAR_IN, BAR_HIGH_IN = 0.8, 0.16  # room for the scale of colours, and the scale itself
-ROW_IN = 3.0  # of enlargements below
-# what an enlargement has beside and below or above it, for numbers and its title
-AROUND_IN = (0.45, 0.55)
+INSET_IN = 3.0  # a column or a row of enlargements
+EDGE_IN = 0.5  # room for a title, and round what has no numbers
 
 
 class Box(NamedTuple):
@@ -58,20 +53,21 @@ def lay_out(height_to_width: float, insets: int, *, has_bar: bool) -> Page:
     high = WIDTH_IN * min(shape, TALLEST)
     wide = high / shape
     is_low = insets > 0 and shape < WIDE
-    below = (BAR_IN if has_bar else 0.0) + (ROW_IN if is_low else 0.0)
-    column = BESIDE_IN if insets and not is_low else 0.0
-    width = LEFT_IN + wide + RIGHT_IN + column
-    height = TITLE_IN + high + NAMES_IN + below
-    main = Box(LEFT_IN, NAMES_IN + below, wide, high)
-    bar_wide, bar_low = 0.7 * wide, below - BAR_IN + 0.5
-    bar = Box(LEFT_IN + 0.15 * wide, bar_low, bar_wide, BAR_HIGH_IN) if has_bar else None
+    below = (ROOM_IN if has_bar else 0.0) + (INSET_IN if is_low else 0.0)
+    column = INSET_IN if insets and not is_low else 0.0
+    width = ROOM_IN + wide + EDGE_IN + column
+    height = EDGE_IN + high + ROOM_IN + below
+    main = Box(ROOM_IN, ROOM_IN + below, wide, high)
+    bar_low = below - ROOM_IN + EDGE_IN
+    bar = Box(ROOM_IN, bar_low, wide, EDGE_IN / 4) if has_bar else None
     beside: list[Box] = []
     cell_wide = width / INSETS if is_low else column
-    cell_high = ROW_IN if is_low else height / INSETS
-    side = min(cell_wide - AROUND_IN[0] - 0.1, cell_high - AROUND_IN[1])
+    cell_high = INSET_IN if is_low else height / INSETS
+    side = min(cell_wide, cell_high) - ROOM_IN
     for number in range(insets):
         left = number * cell_wide if is_low else width - column
         bottom = 0.0 if is_low else height - (number + 1) * cell_high
-        left += AROUND_IN[0] + (cell_wide - AROUND_IN[0] - side) / 2 - 0.05
-        beside.append(Box(left, bottom + AROUND_IN[1] / 2, side, side))
+        beside.append(
+            Box(left + (cell_wide - side) / 2, bottom + (cell_high - side) / 2, side, side)
+        )
     return Page(width, height, main, beside, bar)

@@ -27,7 +27,7 @@ HOLE_MM, FEED_HOLE_MM = 1.83, 1.17  # diameters
 WIDTHS_MM = {5: 17.46, 8: 25.4}
 ROWS_PER_STRIP = 100
 MOST_ROWS = 10_000  # 25 m of tape; the rest is not drawn
-BETWEEN_MM, HEAD_MM = 6.0, 6.0
+BETWEEN_MM = 6.0
 PX_PER_MM = 6
 PAPER, HOLE, INK = "#f3e3b3", "#30302c", "#30302c"
 
@@ -87,7 +87,7 @@ def holes(program: StepProgram) -> Iterator[Hole]:
         for row, code in enumerate(
             codes[strip.first_row : strip.first_row + ROWS_PER_STRIP], 1
         ):
-            y_mm = HEAD_MM + row * PITCH_MM
+            y_mm = BETWEEN_MM + row * PITCH_MM
             yield Hole(right_mm - 3 * PITCH_MM, y_mm, FEED_HOLE_MM)
             for bit in range(channels):
                 if code >> bit & 1:
@@ -97,7 +97,7 @@ def holes(program: StepProgram) -> Iterator[Hole]:
 
 def _size_mm(parts: list[Strip]) -> tuple[float, float]:
     """Width and height of the picture."""
-    return parts[-1].x_mm + parts[-1].width_mm + BETWEEN_MM, HEAD_MM + parts[
+    return parts[-1].x_mm + parts[-1].width_mm + BETWEEN_MM, BETWEEN_MM + parts[
         0
     ].length_mm + BETWEEN_MM
 
@@ -107,9 +107,10 @@ def _write_svg(program: StepProgram, file: FilePath) -> None:
     parts = strips(program)
     width, height = _size_mm(parts)
     tape = "".join(
-        f'  <rect x="{s.x_mm:.2f}" y="{HEAD_MM}" width="{s.width_mm}" height="{s.length_mm:.2f}"'
+        f'  <rect x="{s.x_mm:.2f}" y="{BETWEEN_MM}" width="{s.width_mm}" height="{s.length_mm:.2f}"'
         f' fill="{PAPER}"/>\n'
-        f'  <text x="{s.x_mm:.2f}" y="{HEAD_MM - 1.5}" font-size="3" fill="{INK}">{s.first_row + 1}</text>\n'
+        f'  <text x="{s.x_mm:.2f}" y="{BETWEEN_MM - 1.5}" font-size="3" fill="{INK}">'
+        f"{s.first_row + 1}</text>\n"
         for s in parts
     )
     punched = "".join(
@@ -133,7 +134,7 @@ def _write_png(program: StepProgram, file: FilePath) -> None:
     image = Image.new("RGB", (width, height), "white")
     pen = ImageDraw.Draw(image)
     for s in parts:
-        corners = (s.x_mm, HEAD_MM, s.x_mm + s.width_mm, HEAD_MM + s.length_mm)
+        corners = (s.x_mm, BETWEEN_MM, s.x_mm + s.width_mm, BETWEEN_MM + s.length_mm)
         pen.rectangle([mm * PX_PER_MM for mm in corners], fill=PAPER)
         pen.text((s.x_mm * PX_PER_MM, 1.5 * PX_PER_MM), str(s.first_row + 1), fill=INK)
     for h in holes(program):

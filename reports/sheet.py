@@ -5,14 +5,13 @@ from __future__ import annotations
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
-from morfax.reports.canvas import REFERENCE, save, sheet_figure, show_drawing
+from morfax.reports.canvas import LIGHT, REFERENCE, save, sheet_figure, show_drawing
 from morfax.reports.looks import GRID, SEE_THROUGH, SPOT_PT, WORDS_PT
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
 
 MARKS = (("x", "#c1121f"), ("+", "#1f5fa8"))
-DARKEST = 1.5  # ink as dark grey
 
 
 def draw_sheet(
@@ -22,7 +21,7 @@ def draw_sheet(
     width_mm, height_mm = drawing.width_mm, drawing.height_mm
     figure = sheet_figure(width_mm, height_mm)
     axes = figure.add_subplot()
-    extent = show_drawing(axes, drawing, (0.0, width_mm, 0.0, height_mm), DARKEST)
+    extent = show_drawing(axes, drawing, (0.0, width_mm, 0.0, height_mm), LIGHT)
     axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     axes.grid(color=REFERENCE, **GRID)
     for (name, (x, y)), (marker, colour) in zip(places_mm.items(), MARKS, strict=False):

@@ -14,6 +14,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import lengths_mm
+from morfax.reports import page
 from morfax.reports.canvas import (
     NUMBERS_IN,
     PANEL_IN,
@@ -26,8 +27,6 @@ from morfax.reports.canvas import (
 from morfax.reports.looks import (
     BESIDE_PT,
     GRID,
-    NAME_PT,
-    NUMBERS_PT,
     ON_PATHS,
     ON_SPOTS,
     SPOT_PT,
@@ -46,7 +45,6 @@ if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
 
 COLOURS = {"wav": "#c1121f", "steps": "#1f5fa8", "cubic": "#2a7f3f", "ngc": "#e07b00"}
-INSETS = 6
 APART_MM = 2.0
 LEAST_REACH_UM = 5.0
 
@@ -83,7 +81,7 @@ def contours(
             tuple(place_mm),
             BESIDE_PT,
             textcoords="offset points",
-            fontsize=NAME_PT,
+            fontsize=WORDS_PT,
         )
         main.plot(*place_mm, "+", color="black", markersize=SPOT_PT)
     return figure
@@ -102,7 +100,7 @@ def errors(results: Sequence[SystemResult]) -> Figure:
         axes.axhline(0, color=REFERENCE, linewidth=THIN_PT)
         axes.plot(way_mm, error_um, color=COLOURS[result.suffix], linewidth=THIN_PT)
         axes.set_ylabel("µm")
-        axes.set_title(result.name, fontsize=NAME_PT, loc="left")
+        axes.set_title(result.name, fontsize=WORDS_PT, loc="left")
         axes.grid(**GRID)
     panels[-1].set_xlabel("way along the contour, mm")
     return figure
@@ -148,7 +146,7 @@ def _places(ran: Sequence[SystemResult], corners_mm: Array) -> list[tuple[Array,
     for place_mm, what in wanted:
         if all(np.hypot(*(place_mm - other)) > APART_MM for other, _ in chosen):
             chosen.append((place_mm, what))
-    return chosen[:INSETS]
+    return chosen[: 2 * page.INSETS]
 
 
 def _enlarge(
@@ -165,6 +163,6 @@ def _enlarge(
     _lines(axes, ran, traced, place_mm, UM_PER_MM)
     axes.set(xlim=(-reach_um, reach_um), ylim=(-reach_um, reach_um), aspect="equal")
     axes.set_title(title, fontsize=WORDS_PT)
-    axes.tick_params(labelsize=NUMBERS_PT)
-    axes.set_xlabel("µm", fontsize=NUMBERS_PT)
+    axes.tick_params(labelsize=WORDS_PT)
+    axes.set_xlabel("µm", fontsize=WORDS_PT)
     axes.grid(**GRID)

@@ -17,6 +17,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.faults import FileFault
 from morfax.motion.files import written_beside
+from morfax.reports.canvas import LIGHT
 from morfax.reports.pixels import SHIFT
 
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 LARGEST_PX = 800
 INK = 0.5  # darkness from which a pixel is ink: half way between paper and line
 PAPER, GREYS = 0.12, 12  # what is lighter is paper, and so many greys: noise makes a file large
-LIGHT = 0.45  # ink is drawn so dark, for a line to lie on
 LINE_BGR = (33, 18, 193)
 
 
@@ -38,7 +38,7 @@ def draw_small(result: TraceResult, file: FilePath) -> None:
 
     darkness, scale = _reduced(result.drawing)
     darkness[darkness < PAPER] = 0.0
-    grey = 255 - np.floor(GREYS * np.clip(darkness, 0, 1)) / GREYS * 255 * LIGHT
+    grey = 255 - np.floor(GREYS * np.clip(darkness, 0, 1)) / GREYS * 255 / LIGHT
     picture = cv2.cvtColor(grey.astype(np.uint8), cv2.COLOR_GRAY2BGR)
     places = [_pixels(run, result.drawing, scale) for run in result.traced.path.runs()]
     cv2.polylines(picture, places, False, LINE_BGR, 2, cv2.LINE_AA, SHIFT)

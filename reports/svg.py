@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.files import written_beside
 from morfax.motion.motion import Path
+from morfax.recorder.drawings.drawings import LINE_MM
 
 MARGIN_MM = 5.0
-LINE_MM = 0.1
 
 
 def write_svg(path: Path, file: FilePath, sheet_mm: tuple[float, float] | None = None) -> None:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.reports.axis_numbers import numbers
 from morfax.reports.canvas import DPI, new_figure
-from morfax.reports.lettering import legend_share
-from morfax.reports.looks import NAMES, SEE_THROUGH, WORDS_PT
+from morfax.reports.lettering import PAD, legend_share
+from morfax.reports.looks import AWAY_PT, NAMES, SEE_THROUGH, WORDS_PT
 from morfax.reports.page import Box, Page
 from morfax.reports.plate import (
     Area,
@@ -94,7 +94,7 @@ def _fill(axes: Axes, plate: Plate, size_px: tuple[float, float]) -> None:
         put(axes, mark)
     axes.set(xlim=plate.view[:2], ylim=plate.view[2:], aspect="equal")
     axes.set_title(plate.title, fontsize=plate.title_pt)
-    axes.tick_params(labelsize=plate.numbers_pt)
+    axes.tick_params(labelsize=plate.numbers_pt, length=AWAY_PT / 2, pad=AWAY_PT / 2)
     if plate.most_numbers is not None:
         for ticks, (first, last) in (
             (axes.set_xticks, plate.view[:2]),
@@ -103,11 +103,13 @@ def _fill(axes: Axes, plate: Plate, size_px: tuple[float, float]) -> None:
             values = numbers(first, last, plate.most_numbers)
             ticks([value for value, _ in values], [text for _, text in values])
     if plate.names is not None:
-        axes.set(xlabel=plate.names[0], ylabel=plate.names[1])
+        axes.set_xlabel(plate.names[0], labelpad=AWAY_PT)
+        axes.set_ylabel(plate.names[1], labelpad=AWAY_PT)
     if plate.legend:
         is_upper, is_right = free_corner(plate, legend_share(plate, *size_px))
         corner: Any = f"{'upper' if is_upper else 'lower'} {'right' if is_right else 'left'}"
-        axes.legend(loc=corner, fontsize=WORDS_PT, framealpha=SEE_THROUGH)
+        room: dict[str, Any] = {"borderpad": PAD, "handletextpad": PAD}
+        axes.legend(loc=corner, fontsize=WORDS_PT, framealpha=SEE_THROUGH, **room)
 
 
 def _line(axes: Axes, line: Line) -> None:

@@ -19,7 +19,7 @@ import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
 
-DEMAND, ACTUAL, LIMIT = range(3)
+DEMAND, ACTUAL, LIMIT = 0, 1, 2
 
 
 class Chart:

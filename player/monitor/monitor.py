@@ -32,7 +32,7 @@ from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.following_limit import FollowingLimit, allowed_mm, part_at
 
 # columns of the state of an axis; PART: of the table, that the speed was in last
-DEMAND, SPEED, COUNTED, FAULTY, LARGEST, SHARE, PART = range(7)
+DEMAND, SPEED, COUNTED, FAULTY, LARGEST, SHARE, PART = 0, 1, 2, 3, 4, 5, 6
 STRETCH_ROWS = 64  # that are watched axis by axis, as long as none is faulty
 NEARLY = 1 - ROUNDED  # of the largest share: beyond it the exact one is made; rounding is 1e-15
 
@@ -80,7 +80,7 @@ class Monitor:
         fade = self._fade(self.limit.hold_s)
         self._settings = np.array([rate_hz, share, fade, self.limit.tolerance_mm])
         self._table = self.limit.rows
-        self._state = np.zeros((len(self.axes), 7))
+        self._state = np.zeros((len(self.axes), PART + 1))
         self._state[:, DEMAND] = np.nan
 
     def _fade(self, constant_s: float) -> float:

@@ -45,8 +45,8 @@ from morfax.motion.drive import SOUND, Drive, as_rows, conditioned_step
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.usual import ACCELERATION_MM_S2, INCREMENT_MM
 
-POSITION, MOVING, TOLD = range(3)  # columns of the state of an axis: mm, mm/s, mm
-COUNTER, RISEN, MODE = range(3)  # of the counter's registers, shared by all axes
+POSITION, MOVING, TOLD = 0, 1, 2  # columns of the state of an axis: mm, mm/s, mm
+COUNTER, RISEN, MODE = 0, 1, 2  # of the counter's registers, shared by all axes
 UP, CONSTANT, DOWN, ARRIVED = 1, 0, -1, 2
 AT_ONCE = round(MOTION_RATE_HZ)  # rows of a move: a second
 CREEP_INCREMENTS = 0.25  # of which the least speed of a move is

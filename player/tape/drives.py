@@ -36,7 +36,7 @@ ADJUSTING_MM_S = 10.0  # how fast the machine creeps while the phase changer is 
 SETTLING_S = 0.1
 # columns of the state of an axis; SECTOR: the one that its cell saw last, COUNT: of the edges seen, LAST:
 # phase of the row before
-POSITION, SPEED, DEMAND, LEAD, ERROR, SECTOR, COUNT, LAST = range(8)
+POSITION, SPEED, DEMAND, LEAD, ERROR, SECTOR, COUNT, LAST = 0, 1, 2, 3, 4, 5, 6, 7
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from morfax.recorder.wear.codec import CODECS
 # of wow, flutter and scrape together: the transport reads ahead for no more
 MOST_FLUTTER = 0.05
 LONGEST_TURN_S = 10.0  # of the reel; print-through holds one turn in memory
-LARGEST_RATE_HZ = 2**31 - 1  # of a header
+LARGEST_RATE_HZ = np.iinfo(np.int32).max  # of a header
 # error of the speed: a tape at a tenth, or at ten times its speed
 LEAST_SPEED, LARGEST_SPEED = -0.9, 9.0
 

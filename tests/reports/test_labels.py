@@ -55,7 +55,7 @@ def test_a_line_leads_to_every_name_that_does_not_stand_beside_its_place() -> No
         place_pt = 4.0 * np.array(words.place_mm)
         nearest_pt = np.clip(place_pt, (left, low), (right, high))
         own = [m for m in leaders if np.allclose(m.places_mm[0], words.place_mm)]
-        assert len(own) == (np.hypot(*(nearest_pt - place_pt)) >= labels.BESIDE_PT)
+        assert len(own) == (np.hypot(*(nearest_pt - place_pt)) >= labels.TITLE_PT)
         if own:
             assert 4.0 * own[0].places_mm[1] == pytest.approx(nearest_pt)
         led += len(own)

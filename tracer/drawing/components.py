@@ -175,7 +175,7 @@ def _paint(mask, row, begin, end):  # type: ignore[no-untyped-def]
 def _boxes(row, begin, end, patch, count):  # type: ignore[no-untyped-def]
     """First row, last row + 1, first column, last column + 1 of the runs of each patch."""
     boxes = np.zeros((count, 4), np.int32)
-    boxes[:, 0] = boxes[:, 2] = 2**31 - 1
+    boxes[:, 0] = boxes[:, 2] = np.iinfo(np.int32).max
     for k in range(len(row)):
         box = boxes[patch[k]]
         box[0], box[1] = min(box[0], row[k]), max(box[1], row[k] + 1)

@@ -106,7 +106,8 @@ def is_too_thin(grain: float, width_px: float) -> bool:
 def thin_note(pitch_mm: float) -> str:
     """What the operator should know of lines with grain that are too thin for the slit."""
     return (
-        "the lines have grain, as of a pencil, and are fewer than 3 pixels wide, so that it is not averaged: "
+        f"the lines have grain, as of a pencil, and are fewer than {FEWEST_PX:g} pixels wide, so that it is "
+        "not averaged: "
         "the path strays by up to a line's width; scan at "
         f"{finer_dpi(pitch_mm, ENOUGH_TIMES)} dpi, or ink the lines over"
     )

@@ -190,9 +190,9 @@ def _ink(darkness: Kept, profiles: Profiles) -> tuple[float, float]:
 
 def _pen(profiles: Profiles, paper: float, ink: float) -> tuple[float, float]:
     """Softness and width, pixels."""
-    seen, span_px = profiles.seen, STEP_PX * len(profiles.at_px)
+    seen, span_px = profiles.seen - profiles.paper, STEP_PX * len(profiles.at_px)
     area, square = STEP_PX * seen.sum(axis=1), STEP_PX * (seen**2).sum(axis=1)
-    peak = median(middle_of(profiles))
+    peak = median(middle_of(profiles)) - profiles.paper
     area_px, darkness = median(area), peak
     softness_px = width_px = 0.0
     for _ in range(ROUNDS):

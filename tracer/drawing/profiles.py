@@ -44,12 +44,15 @@ GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
 
 class Profiles(NamedTuple):
     """Profiles across lines: darkness (n, k) at distances (k,) px from their middles, the middles (n, 2) row
-    and column, and the unit vectors (n, 2) across."""
+    and column, the unit vectors (n, 2) across, and how dark the paper beside them is in the mean: its 0 is
+    the level of its lighter pixels (see `levelling`).
+    """
 
     seen: Array
     at_px: Array
     middles: Array
     across: Array
+    paper: float
 
     @property
     def width_px(self) -> float:
@@ -93,9 +96,11 @@ def profiles_of(darkness: Kept) -> Profiles | None:
     good = steep & alone
     if np.count_nonzero(good) < FEWEST_PROFILES:
         return None
-    found = Profiles(_own(seen[good]), at_px, middles[good], across[good])
+    seen = seen[good]
+    paper = median(seen[:, outside].ravel())
+    found = Profiles(_own(seen, paper), at_px, middles[good], across[good], paper)
     # of a pattern or a damaged picture: what is dark in them is not in their middle
-    is_line = median(middle_of(found)) > 0 and median(seen[good].sum(axis=1)) > 0
+    is_line = median(middle_of(found)) > 0 and median(seen.sum(axis=1)) > 0
     return found if is_line else None
 
 
@@ -144,7 +149,7 @@ def seen_at(darkness: Kept, places: Array) -> Array:
     return between(darkness, *np.moveaxis(places, -2, 0), edge_goes_on=True)
 
 
-def _own(seen: Array) -> Array:
+def _own(seen: Array, paper: float) -> Array:
     """Profiles without the ink of a line that runs close beside: paper beyond the palest place between."""
     middle, own = seen.shape[1] // 2, seen.copy()
     for side in (own[:, middle:], own[:, middle::-1]):  # from the middle outwards
@@ -152,7 +157,7 @@ def _own(seen: Array) -> Array:
         again = left & (side > INK)
         for k in np.flatnonzero(again.any(axis=1)):
             first, next_line = int(np.argmax(left[k])), int(np.argmax(again[k]))
-            side[k, first + int(np.argmin(side[k, first:next_line])) :] = 0.0
+            side[k, first + int(np.argmin(side[k, first:next_line])) :] = paper
     return own
 
 

@@ -190,7 +190,7 @@ def _grey(image: Image) -> Grey:
 def _white(mode: str, lightest: float) -> float:
     """The level that stands for white in a picture of 16 bits, or of whole or broken numbers."""
     if mode == "I;16" or lightest > 255:
-        return 65535.0
+        return float(np.iinfo(np.uint16).max)
     return 1.0 if mode == "F" and lightest <= 1 else 255.0
 
 

@@ -7,7 +7,9 @@ Signals: a mask of ink in; out the part of it that is solid areas, and where eac
                     a swelling through which a line goes on; nor a line drawn with a broad pen, unless it is
                     as broad as a wall
 
-A solid area ends where no disc goes in; its corners, which are left then, belong to it.
+A solid area ends where no disc goes in; its corners, which are left then, belong to it. Specks of paper in it
+do not stop the disc. Of lines of a broad pen only those places are solid which are broader than a crossing of
+them.
 
 Source: opening by a disc is Matheron's; what is solid is our own. Questions: how broad is a wall, and how
 narrow a broad pen's line? Five times the usual width of the sheet's lines is a wall.
@@ -15,7 +17,9 @@ narrow a broad pen's line? Five times the usual width of the sheet's lines is a 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
 
 import cv2
 import numpy as np
@@ -27,9 +31,15 @@ from morfax.tracer.effort import FEW_PX
 # All limits below were chosen by trial on own and fetched drawings, in usual widths of a line.
 BROAD, BROAD_PX = 2.2, 1.5  # a disc as broad goes into a solid area
 WALL = 5.0  # a long area as broad is a wall, and no line
+CROSSING = 1.6  # of a broader pen's own width: where two of its lines cross, 1.41
+SHAPE = 0.33  # of some ink is broader than that: it is no line
 LONG = 3.0  # times its breadth: a longer area is a wall or a line of a broad pen
 SWELLING = 4.0  # a narrower one through which a line goes on is that line
 CORNER = 4.0  # ink no larger that hangs on a solid area is its corner
+SPECK = (
+    0.25 * math.pi
+)  # square widths: paper in ink that is no larger than a round of a width ...
+ABOUT, MANY = 4.0, 4  # ... crowds with so many within so far of it, across and along
 OPEN = 0.5  # of its rim is paper at least: round a place where lines meet it is lines
 LEAST_PX = 7.0  # a narrower one is a line: few pixels tell no breadth
 FINEST_PX = 2.0  # a line that is finer counts as so broad, for the same reason
@@ -52,31 +62,20 @@ class Solids(NamedTuple):
     @classmethod
     def of(cls, ink: Mask) -> Solids:
         """The solid areas of some ink."""
-        depth = np.asarray(
-            cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
-        )
-        none = cls(np.zeros_like(ink))
-        usual_px = usual_width_px(depth)
-        reach_px = 0.5 * max(BROAD * usual_px + BROAD_PX, LEAST_PX)
-        cores = (depth > reach_px).view(np.uint8)
-        if not cores.any():
-            return none
-        # 1. as far as a disc goes in
-        away = cv2.distanceTransform(1 - cores, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        opened = ((away <= reach_px) & (ink > 0)).view(np.uint8)
-        del away  # as large as the labels that follow
-        solid = np.zeros_like(ink)
-        count, labels, boxes, _ = cv2.connectedComponentsWithStats(opened, connectivity=8)
-        for k in range(1, count):
-            part = _about(boxes[k], ink.shape)
-            own = (labels[part] == k).view(np.uint8)
-            if _is_solid(own, ink[part], depth[part], usual_px):
-                solid[part] |= own
+        usual_px = usual_width_px(_depth(ink))
+        whole = _without_specks(ink, usual_px)
+        solid = _solid(whole, _depth(whole), usual_px)
         if not solid.any():
-            return none
-        # 2. with their corners
-        solid |= _corners(solid, ink, CORNER * usual_px + 2)
+            return cls(solid)
+        solid |= _corners(solid, whole, CORNER * usual_px + 2)
         return cls(solid, _each(solid))
+
+
+def _depth(ink: Mask) -> NDArray[np.float32]:
+    """How far each pixel of some ink is from paper."""
+    return np.asarray(
+        cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
+    )
 
 
 def usual_width_px(depth: NDArray[np.float32]) -> float:
@@ -92,25 +91,94 @@ def usual_width_px(depth: NDArray[np.float32]) -> float:
     return max(FINEST_PX, 2 * float(np.median(ridge)) - 1) if len(ridge) else FINEST_PX
 
 
-def _about(box: NDArray[np.int32], shape: tuple[int, ...]) -> tuple[slice, slice]:
-    """A box (left, top, width, height) with a pixel all round, as far as the sheet goes."""
-    left, top, wide, high = (int(side) for side in box[:4])
-    rows = slice(max(0, top - 1), min(shape[0], top + high + 1))
-    return rows, slice(max(0, left - 1), min(shape[1], left + wide + 1))
+def _without_specks(ink: Mask, usual_px: float) -> Mask:
+    """Ink with the specks of paper within it filled where they crowd, strip by strip: as many labels are
+    never there. The counters of letters do not crowd.
+    """
+    whole, about_px = ink.copy(), math.ceil(ABOUT * usual_px)
+    halo_px = about_px + math.ceil(2 * usual_px)
+    for top, bottom, rows in strips(ink.shape, halo=halo_px, pixels=FEW_PX):
+        _, labels, boxes, middles = cv2.connectedComponentsWithStats(
+            1 - ink[rows], connectivity=4
+        )
+        left, above, wide, high, pixels = boxes.T
+        are_specks = (left > 0) & (left + wide < ink.shape[1])
+        are_specks &= (above > 0) & (above + high < len(labels))
+        are_specks &= pixels <= SPECK * usual_px**2
+        at = tuple(np.round(middles[are_specks]).astype(int).T[::-1])
+        dots = np.zeros(labels.shape, np.float32)
+        dots[at] = 1
+        across = (2 * about_px + 1,) * 2
+        counts = cv2.boxFilter(
+            dots, -1, across, normalize=False, borderType=cv2.BORDER_CONSTANT
+        )
+        are_specks[are_specks] = counts[at] > MANY - 0.5
+        whole[top:bottom] |= are_specks[labels[top - rows.start : bottom - rows.start]]
+    return whole
 
 
-def _is_solid(own: Mask, ink: Mask, depth: NDArray[np.float32], usual_px: float) -> bool:
-    """Whether a part of the ink into which a disc goes is a solid area, and no line or junction."""
+def _solid(ink: Mask, depth: NDArray[np.float32], usual_px: float) -> Mask:
+    """The solid areas of some ink without their corners."""
+    solid = np.zeros_like(ink)
+    broad_px = max(BROAD * usual_px + BROAD_PX, LEAST_PX)
+    for part, own in _parts(_opened(ink, depth, broad_px)):
+        kind = _kind_of(own, ink[part], depth[part], usual_px)
+        if kind == "broad lines":
+            own = _walls(own, depth[part], usual_px)
+        if kind != "lines":
+            solid[part] |= own
+    return solid
+
+
+def _walls(own: Mask, depth: NDArray[np.float32], usual_px: float) -> Mask:
+    """What is solid of some long ink that somewhere is as broad as a wall: all of it where it is so as a
+    rule, or is no line by its breadth; else what is broader than a crossing of its own lines.
+    """
+    depth = np.where(own > 0, depth, np.float32(0))
+    own_px = usual_width_px(depth)
+    broad = _opened(own, depth, max(WALL * usual_px, CROSSING * own_px))
+    is_all = own_px > WALL * usual_px or float(broad.sum()) > SHAPE * float(own.sum())
+    return own if is_all else broad
+
+
+def _opened(ink: Mask, depth: NDArray[np.float32], across_px: float) -> Mask:
+    """As much of some ink as a disc covers that goes into it, by its depth."""
+    cores = (depth > 0.5 * across_px).view(np.uint8)
+    if not cores.any():
+        return cores
+    away = cv2.distanceTransform(1 - cores, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return (away <= 0.5 * across_px).view(np.uint8) & ink
+
+
+def _parts(opened: Mask) -> Iterator[tuple[tuple[slice, slice], Mask]]:
+    """The parts of a mask that hang together: the box about each, with a pixel all round, and its mask."""
+    if not opened.any():
+        return
+    count, labels, boxes, _ = cv2.connectedComponentsWithStats(opened, connectivity=8)
+    for k in range(1, count):
+        left, top, wide, high = boxes[k, :4].tolist()
+        part = (
+            slice(max(0, top - 1), min(len(opened), top + high + 1)),
+            slice(max(0, left - 1), min(opened.shape[1], left + wide + 1)),
+        )
+        yield part, (labels[part] == k).view(np.uint8)
+
+
+def _kind_of(
+    own: Mask, ink: Mask, depth: NDArray[np.float32], usual_px: float
+) -> Literal["solid area", "broad lines", "lines"]:
+    """What a part of the ink into which a disc goes is; junctions are lines."""
     grown = np.asarray(cv2.dilate(own, np.ones((3, 3), np.uint8)), np.uint8)
     rim = grown & (1 - own)
     inked = (rim & ink).astype(np.uint8)
     if float(inked.sum()) > (1 - OPEN) * float(rim.sum()):
-        return False
+        return "lines"
     broad_px = 2 * float(depth[own > 0].max()) - 1
     if broad_px < SWELLING * usual_px and cv2.connectedComponents(inked, connectivity=8)[0] > 2:
-        return False
-    is_long = float(own.sum()) > LONG * broad_px**2
-    return not is_long or broad_px > WALL * usual_px
+        return "lines"
+    if float(own.sum()) <= LONG * broad_px**2:
+        return "solid area"
+    return "broad lines" if broad_px > WALL * usual_px else "lines"
 
 
 def _corners(solid: Mask, ink: Mask, most_px: float) -> Mask:

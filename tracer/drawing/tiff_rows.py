@@ -27,19 +27,24 @@ if TYPE_CHECKING:
 Bytes = NDArray[np.uint8]
 
 TIFF_PACKED = {1, 2, 3, 4, 5, 8, 32773, 32946}  # Pillow unpacks a part of such a file alone
-COMPRESSION, STRIPS, STRIP_BYTES, STRIP_ROWS = 259, 273, 279, 278
+# tags, as TIFF 6.0 numbers them
+COMPRESSION, STRIPS, STRIP_BYTES, STRIP_ROWS = 0x103, 0x111, 0x117, 0x116
 TILE_WIDTH, TILE_HEIGHT, TILES, TILE_BYTES = 322, 323, 324, 325
-WIDTH, HEIGHT, BITS, PHOTOMETRIC, FILL_ORDER, SAMPLES, PLANAR = (
-    256,
-    257,
-    258,
-    262,
-    266,
-    277,
-    284,
-)
+WIDTH, HEIGHT, BITS, PHOTOMETRIC = 0x100, 0x101, 0x102, 0x106
+FILL_ORDER, SAMPLES, PLANAR, COLOURS = 0x10A, 0x115, 0x11C, 0x140
 # what a part needs of its file: how pixels are meant and packed
-KEPT_TAGS = (BITS, COMPRESSION, PHOTOMETRIC, FILL_ORDER, SAMPLES, PLANAR, 292, 293, 317, 320)
+KEPT_TAGS = (
+    BITS,
+    COMPRESSION,
+    PHOTOMETRIC,
+    FILL_ORDER,
+    SAMPLES,
+    PLANAR,
+    0x124,
+    0x125,
+    0x13D,
+    COLOURS,
+)
 BLACK_IS_ZERO = 1
 
 
@@ -133,7 +138,7 @@ def _tiff(
             numbers = (
                 [int(v) for v in value] if isinstance(value, tuple | list) else [int(value)]
             )
-            kind, letter = (3, "H") if tag in (BITS, 320) else (4, "I")
+            kind, letter = (3, "H") if tag in (BITS, COLOURS) else (4, "I")
             packed = struct.pack(f"{end}{len(numbers)}{letter}", *numbers)
             if len(packed) > 4:
                 place = after + len(beyond)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import chain
 from typing import NamedTuple
 
@@ -111,7 +112,7 @@ class WaysOut:
         if plan is not None:
             self.served.add(one.number)
             if found.choices > 1:
-                self.junctions.come_to(_place_of(way_in, found), carriage.travel_mm)
+                self.junctions.come_to(partial(_place_of, way_in, found), carriage.travel_mm)
         return plan
 
     def chosen(self, view: View, incoming: Leg, carriage: Carriage) -> tuple[Choice, bool]:
@@ -127,11 +128,10 @@ class WaysOut:
         way_in = WayIn(view, incoming, trail)
         found = survey(way_in, Asked(rank, side, leads))
         if found.choices > 1:
-            place = _place_of(way_in, found)
-            self.junctions.come_to(place, travel_mm)
+            self.junctions.come_to(partial(_place_of, way_in, found), travel_mm)
             turns_aside = side is not None and not goes_straight(incoming, found.leg)
             if turns_aside and goes_straight(incoming, survey(way_in).leg):
-                self.junctions.take(place, carriage.count)
+                self.junctions.take(_place_of(way_in, found), carriage.count)
         return found, side is not None
 
     def leaves_beside(self, view: View, incoming: Leg, carriage: Carriage) -> bool:
@@ -143,8 +143,7 @@ class WaysOut:
         way_in = WayIn(view, incoming, carriage.trail)
         found = survey(way_in)
         if found.choices > 1:
-            place = _place_of(way_in, found)
-            self.junctions.come_to(place, carriage.travel_mm)
+            self.junctions.come_to(partial(_place_of, way_in, found), carriage.travel_mm)
         return False
 
     def rank(self, number: int) -> int:

@@ -25,7 +25,7 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import blocks, one_in
 
-CELL, STATIONS, MEMORY, REDRAWN = range(4)
+CELL, STATIONS, MEMORY, REDRAWN = 0, 1, 2, 3
 LEADERS = ("swinging cell", "stations", "memory", "redrawn ink")
 
 

@@ -16,6 +16,8 @@ Source: our own.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from heapq import heapify, heappop, heappush
 
 import numpy as np
 
@@ -32,14 +34,12 @@ def ways_round(left: set[int], junctions: Junctions) -> list[list[Edge]]:
     clockwise.
     """
     orders = _orders(left, junctions)
-    ways = _ways(orders)
-    wanted = _areas_of_plane(left, junctions)
-    while len(ways) < wanted:
-        better = _exchanged(orders, len(ways))
-        if better is None:
-            break
-        ways = better
-    return ways
+    ways = _ways(_onto(orders))
+    missing = _areas_of_plane(left, junctions) - len(ways)
+    if missing <= 0:
+        return ways
+    _exchange_neighbours(orders, ways, missing)
+    return _ways(_onto(orders))
 
 
 def _orders(left: set[int], junctions: Junctions) -> Orders:
@@ -59,14 +59,25 @@ def _orders(left: set[int], junctions: Junctions) -> Orders:
     return {number: sorted(edges) for number, edges in orders.items()}
 
 
-def _ways(orders: Orders) -> list[list[Edge]]:
-    """The ways round the areas: from each line on to the first to the left of the way back."""
+def _onto(orders: Orders) -> dict[Edge, Edge]:
+    """Onto which edge each goes on: the first to the left of the way back."""
     onto = dict[Edge, Edge]()
     for leaving in orders.values():
         edges = [edge for _, edge in leaving]
-        for k, (line, back) in enumerate(edges):
+        for k, edge in enumerate(edges):
             # the same line comes in here the other way about, and goes on to the next one clockwise
-            onto[line, not back] = edges[k - 1]
+            onto[_back(edge)] = edges[k - 1]
+    return onto
+
+
+def _back(edge: Edge) -> Edge:
+    """The same line the other way about."""
+    line, back = edge
+    return line, not back
+
+
+def _ways(onto: dict[Edge, Edge]) -> list[list[Edge]]:
+    """The ways round the areas."""
     ways, seen = list[list[Edge]](), set[Edge]()
     for first in onto:
         way, edge = list[Edge](), first
@@ -85,7 +96,7 @@ def _areas_of_plane(left: set[int], junctions: Junctions) -> int:
 
     def part(node: int) -> int:
         while part_of.setdefault(node, node) != node:
-            node = part_of[node]
+            node = part_of[node] = part_of[part_of[node]]
         return node
 
     for n in left:
@@ -95,19 +106,76 @@ def _areas_of_plane(left: set[int], junctions: Junctions) -> int:
     return 2 * parts - len(part_of) + len(left)
 
 
-def _exchanged(orders: Orders, count: int) -> list[list[Edge]] | None:
-    """The ways when two neighbours in an order are exchanged, so that there are more; None if none helps."""
-    gaps = [
-        ((edges[k][0] - edges[k - 1][0]) % (2 * math.pi), number, k)
-        for number, edges in orders.items()
-        if len(edges) > 2
-        for k in range(len(edges))
-    ]
-    for _, number, k in sorted(gaps):
-        edges = orders[number]
+def _exchange_neighbours(orders: Orders, ways: list[list[Edge]], missing: int) -> None:
+    """Exchange neighbours in the orders, the nearest first, while areas are missing and that parts ways.
+
+    `ways` are those round the areas before. An exchange that parts none does not do so later either, but
+    beside one that was made: so each is tried once.
+    """
+    rounds = _Rounds(orders, ways)
+    gaps = [gap for number in orders for gap in rounds.gaps(number)]
+    heapify(gaps)
+    while missing > 0 and gaps:
+        gap, number, k = heappop(gaps)
+        if rounds.gap(number, k) == gap and rounds.parts(number, k):
+            missing -= 2
+            for changed in rounds.gaps(number, range(k - 2, k + 2)):
+                heappush(gaps, changed)
+
+
+class _Rounds:
+    """The ways round areas as neighbours are exchanged, each edge with its way and its place along that.
+
+        … p a b n …    →    … p b a n …        the edges that leave a junction
+
+    What came in by a, b and n went on to p, a and b, and goes on to b, p and a: three edges exchange what
+    follows them. If they lie on one way, in this order, it is parted in three; else there are as many ways
+    as before, or fewer.
+    """
+
+    def __init__(self, orders: Orders, ways: list[list[Edge]]) -> None:
+        self._orders, self._onto = orders, _onto(orders)
+        self._way = {edge: number for number, way in enumerate(ways) for edge in way}
+        # what is parted keeps its order
+        self._along = {edge: k for way in ways for k, edge in enumerate(way)}
+        self._count = len(ways)
+
+    def gap(self, number: int, k: int) -> float:
+        """The angle between two neighbours of a junction, the later of which is number k, rad."""
+        edges = self._orders[number]
+        return (edges[k][0] - edges[k - 1][0]) % (2 * math.pi)
+
+    def gaps(
+        self, number: int, some: Iterable[int] | None = None
+    ) -> list[tuple[float, int, int]]:
+        """The gaps of a junction, or some of them, each with its place; none where two lines go on."""
+        count = len(self._orders[number])
+        if count <= 2:
+            return []
+        places = range(count) if some is None else sorted({k % count for k in some})
+        return [(self.gap(number, k), number, k) for k in places]
+
+    def parts(self, number: int, k: int) -> bool:
+        """Exchange two neighbours if that parts a way; returns whether it does."""
+        edges = self._orders[number]
+        three = edges[k - 1], edges[k], edges[(k + 1) % len(edges)]
+        a, b, n = (_back(edge) for _, edge in three)
+        if not self._way[a] == self._way[b] == self._way[n]:
+            return False
+        at_a, at_b, at_n = self._along[a], self._along[b], self._along[n]
+        if not (at_a < at_b < at_n or at_b < at_n < at_a or at_n < at_a < at_b):
+            return False
         edges[k - 1], edges[k] = edges[k], edges[k - 1]
-        ways = _ways(orders)
-        if len(ways) > count:
-            return ways
-        edges[k - 1], edges[k] = edges[k], edges[k - 1]
-    return None
+        onto = self._onto
+        onto[a], onto[b], onto[n] = onto[n], onto[a], onto[b]
+        for first in (b, n):
+            self._is_a_way(first)
+        return True
+
+    def _is_a_way(self, first: Edge) -> None:
+        """Take down that the edges from one on are a way of their own."""
+        edge = first
+        while self._way[edge] != self._count:
+            self._way[edge] = self._count
+            edge = self._onto[edge]
+        self._count += 1

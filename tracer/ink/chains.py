@@ -66,18 +66,18 @@ def solved(sheet: FeltSheet) -> Junctions:
         }
         sheet.together.update(n for n in together if n in doubled or sheet.is_broad(n))
         too_long = parted.intersection(lines) - two - bare
-        more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
         if together or too_long:
             for stretch, width_mm in together.items():
                 sheet.widths_mm[stretch] = width_mm
             parted |= set(together)
             two |= too_long
             bare -= _beside(junctions.net, too_long.union(together))
-        elif more:
-            two |= more & (doubled | sheet.together)
-            bare |= more - two
-        else:
+            continue
+        more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
+        if not more:
             return junctions
+        two |= more & (doubled | sheet.together)
+        bare |= more - two
     return Junctions(net_of(sheet, two | bare), sheet.settings, known)
 
 
@@ -179,8 +179,14 @@ class Junctions:
 
     def places_along(self, chain: Chain) -> Array:
         """The places (n, 2) mm of a chain's lines, one after the other as it goes along them."""
-        lines = self.net.lines
-        return np.vstack([lines[n].places_mm[:: -1 if back else 1] for n, back in chain.links])
+        every = ((self.net.lines[n].places_mm, back) for n, back in chain.links)
+        return np.vstack([places[:: -1 if back else 1] for places, back in every])
+
+    @cached_property
+    def middles_mm(self) -> Array:
+        """The middle place of each line, once its ends are trimmed, (n, 2) mm."""
+        every = (line.places_mm for line in self.net.lines)
+        return np.array([places[len(places) // 2] for places in every]).reshape(-1, 2)
 
     def _trim(self) -> None:
         """Take the legs of wide junctions from further off, and longer: near to where two lines run together
@@ -254,10 +260,8 @@ class Junctions:
         """
         line, widths = self.net.lines[number], list[float]()
         for last in (False, True):
-            there, leg = (
-                self.at(Side(number, last)),
-                self.at(Side(number, last)).leg(Side(number, last)),
-            )
+            there = self.at(side := Side(number, last))
+            leg = there.leg(side)
             onward = [
                 other.width_mm
                 for other in there.legs
@@ -275,8 +279,7 @@ class Junctions:
         if (end_mm := self.net.lines[side.line].ends_mm[side.last]) is not None:
             return end_mm
         there = self.at(side)
-        end_mm = there.crossing.ends_mm.get(there.sides.index(side))
-        if end_mm is not None:
+        if (end_mm := there.crossing.ends_mm.get(there.sides.index(side))) is not None:
             return end_mm
         leg, view = there.leg(side), self._view(side)
         if there.is_free or len(there.sides) == 1:

@@ -20,7 +20,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from morfax.motion.arrays import NOT_ZERO
 from morfax.tracer.ink.aside import lines_aside
@@ -39,6 +39,8 @@ from morfax.tracer.sensing.leg import FACING
 
 NEW_BY_END = 0.9  # of a way with an end is along no other; by trial on synthetic nets
 
+Judge = Callable[[Outline], bool]
+
 
 def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator[Outline]:
     """The closed ways of a net of which more than a share is beside all others, and beside lines of the net
@@ -47,13 +49,18 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     taken, aside = set(taken), lines_aside(junctions)
     search = Search(junctions, Onward(junctions, aside), Onward(junctions))
 
-    def is_new(way: Outline, least: float = share) -> bool:
+    def is_new(way: Outline, least: float = share, may_be: Judge | None = None) -> bool:
         if share_beside(way.chain, taken, junctions) <= least:
+            return False
+        if may_be is not None and not may_be(way):
             return False
         if not goes_round_paper(way.chain, junctions):
             return False
         taken.update(link.line for link in way.chain.links)
         return True
+
+    def goes_on_or_round(way: Outline) -> bool:
+        return search.cost(way.chain) < math.inf or goes_round(way.chain, junctions, aside)
 
     # 1. straight on
     straight = (way for way in straight_chains(junctions) if search.cost(way.chain) == 0.0)
@@ -66,12 +73,8 @@ def closed_ways(junctions: Junctions, taken: set[int], share: float) -> Iterator
     yield from (it.way for it in ways if is_new(it.way, NEW_BY_END if it.ends else share))
     # 3. round what hangs together, and round what does without all these
     for without in (aside, taken | aside):
-        rest = [
-            way
-            for way in parts(junctions, without)
-            if search.cost(way.chain) < math.inf or goes_round(way.chain, junctions, aside)
-        ]
-        yield from filter(is_new, rest)
+        rest = parts(junctions, without)
+        yield from (way for way in rest if is_new(way, may_be=goes_on_or_round))
 
 
 def only_cross(ways: Sequence[Outline], junctions: Junctions) -> bool:
@@ -94,11 +97,9 @@ def _goes_past(far: Side, near: Side, junctions: Junctions) -> bool:
     """Whether a way goes straight on at a junction, or at a corner there passes by a line that does."""
     there = junctions.at(far)
     others = [side for side in there.sides if side not in (far, near)]
-    pairs = (
-        [(far, near)]
-        if len(others) != len((far, near))
-        else [(far, near), (others[0], others[1])]
-    )
+    pairs = [(far, near)]
+    if len(others) == len(pairs[0]):
+        pairs.append((others[0], others[1]))
     return not others or any(
         turned_by(there.leg(one), there.leg(other).turned_round()) < FACING
         for one, other in pairs

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
 
@@ -97,11 +97,12 @@ class Crossing:
             ]
             turned, two = min(tried)
             if turned < CORNERED and are_apart_where_they_cross(
-                way, onto, self._inked(), self._width_mm
+                way, onto, self._inked, self._width_mm
             ):
                 now[one], now[other] = two
         return [(min(pair), max(pair)) for pair in now]
 
+    @cached_property
     def _inked(self) -> SharedInk:
         """What was felt within it."""
         return SharedInk([inner.run for inner in self.inked])
@@ -118,7 +119,7 @@ class Crossing:
         """Its own ink and the ways through it; None if nothing was felt within it."""
         if not self.inked:
             return None
-        return self._inked()._replace(ways=self._hermites(self.pairs))
+        return replace(self._inked, ways=self._hermites(self.pairs))
 
     @cached_property
     def passing_mm(self) -> Array:
@@ -134,8 +135,9 @@ class Crossing:
             return {}
         paired = {leg for pair in self.pairs for leg in pair}
         alone = [k for k in range(len(self.legs)) if k not in paired]
-        loose = [Loose(self.views[k], self.legs[k], self._beside(k)) for k in alone]
-        found = zip(alone, ends_in_ink_mm(loose), strict=True)
+        loose = [Loose(self.views[k], self.legs[k], self.near[k]) for k in alone]
+        lines_mm = np.vstack([self.passing_mm, *(self.near[k] for k in sorted(paired))])
+        found = zip(alone, ends_in_ink_mm(loose, lines_mm), strict=True)
         return {k: end_mm for k, end_mm in found if end_mm is not None}
 
     @cached_property
@@ -145,16 +147,14 @@ class Crossing:
             return {}
         one, other = self.legs
         two = zip(self.views, self.legs, strict=True)
-        ends_mm = ends_in_ink_mm([Loose(*each, NOWHERE) for each in two], are_tips=True)
+        ends_mm = ends_in_ink_mm(
+            [Loose(*each, NOWHERE) for each in two], NOWHERE, are_tips=True
+        )
         if ends_mm[0] is None or ends_mm[1] is None:
             return {}
         apart_mm = math.dist(one.at(ends_mm[0]), other.at(ends_mm[1]))
         is_one = apart_mm < APART * one.width_mm
         return {} if is_one else {0: ends_mm[0], 1: ends_mm[1]}
-
-    def _beside(self, leg: int) -> Array:
-        """Places of the lines that pass, and of the others near the junction, (n, 2) mm."""
-        return np.vstack([self.passing_mm, *self.near[:leg], *self.near[leg + 1 :]])
 
     @cached_property
     def _ways(self) -> Neighbours | None:

@@ -26,7 +26,7 @@ import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
-from morfax.motion.neighbours import Neighbours
+from morfax.motion.neighbours import Neighbours, those_near
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.limits import FADES
@@ -48,6 +48,10 @@ TOUCHES = 1.0  # widths: two that both end here end beside each other, in ink th
 AHEAD = 12.0  # times its length a leg says where its line goes on
 BENT_WIDTHS = 0.3  # a leg that bends off by more does not say where its end is
 STEP_MM = 0.01  # of ends that are tried
+FIRST_WIDTHS, MORE = (
+    4.0,
+    4,
+)  # ends that are tried first, and times as many if that was not enough
 ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
 ROUNDS = 3  # in which lines that end in each other's ink have their ends found
 EVERY_PX = 0.7  # a place is looked at
@@ -57,32 +61,67 @@ PAPER = 1.0  # place that is paper, and inked by the line: it does not go on
 
 
 class Loose(NamedTuple):
-    """A line without a partner at a junction: its view, its leg, and places of the others, (n, 2) mm."""
+    """A line without a partner at a junction: its view, its leg, and places felt near that, (n, 2) mm."""
 
     view: View
     leg: Leg
-    others_mm: Array
+    near_mm: Array
+
+    def way_mm(self, end_mm: float) -> Array:
+        """Its places, and those on from its leg to an end, (n, 2) mm."""
+        return np.vstack([self.near_mm, self.leg.at(np.arange(0.0, end_mm, EVERY_MM))])
 
 
-def ends_in_ink_mm(loose: Sequence[Loose], *, are_tips: bool = False) -> list[float | None]:
-    """How far beyond their legs' clean ends some lines of a junction end in its ink, mm.
+class _Others(NamedTuple):
+    """The other lines about one: places of those that have partners, (n, 2) mm and none behind them; what
+    finds the nearest; and the ways of the others that have none.
+    """
+
+    places_mm: Array
+    nearest_of: Neighbours
+    ways: list[Array]
+
+    def nearest(self, places: Array) -> tuple[Array, Array]:
+        """How far each of some places is from the nearest of the others, mm, and that place, (n, 2) mm."""
+        away_mm, number = self.nearest_of.nearest(places)
+        nearest_mm = self.places_mm[number]
+        near = list(those_near(self.ways, places, float(away_mm.max())))
+        if near:
+            there_mm = np.vstack(near)
+            off_mm, number = Neighbours(there_mm).nearest(places)
+            is_nearer = off_mm < away_mm
+            away_mm = np.where(is_nearer, off_mm, away_mm)
+            nearest_mm = np.where(is_nearer[:, None], there_mm[number], nearest_mm)
+        return away_mm, nearest_mm
+
+
+def ends_in_ink_mm(
+    loose: Sequence[Loose], lines_mm: Array, *, are_tips: bool = False
+) -> list[float | None]:
+    """How far beyond their legs' clean ends some lines of a junction end in its ink, mm; `lines_mm`: places
+    (n, 2) of the other lines there, as far as `FARTHEST_WIDTHS` from it.
 
     Each is ink for the others, at first as far as ink lies ahead of it. None for one that comes onto none;
     tips may also lie beside each other, and are None where no leg tells of them.
     """
-    ends = [_inked_mm(line) for line in loose]
     found = list[float | None]([None for _ in loose])
+    if not loose:
+        return found
+    ends = [_inked_mm(line) for line in loose]
+    ways = [line.way_mm(end_mm) for line, end_mm in zip(loose, ends, strict=True)]
+    places_mm, nearest_of = np.vstack([lines_mm, (np.nan, np.nan)]), Neighbours(lines_mm)
+    held_against = list[list[float] | None]([None for _ in loose])
     for _ in range(ROUNDS if len(loose) > 1 else 1):
         for k, line in enumerate(loose):
-            ways = [
-                other.leg.at(np.arange(0.0, ends[m], EVERY_MM))
-                for m, other in enumerate(loose)
-                if m != k
-            ]
-            others_mm = np.vstack([line.others_mm, *ways])
-            end_mm = _end_in_ink_mm(line, others_mm, are_tips)
+            ended = ends[:k] + ends[k + 1 :]
+            if held_against[k] == ended:
+                continue  # all others still end where they did
+            held_against[k] = ended
+            others = _Others(places_mm, nearest_of, ways[:k] + ways[k + 1 :])
+            end_mm = _end_in_ink_mm(line, others, are_tips)
             if end_mm is not None:
                 found[k] = ends[k] = end_mm
+                ways[k] = line.way_mm(end_mm)
     return found
 
 
@@ -93,17 +132,15 @@ def _inked_mm(line: Loose) -> float:
     return farthest_mm if ahead_mm is None else ahead_mm
 
 
-def _end_in_ink_mm(line: Loose, middles_mm: Array, is_tip: bool) -> float | None:
-    """How far beyond its leg's clean end a line ends in the ink of the others, mm.
-
-    `middles_mm` are places of these, (n, 2), as far as `FARTHEST_WIDTHS` from the junction. None if the line
-    does not come to them.
+def _end_in_ink_mm(line: Loose, others: _Others, is_tip: bool) -> float | None:
+    """How far beyond its leg's clean end a line ends in the ink of the others, mm; None if it does not come
+    to them.
     """
-    view, leg = line.view, line.leg
+    leg = line.leg
     width_mm = leg.width_mm
     # 1. where the line comes onto the others
     ahead_mm = np.arange(0.0, FARTHEST_WIDTHS * width_mm, STEP_MM)
-    away_mm, _ = Neighbours(middles_mm).nearest(leg.at(ahead_mm))
+    away_mm, _ = others.nearest(leg.at(ahead_mm))
     come = np.flatnonzero(away_mm < ON_IT * width_mm)
     if not len(come) and is_tip:
         come = np.flatnonzero(away_mm < TOUCHES * width_mm)
@@ -119,20 +156,44 @@ def _end_in_ink_mm(line: Loose, middles_mm: Array, is_tip: bool) -> float | None
     ends_mm = ends_mm[~is_unknown]
     # 3. the ends that explain the ink
     if len(ends_mm) and len(leg.seen) >= FEWEST:
-        low, high = _possible(view, leg, middles_mm, ends_mm)
+        low, high = _possible(line, others, ends_mm)
         if high < len(ends_mm) - 1 or not (is_tip and is_unknown.any()):
             return float(ends_mm[low + int(np.argmin(away_mm[low : high + 1]))])
     return foot_mm if foot_mm < FOOT_WIDTHS * width_mm + FOOT_MM else None
 
 
-def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[int, int]:
-    """The numbers of the nearest and the farthest of some ends that explain the ink as well as the best."""
-    # 1. places along the line, in its own directions
+def _possible(line: Loose, others: _Others, ends_mm: Array) -> tuple[int, int]:
+    """The numbers of the nearest and the farthest of some ends that explain the ink as well as the best.
+
+    Most lines soon come to paper: so the nearest ends are looked at first, and more only if none lies there.
+    """
+    pen = 0.5 * line.leg.width_mm, softness_of(line.view, line.leg)
+    count = round(FIRST_WIDTHS * line.leg.width_mm / STEP_MM)
+    while True:
+        misfits = _held_against_ink(line, others, pen, ends_mm, count)
+        if count >= len(ends_mm) or not np.isfinite(misfits[-1]):
+            break
+        count *= MORE
+    # those that differ from the best by no more than places do
+    good = np.flatnonzero(misfits < misfits.min() + (INEXACT * DEVIATIONS) ** 2)
+    return int(good[0]), int(good[-1])
+
+
+def _held_against_ink(
+    line: Loose, others: _Others, pen: tuple[float, float], ends_mm: Array, count: int
+) -> Array:
+    """How far the first of some ends are from explaining the ink about the line, see `_misfits`; infinite for
+    those beyond paper. The pen: half its width, softness, mm.
+    """
+    view, leg = line.view, line.leg
+    # 1. places along the line, in its own directions, as far as they tell of these ends
+    some, reach_mm = ends_mm[:count], _reach_mm(pen)
+    until_mm = min(ends_mm[-1], some[-1] + reach_mm) + leg.width_mm
     every_mm, beside_mm = EVERY_PX * view.pitch_mm, ASIDE_WIDTHS * leg.width_mm
     s, u = (
         grid.ravel()
         for grid in np.meshgrid(
-            np.arange(0.0, ends_mm[-1] + leg.width_mm, every_mm),
+            np.arange(0.0, until_mm, every_mm),
             np.arange(-beside_mm, beside_mm + every_mm, every_mm),
             indexing="ij",
         )
@@ -141,34 +202,41 @@ def _possible(view: View, leg: Leg, middles_mm: Array, ends_mm: Array) -> tuple[
     places = leg.at(s) + u[:, None] * left_of_headings(heading)
     # 2. what the sheet shows there, and how far the others are, in which direction
     seen = np.minimum(view.darkness_along(places) / (2 * view.level), DARKEST)
-    softness_mm = softness_of(view, leg)
-    away_mm, nearest = Neighbours(middles_mm).nearest(places)
-    off = (places - middles_mm[nearest]) / np.maximum(away_mm, NOT_ZERO)[:, None]
+    away_mm, nearest_mm = others.nearest(places)
+    off = (places - nearest_mm) / np.maximum(away_mm, NOT_ZERO)[:, None]
     off_s = off[:, 0] * np.cos(heading) + off[:, 1] * np.sin(heading)
     off_u = off[:, 1] * np.cos(heading) - off[:, 0] * np.sin(heading)
-    misfits = np.full(len(ends_mm), math.inf)
-    pen = 0.5 * leg.width_mm, softness_mm
-    _misfits(np.column_stack([s, u, away_mm, off_s, off_u, seen]), pen, ends_mm, misfits)
-    # 3. those that differ from the best by no more than places do
-    good = np.flatnonzero(misfits < misfits.min() + (INEXACT * DEVIATIONS) ** 2)
-    return int(good[0]), int(good[-1])
+    columns, misfits = (
+        np.column_stack([s, u, away_mm, off_s, off_u, seen]),
+        np.full(len(some), math.inf),
+    )
+    _misfits(columns, pen, some, np.empty((3, len(s) + 1)), misfits)
+    return misfits
 
 
 @njit(cache=True)
-def _misfits(places, pen, ends_mm, out):  # type: ignore[no-untyped-def]
+def _reach_mm(pen):  # type: ignore[no-untyped-def]
+    """How far beyond its end a pen may leave ink: half its width, and the softness of that."""
+    return pen[0] + math.sqrt(2.0) * FADES * pen[1]
+
+
+@njit(cache=True, _nrt=False)
+def _misfits(places, pen, ends_mm, sums, out):  # type: ignore[no-untyped-def]
     """The sums of the squares of what is drawn less what is seen, for each end up to where the line would
     cross paper.
 
     Places, in order: along the line, beside it, distance from the others, mm, the direction from them, in the
-    line's own, and what is seen; (n, 6). The pen: half its width, softness, mm.
+    line's own, and what is seen; (n, 6). The pen: half its width, softness, mm. `sums` is room: (3, n + 1).
     """
-    reach_mm, least = pen[0] + math.sqrt(2.0) * FADES * pen[1], math.inf
+    reach_mm, least = _reach_mm(pen), math.inf
     # 1. what all places come to that the line has passed, or has not come to
     count = len(places)
-    passed, left = np.zeros(count + 1), np.zeros(count + 1)
+    passed, left, others = sums
+    passed[0] = left[0] = 0.0
     for k in range(count):
-        passed[k + 1] = passed[k] + _misfit(places[k], pen, places[k, 0])
-        left[k + 1] = left[k] + _misfit(places[k], pen, places[k, 0] - reach_mm)
+        others[k] = 1.0 - ink_at(places[k, 2], pen[0], pen[1])
+        passed[k + 1] = passed[k] + _misfit(places[k], others[k], pen, places[k, 0])
+        left[k + 1] = left[k] + _misfit(places[k], others[k], pen, places[k, 0] - reach_mm)
     # 2. those about each end by themselves
     first = last = 0
     for n in range(len(ends_mm)):
@@ -178,7 +246,7 @@ def _misfits(places, pen, ends_mm, out):  # type: ignore[no-untyped-def]
             last += 1
         total = passed[first] + left[count] - left[last]
         for k in range(first, last):
-            total += _misfit(places[k], pen, ends_mm[n])
+            total += _misfit(places[k], others[k], pen, ends_mm[n])
         if total > least + PAPER:
             return
         least = min(least, total)
@@ -186,13 +254,16 @@ def _misfits(places, pen, ends_mm, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _misfit(place, pen, end_mm):  # type: ignore[no-untyped-def]
-    """The square of what is drawn less what is seen at a place, if the line ends there."""
+def _misfit(place, other, pen, end_mm):  # type: ignore[no-untyped-def]
+    """The square of what is drawn less what is seen at a place, if the line ends there; `other`: how much
+    paper the other lines leave.
+    """
+    if other == 0.0:  # the line leaves none either
+        return (1.0 - place[5]) ** 2
     half_mm, softness_mm = pen
     beyond, aside = max(place[0] - end_mm, 0.0), place[1]
     away = math.hypot(beyond, aside)
     paper = 1.0 - ink_at(away, half_mm, softness_mm)
-    other = 1.0 - ink_at(place[2], half_mm, softness_mm)
     alike = (beyond * place[3] + aside * place[4]) / max(away, NOT_ZERO)
     return (1.0 - _bare(paper, other, alike) - place[5]) ** 2
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.median import median
 from morfax.motion.polyline import broad_mm
 from morfax.tracer.drawing.numbering import Ink, longest_first
@@ -94,16 +94,24 @@ def is_free(chain: Chain, junctions: Junctions) -> bool:
 def goes_round(chain: Chain, junctions: Junctions, aside: Set[int]) -> bool:
     """Whether nearly all lines of a net, but those aside, lie on or inside a closed chain: its silhouette."""
     lines, on_it = junctions.net.lines, {link.line for link in chain.links}
-    outline = junctions.places_along(chain).astype(np.float32).reshape(-1, 1, 2)
-    all_mm = inside_mm = 0.0
-    for n, line in enumerate(lines):
-        if n in aside:
-            continue
-        x, y = line.places_mm[len(line.places_mm) // 2].tolist()
-        all_mm += line.length_mm
-        if n in on_it or cv2.pointPolygonTest(outline, (x, y), False) > 0:
-            inside_mm += line.length_mm
-    return inside_mm > NEARLY_ALL * all_mm
+    counted = [n for n in range(len(lines)) if n not in aside]
+    all_mm = sum(lines[n].length_mm for n in counted)
+    # 1. what lies in its box
+    outline = junctions.places_along(chain).astype(np.float32)
+    low, high = bounds(outline)
+    middles = junctions.middles_mm
+    is_near = np.all((middles >= low) & (middles <= high), axis=1)
+    near = [n for n in counted if n in on_it or is_near[n]]
+    if sum(lines[n].length_mm for n in near) <= NEARLY_ALL * all_mm:
+        return False
+    # 2. what lies on it or inside
+    around = outline.reshape(-1, 1, 2)
+    inside = [
+        n
+        for n in near
+        if n in on_it or cv2.pointPolygonTest(around, middles[n].tolist(), False) > 0
+    ]
+    return sum(lines[n].length_mm for n in inside) > NEARLY_ALL * all_mm
 
 
 def goes_round_paper(chain: Chain, junctions: Junctions) -> bool:

@@ -18,13 +18,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
-from morfax.motion.neighbours import Neighbours
+from morfax.motion.neighbours import Neighbours, those_near
 from morfax.motion.plane import CORNER_RAD, SAME_MM, left_of, left_of_headings, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.tracer.effort import EVERY_MM, ROUNDS
@@ -46,12 +48,14 @@ TURNED, HUMP_MM = 0.01, 1.0
 FITS = 0.8  # of the places are as near to their rims as these are exact
 
 
-class SharedInk(NamedTuple):
+@dataclass(frozen=True)
+class SharedInk:
     """What was felt along the stretches within a junction, and about how lines go through it, (n, 2) mm."""
 
     runs: Sequence[Run] = ()
     ways: Sequence[Array] = ()
 
+    @cached_property
     def stations(self) -> Array:
         """The stations whose width is known: X, Y, heading, width; (n, 4)."""
         felt = [
@@ -61,15 +65,22 @@ class SharedInk(NamedTuple):
         every = np.vstack(felt)
         return np.asarray(every[np.isfinite(every[:, 3])])
 
+    @cached_property
+    def nearest(self) -> Neighbours:
+        """Finds the stations nearest to places."""
+        return Neighbours(self.stations[:, :2])
+
+    @cached_property
+    def _ends(self) -> Array:
+        """The first and the last place of each way, (n, 2, 2) mm."""
+        return np.array([way[[0, -1]] for way in self.ways]).reshape(-1, 2, 2)
+
     def besides(self, way: Array) -> list[Array]:
         """The ways of the other lines: those that begin and end elsewhere."""
-        ends = way[[0, -1]]
-        return [
-            other
-            for other in self.ways
-            if min(np.abs(other[[0, -1]] - ends).max(), np.abs(other[[-1, 0]] - ends).max())
-            > SAME_MM
-        ]
+        there = np.abs(self._ends - way[[0, -1]]).max(axis=(1, 2))
+        back = np.abs(self._ends - way[[-1, 0]]).max(axis=(1, 2))
+        others = np.flatnonzero(np.minimum(there, back) > SAME_MM)
+        return [self.ways[k] for k in others.tolist()]
 
 
 def kept_in_ink(
@@ -80,15 +91,14 @@ def kept_in_ink(
     Where one of the `others` lies in the same ink each has its own rim.
     """
     come_mm = lengths_mm(way)
-    stations = ink.stations()
-    if not len(stations) or come_mm[-1] < FADES * width_mm:
+    if not len(ink.stations) or come_mm[-1] < FADES * width_mm:
         return way
     at_mm = np.linspace(0.0, come_mm[-1], 2 + math.ceil(come_mm[-1] / EVERY_MM))
     some = at_lengths(way, at_mm)
     # 1. bent smoothly along the rims
-    bent = some + _bent(some, at_mm / at_mm[-1], _off(some, stations, width_mm, others))
+    bent = some + _bent(some, at_mm / at_mm[-1], _off(some, ink, width_mm, others))
     # 2. where it is out of the ink still, moved, smoothly and not at the ends
-    off = _off(bent, stations, width_mm, others)
+    off = _off(bent, ink, width_mm, others)
     far = np.sign(off.aside) * np.maximum(np.abs(off.aside) - SLACK * width_mm, 0.0)
     moves = _averaged(far[:, None] * off.normals, AVERAGED * width_mm / (at_mm[1] - at_mm[0]))
     fade = np.minimum(at_mm, at_mm[-1] - at_mm) / (FADES * width_mm)
@@ -100,11 +110,11 @@ def off_rims_mm(way: Array, ink: SharedInk, width_mm: float, others: Sequence[Ar
     """How far a way (n, 2) mm is, in the mean, from where its own rims tell a line of a width to be, mm; 0
     where none tell.
     """
-    stations, come_mm = ink.stations(), lengths_mm(way)
-    if not len(stations) or come_mm[-1] < max(FADES * width_mm, 2 * EVERY_MM):
+    come_mm = lengths_mm(way)
+    if not len(ink.stations) or come_mm[-1] < max(FADES * width_mm, 2 * EVERY_MM):
         return 0.0
     some = at_lengths(way, np.arange(0.0, come_mm[-1], EVERY_MM))
-    off = _off(some, stations, width_mm, others)
+    off = _off(some, ink, width_mm, others)
     return float(np.sum(np.abs(off.aside) * off.sure) / max(off.sure.sum(), 1.0))
 
 
@@ -142,9 +152,9 @@ class _Off(NamedTuple):
     sure: Array
 
 
-def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array]) -> _Off:
+def _off(some: Array, ink: SharedInk, width_mm: float, others: Sequence[Array]) -> _Off:
     """How far places of a way are from where the line would lie; 0 in ink that goes another way."""
-    away, near = Neighbours(stations[:, :2]).nearest(some)
+    stations, (away, near) = ink.stations, ink.nearest.nearest(some)
     middles, headings, widths = stations[near, :2], stations[near, 2], stations[near, 3]
     normals = left_of_headings(headings)
     is_its_own = _goes_along(some, np.arange(len(some)), normals) & (away < BESIDE * widths)
@@ -154,7 +164,7 @@ def _off(some: Array, stations: Array, width_mm: float, others: Sequence[Array])
     limit = 0.5 * np.maximum(widths - width_mm, 0.0)
     within = wanted = np.clip(aside, -limit, limit)
     beside, is_crossed = np.zeros(len(some), int), np.zeros(len(some), bool)
-    for other in others:
+    for other in those_near(others, middles, BESIDE * float(widths.max())):
         apart, nearest = Neighbours(other).nearest(middles)
         is_beside = apart < BESIDE * widths
         beside += is_beside

@@ -74,13 +74,15 @@ class Choice(NamedTuple):
 class WayIn:
     """The way into a junction: how the line is seen, its leg, the trail, and legs found about places there.
 
-    Several surveys of one junction look about the same places: their legs are felt once.
+    Several surveys of one junction look about the same places: their legs are felt once, and how far each
+    reaches.
     """
 
     view: View
     incoming: Leg
     trail: Trail
     _felt: dict[tuple[float, float], list[Leg]] = field(default_factory=dict)
+    _reaches_mm: dict[int, float] = field(default_factory=dict)  # by the leg itself
 
     def legs_around(self, centre: Array) -> list[Leg]:
         """The clean legs that leave a place (see `rings`), but for the way in."""
@@ -89,6 +91,24 @@ class WayIn:
             way_in = np.vstack([self.trail.recent(), self.incoming.seen[:, :2]])
             self._felt[place] = legs_around(self.view, centre, way_in)
         return self._felt[place]
+
+    def reach_mm(self, leg: Leg) -> float:
+        """How far one of these legs reaches beyond the edge of the incoming line, mm; infinite if it is no
+        mark.
+        """
+        if id(leg) not in self._reaches_mm:
+            self._reaches_mm[id(leg)] = self._felt_reach_mm(leg)
+        return self._reaches_mm[id(leg)]
+
+    def _felt_reach_mm(self, leg: Leg) -> float:
+        """The same, as it is felt."""
+        end = stroke_end(self.view, leg, longest_mm(self.view))
+        if end is None:
+            return math.inf
+        way = leg.end_mm - self.incoming.end_mm
+        heading = self.incoming.heading_rad
+        aside = abs(way[1] * math.cos(heading) - way[0] * math.sin(heading))
+        return float(end + aside - 0.5 * self.view.width_mm)
 
 
 def survey(way_in: WayIn, asked: Asked = STRAIGHTEST) -> Choice:
@@ -187,7 +207,7 @@ class _Survey:
     def _without_marks(self, legs: list[Leg]) -> list[Leg]:
         """The legs but for marks that are not straight on, if others are left."""
         reach_mm = [
-            math.inf if goes_straight(self.incoming, leg) else self._reach_mm(leg)
+            math.inf if goes_straight(self.incoming, leg) else self.way_in.reach_mm(leg)
             for leg in legs
         ]
         kept = []
@@ -208,7 +228,9 @@ class _Survey:
             return legs
         overrun_mm = max(OVERRUN_MM, OVERRUN_WIDTHS * width_mm)
         return [
-            leg for leg in legs if _is_among(leg, aside) or self._reach_mm(leg) > overrun_mm
+            leg
+            for leg in legs
+            if _is_among(leg, aside) or self.way_in.reach_mm(leg) > overrun_mm
         ]
 
     def _without_stubs(self, legs: list[Leg], every: list[Leg]) -> list[Leg]:
@@ -220,17 +242,7 @@ class _Survey:
         held = [leg for leg in every if not _is_among(leg, legs)]
         if not held or _passing(held):
             return legs
-        return [leg for leg in legs if self._reach_mm(leg) > longest_mm(self.view)]
-
-    def _reach_mm(self, leg: Leg) -> float:
-        """How far a leg reaches beyond the edge of the incoming line, mm; infinite if it is no mark."""
-        end = stroke_end(self.view, leg, longest_mm(self.view))
-        if end is None:
-            return math.inf
-        way = leg.end_mm - self.incoming.end_mm
-        heading = self.incoming.heading_rad
-        aside = abs(way[1] * math.cos(heading) - way[0] * math.sin(heading))
-        return float(end + aside - 0.5 * self.view.width_mm)
+        return [leg for leg in legs if self.way_in.reach_mm(leg) > longest_mm(self.view)]
 
     def _without_passing(self, legs: list[Leg], every: list[Leg]) -> list[Leg]:
         """The legs that are no line that passes here, straighter than any leg goes on from the way in."""

@@ -13,6 +13,7 @@ Source: patent ES 361967, section on use: guide lines, to drill points for insta
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -60,10 +61,11 @@ class Junctions:
         still = travel_mm - self._travel_mm < AGAIN_MM and bool(self.places_mm)
         return len(self.places_mm) - still
 
-    def come_to(self, place_mm: Array, travel_mm: float) -> None:
-        """Count a junction, unless it is still the last one."""
+    def come_to(self, place_of: Callable[[], Array], travel_mm: float) -> None:
+        """Count a junction, unless it is still the last one; then nobody asks for its place, mm."""
         if self.next(travel_mm) == len(self.places_mm):
-            self.places_mm.append((float(place_mm[0]), float(place_mm[1])))
+            x, y = place_of()
+            self.places_mm.append((float(x), float(y)))
         self._travel_mm = travel_mm
 
     def take(self, place_mm: Array, positions: int) -> None:

@@ -15,6 +15,8 @@ from scipy.special import erf
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.noise import measured
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import Scan, Stated
 from tests.tracer.inked import DPI, NOISE, SOFTNESS_MM, UM, WIDTH_MM, arc, inked, polyline
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "cam.png"
@@ -43,6 +45,20 @@ def noisy(darkness: Darkness, paper: float, ink: float) -> Darkness:
     """The same with noise of these standard deviations on the pixels of paper and of ink."""
     noise = np.random.default_rng(1).normal(0, 1, darkness.shape)
     return np.asarray(darkness + noise * np.where(darkness > 0.5, ink, paper), np.float32)
+
+
+@pytest.mark.parametrize("white", [235, 255])
+@pytest.mark.parametrize("softness_px", [0.6, 0.8, 1.2])
+def test_noise_of_paper_makes_lines_neither_softer_nor_wider(
+    white: int, softness_px: float
+) -> None:
+    """Paper's level is that of its lighter pixels; noise of 6 levels lies 3 levels above it in the mean."""
+    noise = np.random.default_rng(1).normal(0, 6, (SIDE_PX, SIDE_PX))
+    levels = white - (white - 30) * ruled(4.7, softness_px, 0.3) + noise
+    grey = np.clip(np.round(levels), 0, 255).astype(np.uint8)
+    drawing = Drawing.of(Scan(Path("made.png"), grey, Stated((DPI, DPI))), Scale())
+    assert drawing.noise.softness_px == pytest.approx(softness_px, rel=0.12)
+    assert drawing.noise.width_mm / drawing.pitch_mm == pytest.approx(4.7, rel=0.02)
 
 
 @settings(max_examples=25)

@@ -66,3 +66,20 @@ def test_neighbours_in_the_wrong_order_are_exchanged(
 
     monkeypatch.setattr(areas, "_orders", wrong)
     assert ways(window) == right
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_exchanged_neighbours_part_a_way_where_counting_all_ways_says_so(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    orders: areas.Orders = {}
+    for line in range(12):
+        for back in (False, True):
+            leaving = orders.setdefault(int(rng.integers(4)), [])
+            leaving.append((float(rng.uniform(-3, 3)), (line, back)))
+    for number, k in ((n, k) for n in orders if len(orders[n]) > 2 for k in range(-2, 2)):
+        before = areas._ways(areas._onto(orders))
+        rounds, tried = areas._Rounds(orders, before), {**orders, number: [*orders[number]]}
+        tried[number][k - 1], tried[number][k] = tried[number][k], tried[number][k - 1]
+        after = areas._ways(areas._onto(tried))
+        assert rounds.parts(number, k) == (len(after) > len(before))
+        assert len(areas._ways(rounds._onto)) == max(len(after), len(before))

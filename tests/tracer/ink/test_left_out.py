@@ -67,6 +67,48 @@ def test_a_sheet_drawn_with_a_broad_pen_has_no_solid_areas() -> None:
     assert not Solids.of(ink).each
 
 
+def test_one_broad_place_makes_no_wall_of_a_bold_outline_that_hangs_together_with_it() -> None:
+    """A pen of 1 mm beside one of 0.25 mm, with a blot as broad as six of the thin lines at its corner."""
+    thin = [polyline((8, y), (34, y)) for y in np.arange(8.0, 34.0, 2.0)]
+    blot = arc((36, 36), 1.2)
+    bold = inked(FRAME, width_mm=1.0, specks=(blot,), seed=2).darkness
+    rows, columns = bold.shape
+    ink = inked(*thin, width_mm=0.25, specks=(blot, arc((42, 42), 1.0)), seed=2).darkness
+    ink = np.maximum(bold, ink[-rows:, :columns])
+    found = Solids.of((ink > 0.5).astype(np.uint8)).each
+    assert len(found) == 1
+    pixel_mm = MM_PER_INCH / 300
+    # the round and, up to where its disc goes in, the two bold lines beside it
+    assert found[0].pixels * pixel_mm**2 == pytest.approx(1.44 * math.pi, rel=0.15)
+
+
+def test_black_that_grows_broad_is_solid_and_no_line_of_a_broad_pen() -> None:
+    thin = [polyline((8, y), (34, y)) for y in np.arange(8.0, 34.0, 2.0)]
+    horn = polyline((6, 40), (46, 40), (46, 44))  # as a triangle 40 mm long
+    ink = (inked(*thin, width_mm=0.25, specks=(horn,), seed=2).darkness > 0.5).astype(np.uint8)
+    found = Solids.of(ink).each
+    assert len(found) == 1
+    # all but the tip, where it is as narrow as the lines
+    assert found[0].pixels * (MM_PER_INCH / 300) ** 2 == pytest.approx(80, rel=0.06)
+
+
+def test_black_with_specks_of_paper_is_solid() -> None:
+    ink = ink_of(FRAME, TO_DOT, specks=(polyline((8, 8), (20, 8), (20, 20), (8, 20)),))
+    rows, columns = np.nonzero(ink)
+    whole = Solids.of(ink).mask
+    chance = np.random.default_rng(4)
+    some = np.flatnonzero(chance.random(len(rows)) < 0.02)
+    for row, column in zip(rows[some].tolist(), columns[some].tolist(), strict=True):
+        ink[row : row + 2, column : column + 2] = 0  # of a line's five pixels
+    found = Solids.of(ink)
+    assert len(found.each) == 1
+    # specks at the rim of the square are paper beside it
+    within = whole[3:-3, 3:-3] > 0
+    for down, aside in ((0, 3), (6, 3), (3, 0), (3, 6)):
+        within &= whole[down : down + len(within), aside : aside + within.shape[1]] > 0
+    assert np.mean(found.mask[3:-3, 3:-3][within]) > 0.99
+
+
 def test_hatching_on_a_broader_frame_is_known_and_the_frame_goes_straight_on() -> None:
     """Short pieces of the frame between the hatching are as wide as the frame, and not as the hatching."""
     tops = np.arange(8.0, 44.0, 1.7)

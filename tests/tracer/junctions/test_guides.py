@@ -5,6 +5,7 @@ hand and on drawings.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ LEAD = polyline((4, 20), (18, 20))
 def test_a_junction_counts_once_while_the_head_is_at_it() -> None:
     junctions = Junctions()
     for place, travel_mm in ((HERE, 10.0), (HERE, 10.0 + AGAIN_MM / 2), (THERE, 20.0)):
-        junctions.come_to(place, travel_mm)
+        junctions.come_to(partial(np.asarray, place), travel_mm)
     assert junctions.places_mm == [(10.0, 0.0), (20.0, 0.0)]
     assert junctions.next(20.0) == 1 and junctions.next(20.0 + 2 * AGAIN_MM) == 2
 

@@ -3,10 +3,11 @@
     ────╮  ╭────     the relief of an inner corner, a step with a round, an arc that begins at a corner: a
         ╰──╯         bend shorter than a leg is felt as an average, and the way bulges or cuts it short
 
-Wherever the swinging cell did not lead, the pen's ink along the way is held against the sheet's, place by
-place. Where it leaves more than noise does, a spline is laid by the ink (see `tangles.spline`) between clean
-places of the way on either side, with the corners of the way, or some more or fewer. If it explains the ink,
-and the head's own way does not, the head runs along it from memory.
+Wherever the swinging cell did not lead along a closed line, or an open one between its ends, the pen's ink
+along the way is held against the sheet's, place by place. Where it leaves more than noise does, a spline is
+laid by the ink (see `tangles.spline`) between clean places of the way on either side, with the corners of the
+way, or some more or fewer. If it explains the ink, and the head's own way does not, the head runs along it
+from memory.
 
 Signals: the sheet and lines in; the lines with those stretches bent onto their ink out.
 
@@ -15,6 +16,7 @@ Source: our own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -41,10 +43,11 @@ from morfax.tracer.program.against_ink.off_ink import (
     wrong_about,
 )
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
-from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_clear, is_plain
+from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_bare, is_clear
 from morfax.tracer.program.laid.rim_bays import RimBay
 from morfax.tracer.program.laid.spline_fit import (
     CORNER_RAD,
+    MAYBE_RAD,
     about_corners,
     corners_of,
     explained,
@@ -119,9 +122,15 @@ class _Way:
         return STEP_WIDTHS * self.line.width_mm
 
     @cached_property
+    def is_closed(self) -> bool:
+        """Whether the way comes round."""
+        return self.line.ending == "closed"
+
+    @cached_property
     def places(self) -> Array:
         """Places (n, 2) mm of the way."""
-        return evenly(self.line.loop_mm, self.step_mm)
+        way = self.line.loop_mm if self.is_closed else self.line.places_mm
+        return evenly(way, self.step_mm)
 
     @cached_property
     def by_cell(self) -> NDArray[np.bool_]:
@@ -133,8 +142,18 @@ class _Way:
         return np.asarray(leaders[np.minimum(at, len(leaders) - 1)] == CELL)
 
     @cached_property
+    def turning(self) -> NDArray[np.bool_]:
+        """Whether the way turns at each place."""
+        count, over = len(self.places), round(TURNS_OVER / STEP_WIDTHS)
+        at = np.arange(-over, count + over)
+        way = self.places[at % count if self.is_closed else np.clip(at, 0, count - 1)]
+        return np.asarray(turns_rad(way, TURNS_OVER)[over:-over] > MAYBE_RAD)
+
+    @cached_property
     def corners(self) -> list[int]:
-        """The places at which it turns sharply, and those a round before and behind."""
+        """The places at which it turns sharply; of a closed way those a round before and behind, too."""
+        if not self.is_closed:
+            return corners_of(turns_rad(self.places))
         count, over = len(self.places), round(LEGS[0] / STEP_WIDTHS)
         on = self.places[np.arange(-over, count + over) % count]
         found = corners_of(turns_rad(on)[over:-over])
@@ -142,16 +161,16 @@ class _Way:
 
     @property
     def may_be_off(self) -> bool:
-        """Whether it is a plain line along which the swinging cell did not lead all along."""
+        """Whether it is a line without marks along which the swinging cell did not lead all along."""
         line = self.line
-        if not is_plain(line) or line.as_told or line.length_mm < 4 * LEGS[0] * line.width_mm:
+        if not is_bare(line) or line.as_told or line.length_mm < 4 * LEGS[0] * line.width_mm:
             return False
         return not self.by_cell.all()
 
     def bent(self, felt: Felt) -> Line:
         """The line as it is, or along the splines that explain its ink better."""
         bays = [bay for off in self._off(felt) if (bay := self._bay(*off, felt)) is not None]
-        round_mm = len(self.places) * self.step_mm
+        round_mm = len(self.places) * self.step_mm if self.is_closed else math.inf
         bays = apart(bays, round_mm)
         return laid(self.setup, self.line, bays, round_mm) if bays else self.line
 
@@ -159,24 +178,39 @@ class _Way:
         """The stretches that are off their ink, from which place to which."""
         leg = round(LEGS[0] / STEP_WIDTHS)
         off = np.zeros(len(self.places), bool)
-        for first, last in _runs(~self.by_cell, leg):
+        for first, last in _runs(self._between_ends(~self.by_cell), leg, self.is_closed):
+            if not self.turning[np.arange(first, last + 1) % len(off)].any():
+                continue  # straight on over a crossing, it is on its ink
             for begin in range(first, last + 1, round(LONGEST / STEP_WIDTHS)):
                 end = min(begin + round(LONGEST / STEP_WIDTHS), last + 1)
                 ink, own = self._seen(begin - leg, end + leg, felt)
                 wrong = wrong_about(ink, own, about_corners(own), STEP_WIDTHS)[leg:-leg]
                 off[np.arange(begin, end + 1) % len(off)] |= wrong > felt.limit
-        yield from _runs(off, leg) if off.any() else ()
+        yield from _runs(self._between_ends(off), leg, self.is_closed)
+
+    def _between_ends(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Those of some places (n,) that are a leg and a step from the ends of an open way."""
+        leg = round(LEGS[0] / STEP_WIDTHS) + 1
+        return chosen if self.is_closed else np.pad(chosen[leg:-leg], leg)
 
     def _seen(self, first: int, last: int, felt: Felt) -> tuple[SeenInk, Array]:
         """The ink about a stretch, as the line's pen left it, and the stretch."""
         way, drawing = self.places, self.setup.sheet.drawing
         own = way[np.arange(first, last + 1) % len(way)]
-        rest = way[np.arange(last, first + len(way) + 1) % len(way)]
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
-        near = [*_within(rest, low, high), *self.beside.within(low, high, self.line)]
+        near = list(self.beside.within(low, high, self.line))
+        for rest in self._rest(first, last):
+            near += _within(rest, low, high)
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_lone_pixels(ink, own, drawing.pitch_mm), own
+
+    def _rest(self, first: int, last: int) -> tuple[Array, ...]:
+        """The way but for a stretch of it."""
+        way = self.places
+        if not self.is_closed:
+            return way[: first + 1], way[last:]
+        return (way[np.arange(last, first + len(way) + 1) % len(way)],)
 
     def _bay(self, first: int, last: int, felt: Felt) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""
@@ -184,6 +218,8 @@ class _Way:
         first = _off_corners(first - leg, self.corners, -1)
         last = _off_corners(last + leg, self.corners, 1)
         if last - first > min(2 * leg + LONGEST / STEP_WIDTHS, OF_LOOP * count):
+            return None
+        if not self.is_closed and not 0.5 * leg < first < last < count - 0.5 * leg:
             return None
         ink, own = self._seen(first, last, felt)
         if goes_on(ink, own, REACH):
@@ -204,19 +240,20 @@ class _Way:
         return Bay(first * self.step_mm, last * self.step_mm, rule, gain)
 
 
-def _runs(chosen: NDArray[np.bool_], apart: int) -> Iterator[tuple[int, int]]:
-    """From which place of a closed way to which some are chosen, nearer than twice so many places to one
-    another; the last may be over the end.
+def _runs(chosen: NDArray[np.bool_], apart: int, is_closed: bool) -> Iterator[tuple[int, int]]:
+    """From which place of a way to which some are chosen, nearer than twice so many places to one another;
+    the last of a closed way may be over the end.
     """
     found, count = np.flatnonzero(chosen), len(chosen)
     if not len(found):
         return
-    gaps = np.diff(np.r_[found, found[0] + count])
-    if gaps.max() <= 2 * apart:
-        yield int(found[0]), int(found[0]) + count - 1
-        return
-    begin = int(np.argmax(gaps)) + 1
-    found = np.r_[found[begin:], found[:begin] + count]
+    if is_closed:
+        gaps = np.diff(np.r_[found, found[0] + count])
+        if gaps.max() <= 2 * apart:
+            yield int(found[0]), int(found[0]) + count - 1
+            return
+        begin = int(np.argmax(gaps)) + 1
+        found = np.r_[found[begin:], found[:begin] + count]
     for run in np.split(found, np.flatnonzero(np.diff(found) > 2 * apart) + 1):
         yield int(run[0]), int(run[-1])
 

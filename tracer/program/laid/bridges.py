@@ -21,7 +21,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.median import median
 from morfax.motion.plane import cross
 from morfax.motion.polyline import lengths_mm, nearest_mm
@@ -76,11 +76,16 @@ def _first_pair(setup: Setup, lines: list[Line]) -> tuple[Line, Line, Line] | No
     closed = [line for line in lines if is_plain(line)]
     if len(closed) < 2:
         return None
+    ways = [line.places_mm for line in closed]
+    boxes = [bounds(way) for way in ways]
     for bar in _bars(setup.sheet.drawing, lines, closed):
+        low_mm, high_mm = bounds(bar)
         beside = [
             line
-            for line in closed
-            if nearest_mm(bar, line.places_mm).min() < MOUTH * line.width_mm
+            for line, way, (first_mm, last_mm) in zip(closed, ways, boxes, strict=True)
+            if (first_mm < high_mm + MOUTH * line.width_mm).all()
+            and (last_mm > low_mm - MOUTH * line.width_mm).all()
+            and nearest_mm(bar, way).min() < MOUTH * line.width_mm
         ]
         for leg in LEGS if len(beside) == 2 else ():
             one, other = beside

@@ -32,8 +32,13 @@ REACH = 2.2  # of the ink about a place that is looked at
 
 def is_plain(line: Line) -> bool:
     """Whether a line came round, and bears no mark."""
+    return line.ending == "closed" and is_bare(line)
+
+
+def is_bare(line: Line) -> bool:
+    """Whether a line bears no mark, and is no edge of a shape."""
     is_marked = line.is_lead or line.reference_mm is not None or line.marks or line.guides
-    return line.ending == "closed" and not is_marked and not line.loop_from and not line.on_edge
+    return not is_marked and not line.loop_from and not line.on_edge
 
 
 def is_clear(drawing: Drawing) -> bool:

@@ -38,10 +38,10 @@ def with_reliefs() -> Points:
 
 
 def before_and_after(*lines: Points, seed: int = 1) -> tuple[list[Line], list[Line]]:
-    """The closed lines of a sheet as the head ran along them, and as they are bent."""
+    """The lines of a sheet as the head ran along them, and as they are bent."""
     drawing = inked(*lines, width_mm=WIDTH_MM, dpi=DPI, seed=seed)
     setup = Setup(drawing.sheet, Settings(), Operator())
-    found = found_lines(setup, "contours").lines
+    found = found_lines(setup, (1,) if len(lines) == 1 else "contours").lines
     return found, bent(setup, found)
 
 
@@ -49,6 +49,36 @@ def off_mm(line: Line, truth: Points) -> float:
     """How far the line is from a true one, or that from it."""
     way = shapely.LinearRing(line.loop_mm)
     return float(way.hausdorff_distance(shapely.LineString(truth)))
+
+
+def stairs() -> Points:
+    """A stroke of four steps down and four up, 1.2 widths high, whose corners have radii of half a width."""
+    rise = 1.2 * WIDTH_MM * 1j
+    corners = complex(4, 12) + np.cumsum([0, *(4 * [3, -rise]), *(4 * [3, rise]), 3])
+    way, radius_mm = [corners[0]], 0.5 * WIDTH_MM
+    for before, corner, after in zip(corners, corners[1:], corners[2:], strict=False):
+        come, go = (
+            (corner - before) / abs(corner - before),
+            (after - corner) / abs(after - corner),
+        )
+        turns = np.linspace(0.0, np.pi / 2, 30)
+        way.extend(corner + radius_mm * ((np.sin(turns) - 1) * come + (1 - np.cos(turns)) * go))
+    places = np.array([*way, corners[-1]])
+    return np.column_stack([places.real, places.imag])
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_steps_of_an_open_line_are_followed_as_they_are_drawn(seed: int) -> None:
+    """Away from its ends within 50 um; the head's own way is twice as far off. Its ends stay."""
+    (own,), (line,) = before_and_after(stairs(), seed=seed)
+    inner = shapely.box(5.0, 0.0, stairs()[-1, 0] - 1.0, 30.0)
+    true, *ways = (
+        shapely.LineString(way).intersection(inner) for way in (stairs(), own.xy_mm, line.xy_mm)
+    )
+    away = [true.hausdorff_distance(way) for way in ways]
+    assert own.ending == line.ending == "ended"
+    assert away[1] < 50 * UM < away[0], away
+    assert np.array_equal(line.xy_mm[[0, -1]], own.xy_mm[[0, -1]])
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -106,10 +136,10 @@ def test_lines_of_a_drawn_program_are_as_they_are() -> None:
 def test_stretches_that_are_chosen_near_one_another_are_one_and_may_go_over_the_end() -> None:
     chosen = np.zeros(50, bool)
     chosen[[2, 5, 20, 47]] = True
-    runs = list(bent_stretches._runs(chosen, 4))
-    assert runs == [(47, 55), (70, 70)]
-    assert list(bent_stretches._runs(np.ones(50, bool), 4)) == [(0, 49)]
-    assert not list(bent_stretches._runs(np.zeros(50, bool), 4))
+    assert list(bent_stretches._runs(chosen, 4, True)) == [(47, 55), (70, 70)]
+    assert list(bent_stretches._runs(chosen, 4, False)) == [(2, 5), (20, 20), (47, 47)]
+    assert list(bent_stretches._runs(np.ones(50, bool), 4, True)) == [(0, 49)]
+    assert not list(bent_stretches._runs(np.zeros(50, bool), 4, True))
 
 
 def test_a_stretch_ends_away_from_corners() -> None:
