@@ -97,11 +97,9 @@ def _goes_past(far: Side, near: Side, junctions: Junctions) -> bool:
     """Whether a way goes straight on at a junction, or at a corner there passes by a line that does."""
     there = junctions.at(far)
     others = [side for side in there.sides if side not in (far, near)]
-    pairs = (
-        [(far, near)]
-        if len(others) != len((far, near))
-        else [(far, near), (others[0], others[1])]
-    )
+    pairs = [(far, near)]
+    if len(others) == len(pairs[0]):
+        pairs.append((others[0], others[1]))
     return not others or any(
         turned_by(there.leg(one), there.leg(other).turned_round()) < FACING
         for one, other in pairs
