@@ -14,7 +14,6 @@ Exit codes stand beside faults: those of `morfax trace`, 124 over the limit (as 
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Literal
@@ -23,9 +22,8 @@ from morfax.motion.faults import DRAWING
 
 Ending = Literal["done", "incomplete", "fault", "over limit", "no memory", "killed", "mistake"]
 SPOILT: tuple[Ending, ...] = ("no memory", "mistake")  # the worker's memory may be in pieces
-OVER_LIMIT = 124  # exit codes: that of timeout(1), ...
-NO_MEMORY, KILLED = DRAWING, 128 + signal.SIGKILL  # ... as a shell gives it, ...
-MISTAKE = 70  # ... EX_SOFTWARE of sysexits.h
+# exit codes: that of timeout(1); of a signal 9, as a shell gives it; EX_SOFTWARE of sysexits.h
+OVER_LIMIT, NO_MEMORY, KILLED, MISTAKE = 124, DRAWING, 137, 70
 
 
 @dataclass(frozen=True, slots=True)
