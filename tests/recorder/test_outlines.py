@@ -13,7 +13,8 @@ import pytest
 from ezdxf import units
 
 from morfax.motion.faults import DrawingFault
-from morfax.recorder.drawings.curve_chords import FLAT_MM, bezier, bulged, chords_of
+from morfax.motion.usual import INCREMENT_MM
+from morfax.recorder.drawings.curve_chords import bezier, bulged, chords_of
 from morfax.recorder.media import read_outline
 from tests.recorder.dxf_files import UM, dxf, off_circle
 
@@ -27,18 +28,20 @@ ROUNDED = 1e-9  # of a micrometre's thousandth: what float64 leaves of 100 mm
 def test_chords_of_an_arc_are_within_their_distance_and_no_more_than_it_takes(
     radius_mm: float,
 ) -> None:
-    half = bulged(np.array([-radius_mm, 0.0]), np.array([radius_mm, 0.0]), -math.pi, FLAT_MM)
+    half = bulged(
+        np.array([-radius_mm, 0.0]), np.array([radius_mm, 0.0]), -math.pi, INCREMENT_MM
+    )
     whole = np.vstack([[-radius_mm, 0.0], half])
-    assert off_circle(whole, (0, 0), radius_mm) <= FLAT_MM + ROUNDED
-    assert len(half) == chords_of(radius_mm, math.pi, FLAT_MM)
+    assert off_circle(whole, (0, 0), radius_mm) <= INCREMENT_MM + ROUNDED
+    assert len(half) == chords_of(radius_mm, math.pi, INCREMENT_MM)
     if radius_mm > 1:
-        assert off_circle(whole, (0, 0), radius_mm) > 0.9 * FLAT_MM
+        assert off_circle(whole, (0, 0), radius_mm) > 0.9 * INCREMENT_MM
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3])
 def test_chords_of_a_bezier_are_within_their_distance(degree: int) -> None:
     points = 40 * np.random.default_rng(degree).normal(size=(degree + 1, 2))
-    flat = np.vstack([points[:1], bezier(points, FLAT_MM)])
+    flat = np.vstack([points[:1], bezier(points, INCREMENT_MM)])
     t = np.linspace(0, 1, 20_001)[:, None]
     curve = sum(
         math.comb(degree, k) * (1 - t) ** (degree - k) * t**k * points[k]
@@ -47,7 +50,7 @@ def test_chords_of_a_bezier_are_within_their_distance(degree: int) -> None:
     from morfax.motion.contour import distances_mm
 
     assert (
-        distances_mm(np.asarray(curve), [flat]).max() <= FLAT_MM + 0.01 * UM
+        distances_mm(np.asarray(curve), [flat]).max() <= INCREMENT_MM + 0.01 * UM
     )  # of its sampling
 
 
@@ -64,7 +67,7 @@ def test_a_dxf_s_curves_are_within_a_micrometre(tmp_path: Path) -> None:
         space.add_ellipse((0, 0), (50, 0), 0.3)
 
     circle, arc, bulge, old, ellipse = read_outline(dxf(tmp_path / "a.dxf", draw)).contours_mm
-    allowed = FLAT_MM + ROUNDED
+    allowed = INCREMENT_MM + ROUNDED
     assert off_circle(circle, (50, 40), 100) <= allowed and (circle[0] == circle[-1]).all()
     assert off_circle(arc, (0, 0), 30) <= allowed
     assert off_circle(bulge[:-2], (10, 0), 10) <= allowed and bulge[:, 1].min() < -9.9
@@ -81,7 +84,7 @@ def test_a_dxf_s_spline_is_within_a_micrometre(tmp_path: Path) -> None:
     curve = np.array([(v.x, v.y) for v in space[0].construction_tool().approximate(20_000)])
     from morfax.motion.contour import distances_mm
 
-    assert distances_mm(curve, [flat]).max() <= FLAT_MM + 0.01 * UM
+    assert distances_mm(curve, [flat]).max() <= INCREMENT_MM + 0.01 * UM
 
 
 @pytest.mark.parametrize(

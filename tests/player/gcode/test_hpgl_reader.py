@@ -10,8 +10,8 @@ import pytest
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import ProgramFault
+from morfax.motion.usual import INCREMENT_MM
 from morfax.player.gcode.hpgl_reader import read_hpgl
-from morfax.recorder.drawings.curve_chords import FLAT_MM
 from morfax.recorder.gcode.machine import machine
 
 ROUNDED = 1e-9  # mm: what float64 leaves of 100 mm
@@ -49,7 +49,7 @@ def test_units_of_the_user_s_own(tmp_path: Path) -> None:
     )
     square, circle, line = lines(tmp_path / "a.plt", text)
     assert square == pytest.approx(np.array([[10, 10], [110, 10], [110, 20]]), abs=ROUNDED)
-    assert off_circle(circle, (60, 60), 10) <= FLAT_MM + ROUNDED
+    assert off_circle(circle, (60, 60), 10) <= INCREMENT_MM + ROUNDED
     assert line.tolist() == [[10, 0], [20, 0]]
 
 
@@ -61,7 +61,7 @@ def test_arcs_are_within_a_micrometre(
     text = f"IN;PU4000,0;PD;{code}{about[0]},{about[1]},{turned_deg},5;PU;"
     (arc,) = lines(tmp_path / "a.plt", text)
     end = 100 * math.cos(math.radians(turned_deg)), 100 * math.sin(math.radians(turned_deg))
-    assert off_circle(arc, (0, 0), 100) <= FLAT_MM + ROUNDED
+    assert off_circle(arc, (0, 0), 100) <= INCREMENT_MM + ROUNDED
     assert arc[-1] == pytest.approx(end, abs=ROUNDED)
     length = float(np.hypot(*np.diff(arc, axis=0).T).sum())
     assert length == pytest.approx(100 * math.radians(abs(turned_deg)), rel=1e-4)
@@ -69,7 +69,7 @@ def test_arcs_are_within_a_micrometre(
 
 def test_a_circle_is_drawn_about_the_pen_which_comes_back(tmp_path: Path) -> None:
     circle, line = lines(tmp_path / "a.plt", "IN;PU8000,8000;CI2000;PD8000,8400;PU;")
-    assert off_circle(circle, (200, 200), 50) <= FLAT_MM + ROUNDED
+    assert off_circle(circle, (200, 200), 50) <= INCREMENT_MM + ROUNDED
     assert circle[-1] == pytest.approx(circle[0], abs=ROUNDED)
     assert line == pytest.approx(np.array([[200, 200], [200, 210]]))
 
