@@ -213,7 +213,12 @@ def wrong_along(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
 
     A pen's ink is round at a corner, a plotting program's may come to a point: neither is too little.
     """
-    out = np.empty(len(ink.places_mm))
+    return wrong_at(ink, way, sharp)[0]
+
+
+def wrong_at(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
+    """The same, and at which place of the way, fractions included, each place of the ink is, (2, n)."""
+    out = np.empty((2, len(ink.places_mm)))
     _wrong(ink.for_kernel(), np.ascontiguousarray(way), sharp, out)
     return out
 
@@ -228,13 +233,15 @@ def _at_corner(piece, share, sharp):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, _nrt=False)
 def _wrong(ink, way, sharp, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n,) with what a pen along a way (m, 2) mm draws too dark at each place of the ink."""
+    """Fill `out` (2, n) with what a pen along a way (m, 2) mm draws too dark at each place of the ink, and at
+    which place of the way, fractions included, that is.
+    """
     for k in range(len(ink.places_mm)):
         i, t, away_mm = _nearest(way, ink.places_mm[k, 0], ink.places_mm[k, 1])
         drawn = pen.ink_at(min(away_mm, ink.known_mm[k]), ink.half_mm, ink.softness_mm)
-        out[k] = drawn - ink.darkness[k]
-        if out[k] < 0 and _at_corner(i, t, sharp):
-            out[k] = 0.0
+        out[0, k], out[1, k] = drawn - ink.darkness[k], i + t
+        if out[0, k] < 0 and _at_corner(i, t, sharp):
+            out[0, k] = 0.0
 
 
 @njit(cache=True, _nrt=False)

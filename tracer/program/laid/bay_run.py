@@ -30,7 +30,7 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import set_fields
-from morfax.tracer.program.laid.rim_bays import RimBay
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.folding_rule import Rule
 
@@ -40,7 +40,7 @@ class Bay(NamedTuple):
 
     first_mm: float
     last_mm: float
-    rule: Rule | RimBay
+    rule: Rule | LaidWay
     gain: float
 
     def moved(self, by_mm: float, round_mm: float) -> Bay:

@@ -43,8 +43,8 @@ from morfax.tracer.program.against_ink.off_ink import (
     wrong_about,
 )
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_bare, is_clear
-from morfax.tracer.program.laid.rim_bays import RimBay
 from morfax.tracer.program.laid.spline_fit import (
     CORNER_RAD,
     MAYBE_RAD,
@@ -236,7 +236,7 @@ class _Way:
             return None
         if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
             return None
-        rule = RimBay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
+        rule = LaidWay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
         return Bay(first * self.step_mm, last * self.step_mm, rule, gain)
 
 

@@ -32,6 +32,7 @@ from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import OF_WIDTH
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
     LEGS,
     MOUTH,
@@ -42,7 +43,7 @@ from morfax.tracer.program.laid.line_parts import (
     part_of,
     run_on,
 )
-from morfax.tracer.program.laid.rim_bays import OPEN, RimBay, is_a_pen, ways_within_rims
+from morfax.tracer.program.laid.rim_bays import OPEN, is_a_pen, ways_within_rims
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.beside_itself import shortest
 from morfax.tracer.tangles.pen import away_from
@@ -156,7 +157,7 @@ def _joined(setup: Setup, pair: tuple[Line, Line], bar: Array, leg_mm: float) ->
 
 def _sides(
     setup: Setup, width_mm: float, ways: tuple[Array, Array], legs: tuple[int, ...], bar: Array
-) -> tuple[RimBay, RimBay] | None:
+) -> tuple[LaidWay, LaidWay] | None:
     """The ways along both sides of a bar, from the end of the first of two ways to a leg, so many places, of
     the second, and from its end to a leg of the first; None if they are no two sides, or do not explain the
     ink.
@@ -164,7 +165,7 @@ def _sides(
     drawing = setup.sheet.drawing
     view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
     # 1. the shortest on each side
-    found = list[RimBay]()
+    found = list[LaidWay]()
     for into, out_of, leg in ((*ways, legs[1]), (*ways[::-1], legs[0])):
         own = np.vstack([into[-2:], out_of[: leg + 1]])
         every = ways_within_rims(drawing, view, own, bar)

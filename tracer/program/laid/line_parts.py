@@ -18,7 +18,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import Led
 from morfax.tracer.program.laid.bay_run import Bay, laid
-from morfax.tracer.program.laid.rim_bays import RimBay
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.setup import Setup
 
 # In widths of the line; chosen by trial on plates with notches, tongues, keyholes and necks:
@@ -63,7 +63,7 @@ def back_along(line: Line) -> Line:
     return replace(line, xy_mm=line.xy_mm[::-1], led=line.led.turned_round(len(line.xy_mm)))
 
 
-def run_on(setup: Setup, parts: Sequence[Line], sides: Sequence[RimBay]) -> Line:
+def run_on(setup: Setup, parts: Sequence[Line], sides: Sequence[LaidWay]) -> Line:
     """Parts of lines as one closed line, with the head run along a side from the end of each part onto the
     next, or the first.
     """

@@ -37,6 +37,7 @@ from morfax.tracer.program.against_ink.unexplained import (
     unexplained,
 )
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
     LEGS,
     MOUTH,
@@ -45,7 +46,7 @@ from morfax.tracer.program.laid.line_parts import (
     is_clear,
     is_plain,
 )
-from morfax.tracer.program.laid.rim_bays import RimBay, is_a_pen, rim_bays
+from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
@@ -246,7 +247,7 @@ class _Bays:
                 best = Bay(seen.first * step_mm, seen.last * step_mm, rule, gain)
         return best
 
-    def _gain(self, seen: Stretch, rule: Rule | RimBay, suspect: Suspect) -> float | None:
+    def _gain(self, seen: Stretch, rule: Rule | LaidWay, suspect: Suspect) -> float | None:
         """How much better a rule explains the ink than the way does; None if it does not, or badly."""
         width_mm, own, ink = self.line.width_mm, seen.own, seen.ink
         widths = rule.length_mm / width_mm

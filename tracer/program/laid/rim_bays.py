@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -29,6 +28,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.ink.rim import felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE
 from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.compass import between_corners
@@ -42,39 +42,7 @@ LOOP = 2.0  # of the way: a longer loop at a crossing is none of a narrow end
 OPEN = 0.2  # in the mean between its sides: a way with less runs out and back along one line
 
 
-class RimBay(NamedTuple):
-    """A way as stretches (n, 2) mm between sharp corners, half the pen's width, mm, and its misfit."""
-
-    between_corners: tuple[Array, ...]
-    half_mm: float
-    misfit: float = math.inf
-
-    @property
-    def way(self) -> Array:
-        """The way (n, 2) mm."""
-        return np.vstack(self.between_corners)
-
-    @property
-    def ahead(self) -> Array:
-        """From its first place to the next, (x, y) mm."""
-        places = self.between_corners[0]
-        return np.asarray(places[1] - places[0])
-
-    @property
-    def length_mm(self) -> float:
-        """The length of the way."""
-        return length_mm(self.way)
-
-    def stretches(self) -> list[Array]:
-        """The way as stretches (n, 2) mm between sharp corners."""
-        return list(self.between_corners)
-
-    def turned_round(self) -> RimBay:
-        """The same from its last place to its first."""
-        return self._replace(between_corners=tuple(s[::-1] for s in self.between_corners[::-1]))
-
-
-def rim_bays(drawing: Drawing, view: View, own: Array, beyond: Array) -> Iterator[RimBay]:
+def rim_bays(drawing: Drawing, view: View, own: Array, beyond: Array) -> Iterator[LaidWay]:
     """Those ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
     its first place to its last, that are longer than the stretch and go round more than one line.
     """
@@ -85,7 +53,7 @@ def rim_bays(drawing: Drawing, view: View, own: Array, beyond: Array) -> Iterato
 
 def ways_within_rims(
     drawing: Drawing, view: View, own: Array, beyond: Array
-) -> Iterator[RimBay]:
+) -> Iterator[LaidWay]:
     """The ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
     its first place to its last, that do not cross themselves.
     """
@@ -98,7 +66,7 @@ def ways_within_rims(
             continue
         for way in _between(rim.way(half_mm), own, view.width_mm):
             if not len(crossings_of(way, np.arange(len(way) - 1))):
-                yield RimBay(tuple(between_corners(way)), half_mm)
+                yield LaidWay(tuple(between_corners(way)), half_mm)
 
 
 def _outlines(drawing: Drawing, about: Array, width_mm: float) -> Iterator[Array]:

@@ -33,6 +33,7 @@ from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.program.against_ink.bars import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.laid.bay_run import Bay, laid
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
     OF_LOOP,
     REACH,
@@ -42,7 +43,7 @@ from morfax.tracer.program.laid.line_parts import (
     part_of,
     run_on,
 )
-from morfax.tracer.program.laid.rim_bays import RimBay, ways_within_rims
+from morfax.tracer.program.laid.rim_bays import ways_within_rims
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import partners, shortest
@@ -230,8 +231,8 @@ class _Rims(NamedTuple):
     comes; whether they end on the other line; and what they leave unexplained for each width.
     """
 
-    one: RimBay
-    other: RimBay
+    one: LaidWay
+    other: LaidWay
     is_exchanged: bool
     left: float
 
@@ -246,7 +247,7 @@ def _rims(
     best: _Rims | None = None
     for is_exchanged in (False, True):
         onto = ways[::-1] if is_exchanged else ways
-        found = list[list[RimBay]]()
+        found = list[list[LaidWay]]()
         for into, out_of in zip(ways, onto, strict=True):
             own = np.vstack([into[:2], out_of[-2:]])
             every = ways_within_rims(drawing, view, own, about)
