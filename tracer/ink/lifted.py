@@ -47,10 +47,8 @@ ON_IT = 0.5  # widths: its straight way on has come to the others
 TOUCHES = 1.0  # widths: two that both end here end beside each other, in ink that runs together
 AHEAD = 12.0  # times its length a leg says where its line goes on
 STEP_MM = 0.01  # of ends that are tried
-FIRST_WIDTHS, MORE = (
-    4.0,
-    4,
-)  # ends that are tried first, and times as many if that was not enough
+FIRST_WIDTHS = 4.0  # of ends that are tried first
+MORE = 4  # times as many if that was not enough
 ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
 ROUNDS = 3  # in which lines that end in each other's ink have their ends found
 EVERY_PX = 0.7  # a place is looked at

@@ -49,3 +49,16 @@ def test_the_nearest_of_the_others_is_that_of_all_their_places() -> None:
     off_mm = np.hypot(*(places[:, None] - every).transpose(2, 0, 1))
     assert away_mm == pytest.approx(off_mm.min(axis=1), abs=1e-12)  # rounding, mm
     assert np.array_equal(nearest_mm, every[off_mm.argmin(axis=1)])
+
+
+@pytest.mark.parametrize(("way_mm", "nearest"), [(0.99, (0.0, 0.99)), (1.01, (1.0, 0.0))])
+def test_a_way_counts_where_it_is_just_nearer_than_the_others(
+    way_mm: float, nearest: tuple[float, float]
+) -> None:
+    line, way = np.array([[1.0, 0.0]]), np.array([[0.0, way_mm], [0.0, 2.0]])
+    rows = np.vstack([line, (np.nan, np.nan)])
+    away_mm, nearest_mm = lifted._Others(rows, Neighbours(line), [way]).nearest(
+        np.zeros((1, 2))
+    )
+    assert away_mm[0] == pytest.approx(math.hypot(*nearest))
+    assert tuple(nearest_mm[0]) == nearest
