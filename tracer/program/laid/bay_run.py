@@ -50,8 +50,8 @@ class Bay(NamedTuple):
 
 
 def laid(setup: Setup, line: Line, bays: Sequence[Bay], round_mm: float) -> Line:
-    """A closed line, so long by its thinned places, with the head run along the rules of some bays; an open
-    one is infinitely long, and no bay reaches its ends.
+    """A line, so long by its thinned places, with the head run along the rules of some bays, none of which
+    reaches an end of an open one.
     """
     # 1. begun where no bay is
     at_end = [b for b in bays if b.first_mm < EVERY_MM or b.last_mm > round_mm - EVERY_MM]

@@ -16,7 +16,6 @@ Source: our own.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -170,7 +169,7 @@ class _Way:
     def bent(self, felt: Felt) -> Line:
         """The line as it is, or along the splines that explain its ink better."""
         bays = [bay for off in self._off(felt) if (bay := self._bay(*off, felt)) is not None]
-        round_mm = len(self.places) * self.step_mm if self.is_closed else math.inf
+        round_mm = len(self.places) * self.step_mm
         bays = apart(bays, round_mm)
         return laid(self.setup, self.line, bays, round_mm) if bays else self.line
 

@@ -81,6 +81,15 @@ def test_steps_of_an_open_line_are_followed_as_they_are_drawn(seed: int) -> None
     assert np.array_equal(line.xy_mm[[0, -1]], own.xy_mm[[0, -1]])
 
 
+@pytest.mark.parametrize("hook_widths", [1.0, 1.5])
+def test_hooks_at_the_ends_of_an_open_line_are_left_as_the_head_ran(hook_widths: float) -> None:
+    """There is no clean line on their far side, from which a spline could go on."""
+    hook_mm = hook_widths * WIDTH_MM
+    truth = polyline((5, 12 + hook_mm), (5, 12), (30, 12), (30, 12 - hook_mm))
+    (own,), (line,) = before_and_after(truth)
+    assert own.ending == "ended" and line is own
+
+
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_reliefs_of_inner_corners_are_followed_as_they_are_drawn(seed: int) -> None:
     """Within 45 um, half a pixel; the head's own way is farther off. It jumps onto no stretch: no
