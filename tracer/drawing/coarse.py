@@ -44,6 +44,7 @@ FULL, BETWEEN = 0.75, 0.03
 MOST_PX = 1 << 22  # of a sheet, before: large sheets are no coarse scans, and need the memory
 # pixels, as `noise.Within` says: a line of 1.5 looks 1.8 to 2.12 wide, one of 2 looks 2.16 or more; by trial
 SEEN_PX = 2.14
+WANTED_TIMES = 3.0  # a line of one pixel then has three
 DPI_STEP = 50  # of the resolutions that are advised
 
 
@@ -68,7 +69,7 @@ def finer(darkness: Darkness, times: int, seen_px: float = math.inf) -> Darkness
 
 def wanted_dpi(pitch_mm: float) -> int:
     """The resolution that is enough where lines are a pixel wide."""
-    return finer_dpi(pitch_mm, FEWEST_PX)
+    return finer_dpi(pitch_mm, WANTED_TIMES)
 
 
 def finer_dpi(pitch_mm: float, times: float) -> int:
