@@ -82,7 +82,8 @@ class WayIn:
     incoming: Leg
     trail: Trail
     _felt: dict[tuple[float, float], list[Leg]] = field(default_factory=dict)
-    _reaches_mm: dict[int, float] = field(default_factory=dict)  # by the leg itself
+    # by the leg itself, which is kept: another that is made later may be at its place
+    _reaches_mm: dict[int, tuple[Leg, float]] = field(default_factory=dict)
 
     def legs_around(self, centre: Array) -> list[Leg]:
         """The clean legs that leave a place (see `rings`), but for the way in."""
@@ -97,8 +98,8 @@ class WayIn:
         mark.
         """
         if id(leg) not in self._reaches_mm:
-            self._reaches_mm[id(leg)] = self._felt_reach_mm(leg)
-        return self._reaches_mm[id(leg)]
+            self._reaches_mm[id(leg)] = leg, self._felt_reach_mm(leg)
+        return self._reaches_mm[id(leg)][1]
 
     def _felt_reach_mm(self, leg: Leg) -> float:
         """The same, as it is felt."""
