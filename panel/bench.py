@@ -10,7 +10,6 @@ Questions: one drawing lies on the bench at a time; another server on another po
 from __future__ import annotations
 
 import asyncio
-import signal
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -264,7 +263,7 @@ class Bench:
     def _ended(self, message: dict[str, Any]) -> None:
         """The worker ended by itself, or was ended by the operator."""
         if self.busy is not None:
-            is_killed = message["code"] in (-signal.SIGKILL, 128 + signal.SIGKILL)
+            is_killed = message["code"] in (-9, 137)
             why = "too little memory, maybe" if is_killed else f"code {message['code']}"
             self.tell(
                 "fault",

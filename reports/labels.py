@@ -25,7 +25,7 @@ from morfax.reports.plate import Line, Mark, Place, Plate, Spot, Words, filled_i
 
 CELL_PT = 2.0
 LETTER = 0.62  # width of a letter over its size; DejaVu's own is 0.6 on average
-AWAY_PT = (7.0, 14.0, 24.0, 36.0, 50.0)  # from a place to its name
+OFFSETS_PT = (7.0, 14.0, 24.0, 36.0, 50.0)  # from a place to its name
 LINE_COST, SPOT_COST, NAME_COST = 1.0, 2.0, 100.0
 # more are shortened to a letter and a number; the legend says what the letter means
 FEW_NAMES = 12
@@ -149,7 +149,7 @@ def _wide_pt(words: Words) -> float:
 
 def _offsets(wide_pt: float, high_pt: float) -> Iterator[Place]:
     """Offsets of a name's lower left corner from its place, the nearest first."""
-    for away in AWAY_PT:
+    for away in OFFSETS_PT:
         for side, up in SIDES:
             dx = away if side > 0 else -away - wide_pt if side < 0 else -0.5 * wide_pt
             dy = away if up > 0 else -away - high_pt if up < 0 else -0.5 * high_pt

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 TITLE_PT = 10.0
-WORDS_PT = (
-    8.0  # legends, names of parts and places, what stands at lines, numbers along small axes
-)
+WORDS_PT = 8.0  # legends, names, what stands at lines, numbers along small axes
 LINE_PT = 1.0  # paths
 THIN_PT = 0.8  # curves over time, and what paths are held against
 BOLD_PT = 2 * THIN_PT  # paths whose colour tells a figure

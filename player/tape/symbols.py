@@ -32,7 +32,8 @@ GATES = 3  # of a symbol: early, on, late
 # of the full strength, a quarter of a symbol beside one that passes over to the other sign: cos pi/4
 PASSING = math.sqrt(0.5)
 PARTS = 4  # of a frame, each with its own phase
-FIGURES = PARTS + GATES  # of a track's times
+# of a track's times: the phase of each part; how late it is, its swing, its error
+FIGURES = PARTS + 3
 WORD = SYNC.astype(np.float64)
 
 

@@ -107,8 +107,7 @@ def thin_note(pitch_mm: float) -> str:
     """What the operator should know of lines with grain that are too thin for the slit."""
     return (
         f"the lines have grain, as of a pencil, and are fewer than {FEWEST_PX:g} pixels wide, so that it is "
-        "not averaged: "
-        "the path strays by up to a line's width; scan at "
+        "not averaged: the path strays by up to a line's width; scan at "
         f"{finer_dpi(pitch_mm, ENOUGH_TIMES)} dpi, or ink the lines over"
     )
 

@@ -21,7 +21,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.plane import left_of, unit
-from morfax.motion.polyline import APART_MM, length_mm
+from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import ONE_PEN, Window
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
@@ -35,6 +35,7 @@ from morfax.tracer.sensing.photocell import LEVEL
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on drawings of nets.
+APERTURES_MM = 0.02  # apertures are whole steps of this
 PENS_SHARE = 0.1  # of the ink is drawn by a pen that is worth an aperture of its own
 # two lines with a slit between are darker so far beside their middle, of their ink's width, by so much
 SLIT, LIGHTER = 0.25, 1.1
@@ -86,7 +87,7 @@ def _few(own_mm: Array, pixels: Sequence[int]) -> Array:
     if not len(own_mm):
         return own_mm
     # 1. each pen's: the commonest of what is left, and all about it
-    steps, inked = np.round(own_mm / APART_MM), np.asarray(pixels, float)
+    steps, inked = np.round(own_mm / APERTURES_MM), np.asarray(pixels, float)
     least, made, left = PENS_SHARE * inked.sum(), list[float](), np.ones(len(steps), bool)
     while not made or inked[left].sum() > least:
         common = float(np.argmax(np.bincount(steps[left].astype(int), inked[left])))
@@ -99,7 +100,7 @@ def _few(own_mm: Array, pixels: Sequence[int]) -> Array:
     if (steps > (1 + ONE_PEN) * max(made)).any():
         made.append(float(steps.max()))
     nearest = np.argmin(np.abs(steps[:, None] - np.array(made)), axis=1)
-    return np.asarray(APART_MM * np.array(made)[nearest])
+    return np.asarray(APERTURES_MM * np.array(made)[nearest])
 
 
 def _softened(places: Array, reach: int) -> Array:

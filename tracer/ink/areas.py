@@ -117,7 +117,7 @@ def _exchange_neighbours(orders: Orders, ways: list[list[Edge]], missing: int) -
     heapify(gaps)
     while missing > 0 and gaps:
         gap, number, k = heappop(gaps)
-        if rounds.gap(number, k) == gap and rounds.parts(number, k):
+        if rounds.gap(number, k) == gap and rounds.exchanged(number, k):
             missing -= 2
             for changed in rounds.gaps(number, range(k - 2, k + 2)):
                 heappush(gaps, changed)
@@ -155,7 +155,7 @@ class _Rounds:
         places = range(count) if some is None else sorted({k % count for k in some})
         return [(self.gap(number, k), number, k) for k in places]
 
-    def parts(self, number: int, k: int) -> bool:
+    def exchanged(self, number: int, k: int) -> bool:
         """Exchange two neighbours if that parts a way; returns whether it does."""
         edges = self._orders[number]
         three = edges[k - 1], edges[k], edges[(k + 1) % len(edges)]
@@ -169,10 +169,10 @@ class _Rounds:
         onto = self._onto
         onto[a], onto[b], onto[n] = onto[n], onto[a], onto[b]
         for first in (b, n):
-            self._is_a_way(first)
+            self._take_down(first)
         return True
 
-    def _is_a_way(self, first: Edge) -> None:
+    def _take_down(self, first: Edge) -> None:
         """Take down that the edges from one on are a way of their own."""
         edge = first
         while self._way[edge] != self._count:

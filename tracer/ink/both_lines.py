@@ -17,10 +17,10 @@ from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.ink.felt import FEWEST_STATIONS
 from morfax.tracer.ink.run import Run, smooth
-from morfax.tracer.limits import AS_WIDE
 
 # All limits below were chosen by trial on drawings of nets and on line art.
-# ink of two lines that becomes wider by `AS_WIDE` of its way has come to others that cross it
+# of its way: ink of two lines that becomes wider by more has come to others that cross it
+FLARE = 0.15
 TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
 # widths from there: the slope of the ink's width up to the nearer place ...
 CROSSED = 3.0, 6.0
@@ -46,7 +46,7 @@ def strands(stations: Run, width_mm: float) -> list[Run]:
     at = np.arange(len(stations))
     widths = np.interp(at, known, stations.widths_mm[known])
     reach = max(1, round(0.5 * width_mm / stations.view.step_mm))
-    part_of = _without_flares(widths, known, reach, AS_WIDE * reach * stations.view.step_mm)
+    part_of = _without_flares(widths, known, reach, FLARE * reach * stations.view.step_mm)
     if part_of is None:
         return []
     return within_rims(stations.part(*part_of), widths[slice(*part_of)], width_mm)

@@ -46,7 +46,7 @@ from morfax.tracer.sensing.view import View
 Flags = NDArray[np.bool_]
 
 # All limits below were chosen by trial on drawings of nets.
-REACH = 1.0  # widths and pixels within which the edges are looked for
+REACH = 1.0  # widths, with `REACH_PX`, within which the edges are looked for
 GUIDED_WIDTHS = 0.75  # to either side of a place: what its heading is taken over
 ROUGHER = 2.5  # standard deviations of a rough line's own width: so far a station may differ
 FEWEST_STATIONS = 5  # of a clean run

@@ -38,9 +38,8 @@ FALLS = 0.05  # of the thinnest width: behind a maximum
 # a sine of any height 0.66 and 0.60
 UP = 0.2, 0.4, 0.8
 STRAIGHT, LEVELS_OFF = 0.62, (0.3, 0.56)
-FURTHER = (
-    3.5  # widths to either side of a step, from `CLEAR_WIDTHS` on: it is averaged over two
-)
+# widths to either side of a step, from `CLEAR_WIDTHS` on: it is averaged over two
+FURTHER = 3.5
 # of the thinnest width: so near to it is one line; so much broader are two
 ONE, STEP = 0.06, 0.2
 LEVEL = 0.3  # of the step, by which the ink beyond it may differ

@@ -52,7 +52,8 @@ def turned_round(setup: Setup, line: Line) -> Line:
         return replace(
             line, xy_mm=line.xy_mm[::-1], led=led, junctions_mm=line.junctions_mm[::-1]
         )
-    silent, begin_mm, end_mm = replace(setup, progress=None), line.xy_mm[0], line.xy_mm[-1]
+    silent = replace(setup, progress=None)
+    begin_mm, end_mm = line.xy_mm[0], line.xy_mm[-1]
     # other turns are for what closes, and what closes at the one end does not come to the other
     may_close = np.hypot(*(end_mm - begin_mm)) < ABOUT_WIDTHS * line.width_mm
     turns = bool(may_close) or setup.operator.direction is not None

@@ -81,5 +81,5 @@ def test_exchanged_neighbours_part_a_way_where_counting_all_ways_says_so(seed: i
         rounds, tried = areas._Rounds(orders, before), {**orders, number: [*orders[number]]}
         tried[number][k - 1], tried[number][k] = tried[number][k], tried[number][k - 1]
         after = areas._ways(areas._onto(tried))
-        assert rounds.parts(number, k) == (len(after) > len(before))
+        assert rounds.exchanged(number, k) == (len(after) > len(before))
         assert len(areas._ways(rounds._onto)) == max(len(after), len(before))
