@@ -16,7 +16,6 @@ Source: our own.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -35,48 +34,26 @@ if TYPE_CHECKING:
 # Misfits, in squares of the line's width; by trial on bent strokes with others across their corners.
 CLEAR = 0.25  # up to which a redrawing explains the ink
 AS_WELL = 0.035  # one explains the ink as well as another: a little more than a vertex costs
-LEGS = 4
+LEGS = 4  # there are three ways to join them
 
 
 def redrawn(view: View, legs: Sequence[Leg], turnings: Array) -> Mapping[Pair, Array]:
-    """The vertices (n, 2) mm from the first to the second leg of each pair; none if the ink about four legs
+    """The vertices (n, 2) mm from the first to the second leg of each pair; none if the ink about the legs
     does not end in them, or no redrawing explains it.
     """
+    from morfax.tracer.tangles.between_legs import tangle_between
     from morfax.tracer.tangles.sketch import Sketch, redrawings
-    from morfax.tracer.tangles.tangle import tangle_ahead
 
-    tangle = tangle_ahead(view, legs[0])
-    numbers = _numbers(tangle.legs, legs, view.width_mm) if tangle.whole else []
-    if sorted(numbers) != list(range(LEGS)):
+    tangle = tangle_between(view, legs)
+    if tangle is None:
         return {}
-    # 1. the crossing's legs are felt further than the tangle's, and tell their lines better
-    own = [legs[0], *(legs[n].turned_round() for n in numbers[1:])]
-    sketch = Sketch.of(view, replace(tangle, legs=own))
-    plans = _by_legs(sketch, own, turnings[np.ix_(numbers, numbers)])
-    # 2. held against the ink, with those that may turn anywhere
-    freely = redrawings(sketch)[0]
+    sketch = Sketch.of(view, tangle)
+    plans, freely = _by_legs(sketch, legs, turnings), redrawings(sketch)[0]
     least = min([freely, *plans], key=lambda way: way.cost)
     if least.misfit > CLEAR or freely.strokes:
         return {}
     best = next((way for way in plans if way.cost < least.cost + AS_WELL), freely)
-    found = dict[Pair, Array]()
-    for (a, b), vertices in zip(best.pairs, best.vertices, strict=True):
-        one, other = numbers[a], numbers[b]
-        found[min(one, other), max(one, other)] = vertices if one < other else vertices[::-1]
-    return found
-
-
-def _numbers(found: Sequence[Leg], legs: Sequence[Leg], width_mm: float) -> list[int]:
-    """Which of a crossing's legs each of a tangle's is, the first of both being the same; -1 for none."""
-    from morfax.tracer.tangles.strands import same_line
-
-    numbers = [0]
-    for leg in found[1:]:
-        same = (
-            n for n in range(1, len(legs)) if same_line(leg, legs[n].turned_round(), width_mm)
-        )
-        numbers.append(next(same, -1))
-    return numbers
+    return dict(zip(best.pairs, best.vertices, strict=True))
 
 
 def _by_legs(sketch: Sketch, legs: Sequence[Leg], turnings: Array) -> list[Redrawing]:
@@ -96,9 +73,8 @@ def _by_legs(sketch: Sketch, legs: Sequence[Leg], turnings: Array) -> list[Redra
 
 def _joints(legs: Sequence[Leg], pair: Pair, turning: float) -> list[Array]:
     """The vertices (n, 2) mm over which a way may go from one leg to another, by these two alone."""
-    one, other = (legs[n] if n == 0 else legs[n].turned_round() for n in pair)
-    out, joints = other.turned_round(), list[Array]()
-    corner = Corner.of(one, out)
+    one, other = legs[pair[0]], legs[pair[1]]
+    corner, joints = Corner.of(one, other.turned_round()), list[Array]()
     if corner is not None and is_corner(corner, one.width_mm):
         joints.append(corner.vertex_mm[None])
     if turning < CORNERED:
