@@ -13,7 +13,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
@@ -25,15 +25,18 @@ from morfax.motion.curves import hermite
 from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
 from morfax.tracer.effort import EVERY_MM
+from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
 from morfax.tracer.ink.partners import CORNERED, Pair, partners, turnings, way_through
+from morfax.tracer.ink.redrawn_crossing import LEGS, redrawn
 from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.strands import stretches_over
 
 # of a stretch within a crossing, along which ways go; by trial on drawings of nets
 COVERED_SHARE = 0.7
@@ -77,8 +80,29 @@ class Crossing:
         """The legs, by their numbers here, that are one line."""
         if len(self.legs) == 2:
             return [] if self._tips else [(0, 1)]
-        costs = turnings(self.legs, self._width_mm)
-        return self._by_rims(partners(costs), costs)
+        return sorted(self._vertices) or self._by_turnings
+
+    @cached_property
+    def _turnings(self) -> Array:
+        """By how much a way turns from each leg to each other, rad."""
+        return turnings(self.legs, self._width_mm)
+
+    @cached_property
+    def _by_turnings(self) -> list[Pair]:
+        """The pairs that turn least."""
+        return self._by_rims(partners(self._turnings), self._turnings)
+
+    @cached_property
+    def _vertices(self) -> Mapping[Pair, Array]:
+        """Where the ways between the legs of each pair turn, (n, 2) mm, if legs that meet may be told by
+        their ink only.
+        """
+        pairs, costs = self._by_turnings, self._turnings
+        if len(self.legs) != LEGS or len(pairs) != LEGS // 2:
+            return {}
+        if max(costs[pair] for pair in pairs) < SMOOTH:
+            return {}
+        return redrawn(self.views[0], self.legs, costs)
 
     @property
     def _width_mm(self) -> float:
@@ -116,10 +140,23 @@ class Crossing:
 
     @cached_property
     def ink(self) -> SharedInk | None:
-        """Its own ink and the ways through it; None if nothing was felt within it."""
-        if not self.inked:
+        """Its own ink and the ways through it; None if nothing is known of it."""
+        if not self.inked and not self._vertices:
             return None
-        return replace(self._inked, ways=self._hermites(self.pairs))
+        vertices = [self._vertices.get(pair) for pair in self.pairs]
+        ways = [
+            smooth if places is None or not len(places) else self._over(pair, places)
+            for pair, smooth, places in zip(
+                self.pairs, self._hermites(self.pairs), vertices, strict=True
+            )
+        ]
+        return replace(self._inked, ways=ways, vertices=vertices)
+
+    def _over(self, pair: Pair, vertices: Array) -> Array:
+        """The way from a leg over vertices to its partner, (n, 2) mm."""
+        one, onto = self.legs[pair[0]], self.legs[pair[1]].turned_round()
+        stands = one.end_mm, one.heading_rad
+        return np.vstack(stretches_over(stands, one, vertices, onto))
 
     @cached_property
     def passing_mm(self) -> Array:
