@@ -131,6 +131,18 @@ def test_a_filled_slot_is_a_loop_if_it_is_as_broad_as_two_lines(
         assert loop.length_mm == pytest.approx(length_mm(slot), rel=0.02)
 
 
+@pytest.mark.parametrize(
+    ("wide_widths", "may_be"), [(1.0, False), (1.9, True), (2.5, True), (3.2, False)]
+)
+def test_ink_of_one_line_or_of_three_is_not_that_of_two(
+    wide_widths: float, may_be: bool
+) -> None:
+    """A dash of 4 mm, filled; between 1.15 and 2.7 lines broad it may be two."""
+    off_mm = np.linspace(-0.5, 0.5, 7) * (wide_widths - 1) * WIDTH_MM
+    loops = loops_of(*(polyline((14, 20 + off), (18, 20 + off)) for off in off_mm))
+    assert loops._is_broad(patch_at(loops, 16, 20)) == may_be
+
+
 def test_a_loop_as_a_line_has_its_number_and_is_closed() -> None:
     loops = loops_of(HOLE)
     loop = loops.of_patch(patch_at(loops, 14, 20.5), WIDTH_MM)

@@ -52,6 +52,14 @@ def test_a_slit_that_the_head_passed_by_has_its_way_within_the_rim() -> None:
     assert all(not len(crossings_of(each.way, np.arange(len(each.way) - 1))) for each in every)
 
 
+def test_a_bay_is_left_over_a_width_and_a_half_where_the_head_ran_aside() -> None:
+    """It ran 0.08 mm below its line; half of a leg from its ends the way is half as far off, within 20 um."""
+    _, (bay,) = ways(SLIT, OVER - np.array((0.0, 0.08)))
+    for x in (19.6 - 0.375, 16.9 + 0.375):
+        beside = bay.way[np.abs(bay.way[:, 0] - x) < 0.03]
+        assert beside[:, 1] == pytest.approx(19.96, abs=0.02)
+
+
 def test_a_stretch_that_is_not_on_the_rims_way_has_none() -> None:
     """Half a millimetre below the line, as wide as the line is: the rim is there another line's."""
     assert ways(SLIT, OVER - [0, WIDTH_MM]) == ([], [])
