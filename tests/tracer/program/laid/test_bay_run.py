@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import evenly, nearest_mm
+from morfax.motion.usual import THINNED
 from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL, REDRAWN, Led
@@ -84,6 +87,11 @@ def test_a_bay_is_run_where_it_lies_wherever_the_line_begins(begin_mm: float) ->
     assert np.hypot(*(mended.xy_mm[0] - mended.xy_mm[-1])) < 1.05 * STEP_MM + EVERY_MM
     laid_mm = mended.led.lengths_mm(mended.xy_mm)[REDRAWN]
     assert laid_mm == pytest.approx(4.5 + 6.0, abs=0.1)
+    # who led is told for each position: those of the cell are the line's own, the others are not
+    own = set(map(tuple, line.xy_mm.tolist()))
+    are_own = np.array([tuple(place) in own for place in mended.xy_mm.tolist()])
+    by_cell = mended.led.of(len(mended.xy_mm)) == CELL
+    assert are_own[by_cell].all() and are_own[~by_cell].mean() < 0.01
     away_mm = nearest_mm(mended.xy_mm[mended.led.of(len(mended.xy_mm)) == CELL], NOTCH)
     assert away_mm.min() > 1.4
 
@@ -95,6 +103,18 @@ def test_the_head_does_not_stop_where_it_comes_to_a_bay_and_leaves_it() -> None:
     leaders = mended.led.of(len(mended.xy_mm))
     for at in np.flatnonzero(leaders == REDRAWN)[[0, -1]]:
         assert speed_mm_s[at - 60 : at + 60].min() > 7.0
+
+
+def test_the_head_leaves_a_bay_as_slowly_as_the_line_goes_on() -> None:
+    """The line was run at 5 mm/s: so slow is the head at the end of the bay, within a quarter of that."""
+    line, _ = with_notch(40.0, 5.5, 10.0)
+    own = evenly(line.xy_mm, 0.5 * STEP_MM)
+    own = own[: len(own) // THINNED * THINNED]
+    half = replace(line, xy_mm=own, led=Led.along(np.full(len(own), CELL, np.int8)))
+    rule = LaidWay((polyline((10.5, 5), (15, 5)),), 0.5 * WIDTH_MM)
+    mended = laid(Setup(inked(WAY).sheet), half, [Bay(45.5, 50.0, rule, 1.0)], 80.0)
+    last = np.flatnonzero(mended.led.of(len(mended.xy_mm)) == REDRAWN)[-1]
+    assert steps_mm(mended)[last - 2 : last + 30] == pytest.approx(0.5 * STEP_MM, rel=0.25)
 
 
 def test_a_closed_line_that_is_begun_elsewhere_is_led_by_the_same() -> None:

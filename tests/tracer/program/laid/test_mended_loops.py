@@ -143,6 +143,15 @@ def test_ink_of_one_line_or_of_three_is_not_that_of_two(
     assert loops._is_broad(patch_at(loops, 16, 20)) == may_be
 
 
+def test_filled_slots_are_loops_only_where_pixels_show_the_seam() -> None:
+    """Not on a scan whose pixels were made finer, nor among the edges of filled shapes."""
+    sheet = loops_of(rectangle(14, 20, 3.0, 0.45)).sheet
+    for more in ({}, {"finer": 2}, {"edges_mm": (PLATE,)}):
+        drawing = replace(sheet.drawing, **more)
+        loops = SmallLoops(replace(sheet, drawing=drawing), Settings())
+        assert bool(loops.slots) == (more == {})
+
+
 def test_a_loop_as_a_line_has_its_number_and_is_closed() -> None:
     loops = loops_of(HOLE)
     loop = loops.of_patch(patch_at(loops, 14, 20.5), WIDTH_MM)

@@ -61,8 +61,13 @@ def test_a_bay_is_left_over_a_width_and_a_half_where_the_head_ran_aside() -> Non
 
 
 def test_a_stretch_that_is_not_on_the_rims_way_has_none() -> None:
-    """Half a millimetre below the line, as wide as the line is: the rim is there another line's."""
-    assert ways(SLIT, OVER - [0, WIDTH_MM]) == ([], [])
+    """Half a millimetre below the line, as wide as the line is; both its ends, or one of them."""
+    off = np.array((0.0, 1.5 * WIDTH_MM))
+    assert ways(SLIT, OVER - off) == ([], [])
+    for end in (0, -1):
+        own = OVER.copy()
+        own[end] -= off
+        assert ways(SLIT, own) == ([], [])
 
 
 @pytest.mark.parametrize("out_mm", [1.0, 3.0])
