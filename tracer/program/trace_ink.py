@@ -25,7 +25,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import InkLeft, ink_left
-from morfax.tracer.ink.solved import solved
+from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.struck_off import struck_off
 from morfax.tracer.ink.track import InkStroke, stroke_along
