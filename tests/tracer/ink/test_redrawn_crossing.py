@@ -16,8 +16,8 @@ from tests.tracer.inked import Points, inked
 WIDTH_MM = 0.4
 FAR_MM = 7.5  # from where a stroke turns to its ends
 APART_MM = 20.0
-# between a true stroke and the one that was run: a corner within another's ink is known to within two thirds of
-# a pixel; partners that are exchanged, or a corner that is cut, are 130 um off and more
+# between a true stroke and the one that was run: a corner within another's ink is known to two thirds of a
+# pixel; partners that are exchanged, or a corner that is cut, are 130 um off and more
 NEAR_MM = 0.08
 
 # degrees: a stroke turns by so much where another crosses it, at such an angle to both its legs or more
