@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.crossing import Crossing, are_side_by_side
 from morfax.tracer.ink.felt_lines import end_leg, trimmed, without_waist
@@ -129,6 +129,16 @@ class Junctions:
         """The middle place of each line, once its ends are trimmed, (n, 2) mm."""
         every = (line.places_mm for line in self.net.lines)
         return np.array([places[len(places) // 2] for places in every]).reshape(-1, 2)
+
+    @cached_property
+    def lengths_mm(self) -> Array:
+        """The length of each line's ink, (n,) mm."""
+        return np.array([line.length_mm for line in self.net.lines])
+
+    @cached_property
+    def boxes_mm(self) -> Array:
+        """The lowest and the highest place of each line, once its ends are trimmed, (n, 2, 2) mm."""
+        return np.array([bounds(line.places_mm) for line in self.net.lines]).reshape(-1, 2, 2)
 
     def _trim(self) -> None:
         """Take the legs of wide junctions from further off, and longer: near to where two lines run together

@@ -15,7 +15,7 @@ Source: our own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -48,27 +48,37 @@ def redrawn(view: View, legs: Sequence[Leg], turnings: Array) -> Mapping[Pair, A
     if tangle is None:
         return {}
     sketch = Sketch.of(view, tangle)
-    plans, freely = _by_legs(sketch, legs, turnings), redrawings(sketch)[0]
-    least = min([freely, *plans], key=lambda way: way.cost)
-    if least.misfit > CLEAR or freely.strokes:
+    by_legs, freely = list(_by_legs(sketch, legs, turnings)), redrawings(sketch)
+    least = min([*by_legs, *freely], key=lambda way: way.cost)
+    if least.misfit > CLEAR or least.strokes:
         return {}
-    best = next((way for way in plans if way.cost < least.cost + AS_WELL), freely)
+    # the straightest of those that explain the ink about as well, by the legs alone before any other
+    ranked = [(_turned(way, turnings), way) for way in by_legs]
+    ranked += [(_turned(way, turnings, freely=True), way) for way in freely]
+    as_good = [(turned, way) for turned, way in ranked if way.cost < least.cost + AS_WELL]
+    _, best = min(as_good, key=lambda one: one[0])
     return dict(zip(best.pairs, best.vertices, strict=True))
 
 
-def _by_legs(sketch: Sketch, legs: Sequence[Leg], turnings: Array) -> list[Redrawing]:
-    """The ways that the legs alone tell, smooth or with a vertex where two meet; the straightest first."""
+def _turned(way: Redrawing, turnings: Array, *, freely: bool = False) -> float:
+    """By how much the strands of a redrawing turn, rad²; one that turns anywhere as if at a corner."""
+    turned_rad = [
+        CORNERED if freely and len(vertices) else min(turnings[pair], CORNERED)
+        for pair, vertices in zip(way.pairs, way.vertices, strict=True)
+    ]
+    return sum(turned**2 for turned in turned_rad)
+
+
+def _by_legs(sketch: Sketch, legs: Sequence[Leg], turnings: Array) -> Iterator[Redrawing]:
+    """For each way to join the legs what these alone tell, smooth or with a vertex where two of them meet."""
     from morfax.tracer.tangles.redrawing import Redrawing, matchings
 
-    plans = list[tuple[float, Redrawing]]()
     for pairs in matchings(len(legs)):
         joints = [_joints(legs, pair, turnings[pair]) for pair in pairs]
         every = [sketch.settled(Redrawing(pairs, joint), 0) for joint in product(*joints)]
         if every:
-            turned = sum(min(turnings[pair], CORNERED) ** 2 for pair in pairs)
             # two legs that meet at an angle have a corner there, as far as the ink tells
-            plans.append((turned, min(every, key=lambda way: way.misfit)))
-    return [way for _, way in sorted(plans, key=lambda plan: plan[0])]
+            yield min(every, key=lambda way: way.misfit)
 
 
 def _joints(legs: Sequence[Leg], pair: Pair, turning: float) -> list[Array]:

@@ -15,7 +15,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.net import net_of
-from morfax.tracer.ink.solved import solved
+from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import DPI, NOISE, arc, inked, polyline

@@ -1,7 +1,6 @@
-"""Solved junctions: the junctions of a sheet, asked anew until they and the lines between them agree.
+"""Solving: the junctions of a sheet, solved anew until all ink between them is a line's, or two lines'.
 
-Signals: the felt stretches of a sheet in; its junctions out (see `chains`), and in the sheet which stretches
-are two lines, each as wide as it is.
+Signals: a sheet as it was felt in; its junctions out.
 
 Source: our own.
 """
@@ -17,8 +16,8 @@ from morfax.tracer.ink.doubled import BROADER
 from morfax.tracer.ink.net import Net, net_of
 from morfax.tracer.ink.stretches import FeltSheet
 
-# of a line's width, by trial on drawings of nets: two lines that go on from both its ends, so narrow and so
-# straight on, run together in it
+# of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it; by
+# trial on drawings of nets
 NARROWER = 0.8
 
 
