@@ -1,6 +1,4 @@
-"""Registers worked out beside the compiled ones: table I, registers that drop their lower digits, and what the
-scales read.
-"""
+"""Registers worked out beside the compiled ones: table I, registers with fewer digits, and the scales."""
 
 from __future__ import annotations
 
