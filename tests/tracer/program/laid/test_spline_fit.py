@@ -132,3 +132,16 @@ def test_a_way_out_and_back_along_a_tick_has_no_spline() -> None:
     own = evenly(polyline((7, 10), (10, 10), (10, 12), (10.001, 10), (13, 10)), STEP_MM)
     drawing = inked(polyline((7, 10), (13, 10)), polyline((10, 10), (10, 12)), seed=1)
     assert explained(ink_about(drawing, own, WIDTH_MM, REACH), own, STEP_MM, NOISE) is None
+
+
+def test_a_stretch_that_crosses_itself_has_a_spline_that_does() -> None:
+    """A loop of 2 by 3 mm that the head cut short; the spline lies on it within 0.1 mm, at the crossing."""
+    turns = np.linspace(-2, 2, 801)
+    drawn = np.column_stack([12 + 2.2 * (turns**3 - turns), 8 + 2.6 * turns**2])
+    truth = drawn[100:-100]
+    own = cut_short(truth, 0.3)
+    others = [drawn[:101], drawn[-101:]]
+    ink = ink_about(inked(drawn, seed=1), own, WIDTH_MM, REACH, others)
+    spline = explained(ink, own, STEP_MM, NOISE)
+    assert spline is not None and math.isfinite(spline.cost)
+    assert nearest_mm(spline.way, with_places(truth, 2 * UM)).max() < 100 * UM
