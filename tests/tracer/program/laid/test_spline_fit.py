@@ -134,7 +134,7 @@ def test_a_way_out_and_back_along_a_tick_has_no_spline() -> None:
     assert explained(ink_about(drawing, own, WIDTH_MM, REACH), own, STEP_MM, NOISE) is None
 
 
-def test_a_stretch_that_crosses_itself_has_a_spline_that_does() -> None:
+def test_a_stretch_that_crosses_itself_has_a_spline() -> None:
     """A loop of 2 by 3 mm that the head cut short; the spline lies on it within 0.1 mm, at the crossing."""
     turns = np.linspace(-2, 2, 801)
     drawn = np.column_stack([12 + 2.2 * (turns**3 - turns), 8 + 2.6 * turns**2])
