@@ -178,7 +178,9 @@ def _parts(
 ) -> Iterator[_Part]:
     """The tiles of a side in which some of the lines have stations."""
     tiles, pen = _Tiles.of(ways, side_px), _pen(drawing, ways, of_limit * OVER)
-    is_station = which[ways.line] & (np.arange(len(ways.line)) % _every(ways) == 0)
+    is_station = (
+        which[ways.line] & ~_near_ends(ways) & (np.arange(len(ways.line)) % _every(ways) == 0)
+    )
     margin = math.ceil(2 * (REACH_WIDTHS + 1) * pen.half_px) + 1
     room = Room.of((side_px + 2 * margin) ** 2, pen.reach_px)
     for number in sorted(set(tiles.of_place[is_station].tolist())):
@@ -192,6 +194,16 @@ def _parts(
         at = np.round(ways.places_px[stations] - corner).astype(int)
         at = np.clip(at, 0, np.array(seen.shape)[::-1] - 1)
         yield _Part(seen, ways.seen_from(corner, near), stations, at, pen, room)
+
+
+def _near_ends(ways: Ways) -> NDArray[np.bool_]:
+    """Which places lie within a width of an end of an open way, where pens come to a point, or begin broad."""
+    at, lines = np.arange(len(ways.line)), np.arange(len(ways.half_px))
+    first = np.searchsorted(ways.line, lines)
+    last = np.searchsorted(ways.line, lines, side="right") - 1
+    apart_px = np.hypot(*(ways.places_px[last] - ways.places_px[first]).T)
+    near = np.where(apart_px > 2 * PLACES_PX, 2 * ways.half_px / PLACES_PX, 0.0)[ways.line]
+    return np.asarray((at - first[ways.line] < near) | (last[ways.line] - at < near))
 
 
 def _pen(drawing: Drawing, ways: Ways, over: float) -> Pen:
