@@ -197,7 +197,7 @@ def _parts(
 
 
 def _near_ends(ways: Ways) -> NDArray[np.bool_]:
-    """Which places lie within a width of an end of an open way, where pens come to a point, or begin broad."""
+    """Which places lie within a width of an end of an open way: many pens come to a point there."""
     at, lines = np.arange(len(ways.line)), np.arange(len(ways.half_px))
     first = np.searchsorted(ways.line, lines)
     last = np.searchsorted(ways.line, lines, side="right") - 1
