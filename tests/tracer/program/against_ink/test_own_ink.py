@@ -173,3 +173,11 @@ def test_a_pen_of_its_own_width_explains_its_line_and_a_bare_way_is_over() -> No
     assert over[0] < 0.05
     # beyond its end the pen draws all of the box, but leaves no ink: a gap
     assert over[1] <= 0.0
+
+
+def test_a_line_that_comes_to_a_point_at_its_end_is_not_found() -> None:
+    """A broad pen's: there its round end is drawn on paper, and the point is left."""
+    point = np.array([(29, 10.25), (31, 10), (29, 9.75)])
+    drawing = inked(polyline((6, 10), (28.8, 10)), specks=[point], seed=1)
+    for end_mm in (29.6, 30.2):
+        assert found(drawing, closed(polyline((6, 10), (end_mm, 10)), "ended")) == []
