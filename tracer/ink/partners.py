@@ -102,32 +102,33 @@ def meeting_place(legs: Sequence[Leg]) -> Array:
 
 
 def way_through(
-    planner: Planner,
-    legs: tuple[Leg, Leg],
-    between: Array | None,
-    ink: SharedInk | None = None,
-    corners: Array | None = None,
+    planner: Planner, legs: tuple[Leg, Leg], between: Array | None, ink: SharedInk | None = None
 ) -> list[Array]:
     """Stretches (n, 2) mm from where the planner's head stands to the outgoing leg's clean end, or beyond.
 
     `legs` are the incoming and the outgoing one, and `ink` is what was felt of the junction's own ink.
     `between` holds places that were felt between two legs that are alone there, if they are: then their ink
-    shows whether their corner is round. The way goes by `corners` (n, 2) mm, if the ink has told them.
+    shows whether their corner is round.
     """
     incoming, outgoing = legs
-    if corners is not None:
-        return stretches_over(planner.stands, incoming, corners, outgoing)
     onto = outgoing.end_mm, outgoing.heading_rad
     straight = hermite(*planner.stands, *onto)
     smooth, others = [straight], list[Array]()
+    vertices: Array | None = None
     if ink is not None:
-        others = ink.besides(np.vstack([incoming.end_mm, outgoing.end_mm]))
+        ends = np.vstack([incoming.end_mm, outgoing.end_mm])
+        others, vertices = ink.besides(ends), ink.turns_at(ends)
         smooth = [kept_in_ink(straight, ink, planner.view.width_mm, others)]
+    if vertices is not None:
+        over = stretches_over(planner.stands, incoming, vertices, outgoing)
+        return over if len(vertices) else smooth
     corner = Corner.of(incoming, outgoing)
     ways = list[list[Array]]()
     if between is not None:
         ways.append(planner.through(incoming, outgoing, corner).stretches)
-    elif corner is not None and _is_corner(corner, planner.view.width_mm, ink is not None):
+    elif corner is not None and is_corner(
+        corner, planner.view.width_mm, is_felt=ink is not None
+    ):
         end_mm = max(0.0, BEYOND_MM - corner.before_mm)
         ways.append(sharp_corner(planner.stands, corner, end_mm))
     ways.append(smooth)
@@ -144,7 +145,7 @@ def way_through(
     return next((way for way in ways if on_ink(planner.view, way)), smooth)
 
 
-def _is_corner(corner: Corner, width_mm: float, is_felt: bool) -> bool:
+def is_corner(corner: Corner, width_mm: float, *, is_felt: bool = True) -> bool:
     """Whether two legs of a junction turn at a vertex, and do not go on smoothly.
 
     Far from both their legs can not tell a vertex; if the ink there was felt its rims tell the way.

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.tracer.ink.chains import Chain, Junction, Junctions, Side
+from morfax.tracer.ink.chains import Chain, Junctions, Side
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.shared_ink import SharedInk
 
@@ -22,14 +22,12 @@ NOTHING = np.empty((0, 2))  # was felt between
 class Piece(NamedTuple):
     """A clean run of a chain, and what was felt between it and the one before, (n, 2) mm.
 
-    None if other lines meet there; then what was felt along the stretches within their junction. `corners`
-    are those between the two, where the junction was redrawn.
+    None if other lines meet there; then what was felt along the stretches within their junction.
     """
 
     run: Run
     between: Array | None
     ink: SharedInk | None = None
-    corners: Array | None = None
 
 
 def pieces_of(chain: Chain, junctions: Junctions) -> list[Piece]:
@@ -41,26 +39,15 @@ def pieces_of(chain: Chain, junctions: Junctions) -> list[Piece]:
         alone = len(there.sides) == 2
         runs = [run.turned_round() for run in line.runs[::-1]] if link.back else line.runs
         parted = [places[::-1] for places in line.parted[::-1]] if link.back else line.parted
-        between = NOTHING if alone else None
-        corners = _corners_to(there, Side(link.line, link.back))
-        pieces.append(Piece(runs[0], between, there.crossing.ink, corners))
+        pieces.append(Piece(runs[0], NOTHING if alone else None, there.crossing.ink))
         pieces += [Piece(run, places) for run, places in zip(runs[1:], parted, strict=True)]
     return pieces
-
-
-def _corners_to(there: Junction, side: Side) -> Array | None:
-    """The corners (n, 2) mm from its partner to a side of a junction, where they were drawn."""
-    onto = there.partner(side)
-    if onto is None:
-        return None
-    return there.crossing.solution.between(there.sides.index(onto), there.sides.index(side))
 
 
 def cut_open(pieces: list[Piece]) -> list[Piece]:
     """The pieces of a closed chain from the middle of its longest run round to there."""
     k = max(range(len(pieces)), key=lambda n: len(pieces[n].run))
-    run = pieces[k].run
+    run, between, ink = pieces[k]
     middle = len(run) // 2
     later, sooner = run.part(middle, len(run)), run.part(0, middle + 1)
-    last = pieces[k]._replace(run=sooner)
-    return [Piece(later, NOTHING), *pieces[k + 1 :], *pieces[:k], last]
+    return [Piece(later, NOTHING), *pieces[k + 1 :], *pieces[:k], Piece(sooner, between, ink)]

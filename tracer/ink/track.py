@@ -219,8 +219,7 @@ class InkHead:
             onto = incoming.at(-back_mm), incoming.heading_at(-back_mm)
             before, stands = [self._course(run, self._station(run, self.at), onto)], onto
         planner = Planner(run.view, stands, self.carriage.trail, self.settings)
-        legs = incoming, outgoing
-        way = way_through(planner, legs, onward.between, onward.ink, onward.corners)
+        way = way_through(planner, (incoming, outgoing), onward.between, onward.ink)
         self.carriage.run([np.vstack([*before, way[0]]), *way[1:]], self.settings.speed_mm_s)
         # aimed at the line where the way has come onto it
         along_mm = max(0.0, -course.ahead_mm(way[-1][-1], outgoing))

@@ -22,9 +22,10 @@ from morfax.tracer.drawing.shapes_among_lines import has_lines
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.chains import Junctions, solved
+from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import InkLeft, ink_left
+from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.struck_off import struck_off
 from morfax.tracer.ink.track import InkStroke, stroke_along

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 import shapely
 
 from morfax.tracer.following.line import Line
-from morfax.tracer.ink.redrawn import Drawn
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import UM, Points, inked, polyline
 
@@ -52,12 +50,3 @@ TIPS = {
 @pytest.mark.parametrize("tip", TIPS)
 def test_a_corner_in_the_ink_of_another_line_is_its_lines(tip: str, seed: int) -> None:
     assert max(each_by_a_stroke([ACROSS, *TIPS[tip]], seed)) < OFF_MM
-
-
-def test_corners_between_two_legs_are_had_from_either() -> None:
-    corners = np.array([(1.0, 2.0), (3.0, 4.0)])
-    drawn = Drawn(((0, 2),), {(0, 2): corners})
-    there, back = drawn.between(0, 2), drawn.between(2, 0)
-    assert there is not None and back is not None
-    assert (there == corners).all() and (back == corners[::-1]).all()
-    assert drawn.between(0, 1) is None

@@ -1,4 +1,4 @@
-"""Redrawn crossings: where the ways that legs tell leave a crossing's ink, others are held against it.
+"""Crossings on their ink: where the ways that legs tell leave a crossing's ink, others are held against it.
 
     ────────┬────       the corner of one line lies in the ink of another: its legs meet beside the place
        ╱    │           where all lines meet, and how they go on is told by the ink that a pen would leave
@@ -11,13 +11,15 @@ finer, nor of pencil: their ink shows no pen, and blots and arrowheads were run 
 
 Signals: a crossing in; its pairs, and the corners between them, out.
 
+Four legs of one pen that turn are redrawn first, over as many vertices as it takes (see `redrawn_crossing`).
+
 Source: our own; the pen and how corners move are those of `tangles`, whose lines have no legs of their own.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -55,13 +57,7 @@ class Drawn(NamedTuple):
     """How lines go on through a crossing: pairs of legs, and of some the corners (n, 2) mm between them."""
 
     pairs: tuple[Pair, ...]
-    corners: dict[Pair, Array]
-
-    def between(self, a: int, b: int) -> Array | None:
-        """The corners from one leg to another, in that order; None if none were drawn."""
-        if (a, b) in self.corners:
-            return self.corners[a, b]
-        return self.corners[b, a][::-1] if (b, a) in self.corners else None
+    corners: Mapping[Pair, Array]
 
 
 @dataclass(frozen=True)
@@ -92,7 +88,7 @@ class Redrawing:
         return self.ink.left(self._wrong) + CORNER * corners
 
 
-def redrawn(crossing: Crossing, told: Drawn) -> Drawn:
+def told_by_ink(crossing: Crossing, told: Drawn) -> Drawn:
     """How lines go on through a crossing: as the legs tell, or otherwise, if that explains the ink."""
     if not 3 <= len(crossing.legs) <= MOST_LEGS or _is_plain(crossing, told):
         return told
