@@ -24,11 +24,11 @@ from morfax.tracer.ink.crossing import Crossing, are_side_by_side
 from morfax.tracer.ink.felt_lines import end_leg, trimmed, without_waist
 from morfax.tracer.ink.lifted import FARTHEST_WIDTHS
 from morfax.tracer.ink.net import Inner, Net
-from morfax.tracer.ink.partners import Pair, meeting_place
+from morfax.tracer.ink.partners import Pair
 from morfax.tracer.ink.swelling import TWO
 from morfax.tracer.limits import LONGER_WIDTHS
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
-from morfax.tracer.sensing.probe import end_of, reach_of_ink
+from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on drawings of nets.
@@ -231,15 +231,10 @@ class Junctions:
         if (end_mm := self.net.lines[side.line].ends_mm[side.last]) is not None:
             return end_mm
         there = self.at(side)
-        if (end_mm := there.crossing.ends_mm.get(there.sides.index(side))) is not None:
-            return end_mm
-        leg, view = there.leg(side), self._view(side)
-        if there.is_free or len(there.sides) == 1:
-            return max(0.0, end_of(view, leg) or 0.0)
-        way = np.array([np.cos(leg.heading_rad), np.sin(leg.heading_rad)])
-        on_mm = float((meeting_place(there.legs) - leg.end_mm) @ way)
-        inked_mm = reach_of_ink(view, leg, max(on_mm, 0.0) + leg.width_mm)
-        return max(0.0, on_mm if inked_mm is None else min(on_mm, inked_mm))
+        k = there.sides.index(side)
+        if k not in there.crossing.ends_mm and (there.is_free or len(there.sides) == 1):
+            return max(0.0, end_of(self._view(side), there.leg(side)) or 0.0)
+        return there.crossing.end_mm(k)
 
     def _view(self, side: Side) -> View:
         """How the head sees a line at one of its ends."""

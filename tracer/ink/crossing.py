@@ -24,19 +24,29 @@ from morfax.motion.arrays import Array
 from morfax.motion.curves import hermite
 from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
+from morfax.motion.plane import direction
 from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.ink.crossing_on_ink import Drawn, told_by_ink
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
-from morfax.tracer.ink.partners import CORNERED, Pair, partners, turnings, way_through
+from morfax.tracer.ink.partners import (
+    CORNERED,
+    Pair,
+    meeting_place,
+    partners,
+    turnings,
+    way_through,
+)
 from morfax.tracer.ink.redrawn_crossing import LEGS, redrawn
 from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.limits import WIDER
 from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.strands import stretches_over
 
@@ -47,6 +57,7 @@ COVERED_SHARE = 0.7
 TIP, APART = math.radians(60), 1.2
 LONG = 15.0  # widths: in ink that reaches further lines run together, and their rims tell them
 NOWHERE = np.empty((0, 2))
+ENDED = 20  # places of the end of a line
 
 
 @dataclass
@@ -61,6 +72,7 @@ class Crossing:
     settings: Settings
     near: list[Array] = field(default_factory=list)
     inked: list[Inner] = field(default_factory=list)
+    drawn: Drawn | None = None  # where it is told by the ink
     _covers: dict[int, bool] = field(default_factory=dict)
 
     @property
@@ -78,17 +90,30 @@ class Crossing:
         ]
         return tuple(legs), tuple(inner.stretch for inner in self.inked)
 
-    @cached_property
+    @property
     def pairs(self) -> list[Pair]:
         """The legs, by their numbers here, that are one line."""
+        return list(self.solution.pairs)
+
+    @cached_property
+    def solution(self) -> Drawn:
+        """How its lines go on: as its legs tell, or as its ink does."""
+        if self.drawn is not None:
+            return self.drawn
         if len(self.legs) == 2:
-            return [] if self._tips else [(0, 1)]
-        return sorted(self._vertices) or self._by_turnings
+            return Drawn(() if self._tips else ((0, 1),), {})
+        vertices = self._vertices
+        pairs = sorted(vertices) or self._by_turnings
+        return told_by_ink(self, Drawn(tuple(pairs), vertices))
+
+    def as_drawn(self, drawn: Drawn) -> Crossing:
+        """The same crossing with its lines going on in another way."""
+        return replace(self, drawn=drawn, _covers={})
 
     @cached_property
     def _turnings(self) -> Array:
         """By how much a way turns from each leg to each other, rad."""
-        return turnings(self.legs, self._width_mm)
+        return turnings(self.legs, self.width_mm)
 
     @cached_property
     def _by_turnings(self) -> list[Pair]:
@@ -117,10 +142,10 @@ class Crossing:
         if max(legs_mm) > WIDER * min(legs_mm + inked_mm):
             return False
         reach_mm = float(np.ptp([leg.end_mm for leg in self.legs], axis=0).max())
-        return reach_mm < LONG * self._width_mm
+        return reach_mm < LONG * self.width_mm
 
     @property
-    def _width_mm(self) -> float:
+    def width_mm(self) -> float:
         """The usual width of its lines."""
         return median([leg.width_mm for leg in self.legs])
 
@@ -136,7 +161,7 @@ class Crossing:
             ]
             turned, two = min(tried)
             if turned < CORNERED and are_apart_where_they_cross(
-                way, onto, self._inked, self._width_mm
+                way, onto, self._inked, self.width_mm
             ):
                 now[one], now[other] = two
         return [(min(pair), max(pair)) for pair in now]
@@ -156,9 +181,9 @@ class Crossing:
     @cached_property
     def ink(self) -> SharedInk | None:
         """Its own ink and the ways through it; None if nothing is known of it."""
-        if not self.inked and not self._vertices:
+        if not self.inked and not self.solution.corners:
             return None
-        vertices = [self._vertices.get(pair) for pair in self.pairs]
+        vertices = [self.solution.corners.get(pair) for pair in self.pairs]
         ways = [
             self._over(pair, NOWHERE if places is None else places)
             for pair, places in zip(self.pairs, vertices, strict=True)
@@ -174,9 +199,14 @@ class Crossing:
         return np.vstack(stretches_over(stands, one, vertices, onto))
 
     @cached_property
+    def ways_mm(self) -> list[Array]:
+        """The ways of the lines that pass, from clean end to clean end, (n, 2) mm."""
+        return [self.way(pair) for pair in self.pairs]
+
+    @cached_property
     def passing_mm(self) -> Array:
-        """Places of the lines that pass, from clean end to clean end, (n, 2) mm."""
-        return np.vstack([NOWHERE, *(self._way(pair) for pair in self.pairs)])
+        """Places of the lines that pass, (n, 2) mm."""
+        return np.vstack([NOWHERE, *self.ways_mm])
 
     @cached_property
     def ends_mm(self) -> dict[int, float]:
@@ -191,6 +221,22 @@ class Crossing:
         lines_mm = np.vstack([self.passing_mm, *(self.near[k] for k in sorted(paired))])
         found = zip(alone, ends_in_ink_mm(loose, lines_mm), strict=True)
         return {k: end_mm for k, end_mm in found if end_mm is not None}
+
+    def end_mm(self, k: int) -> float:
+        """How far beyond its clean end a leg without a partner ends, mm."""
+        if (end_mm := self.ends_mm.get(k)) is not None:
+            return end_mm
+        leg = self.legs[k]
+        on_mm = float((meeting_place(self.legs) - leg.end_mm) @ direction(leg.heading_rad))
+        inked_mm = reach_of_ink(self.views[k], leg, max(on_mm, 0.0) + leg.width_mm)
+        return max(0.0, on_mm if inked_mm is None else min(on_mm, inked_mm))
+
+    @property
+    def ended_mm(self) -> list[Array]:
+        """Places of the lines that end in it, from their clean ends on, (n, 2) mm."""
+        paired = {leg for pair in self.pairs for leg in pair}
+        alone = [k for k in range(len(self.legs)) if k not in paired]
+        return [self.legs[k].at(np.linspace(0.0, self.end_mm(k), ENDED)) for k in alone]
 
     @cached_property
     def _tips(self) -> dict[int, float]:
@@ -227,7 +273,7 @@ class Crossing:
             self._covers[inner.stretch] = share > COVERED_SHARE
         return self._covers[inner.stretch]
 
-    def _way(self, pair: Pair) -> Array:
+    def way(self, pair: Pair) -> Array:
         """The way of a pair through it, (n, 2) mm."""
         one, other = self.legs[pair[0]], self.legs[pair[1]].turned_round()
         view = self.views[pair[0]]

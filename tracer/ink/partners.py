@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from heapq import nsmallest
 from itertools import combinations
 
 import numpy as np
@@ -31,6 +32,7 @@ from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink, off_rims_mm
 from morfax.tracer.junctions.corner import Corner, sharp_corner
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.strands import stretches_over
 
 # All limits below were chosen by trial on drawings of nets.
@@ -47,13 +49,17 @@ NEARER = 0.05  # widths: a way that is so much nearer to its rims, in the mean, 
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
 # 945 pairings; of more legs the straightest are paired first, and partners exchanged
 MOST_LEGS = 10
+INKED, ON_IT = 12, 0.8  # places of a leg on to a corner, and the share of them that is ink
 NOBODY = -1
 
 Pair = tuple[int, int]
 
 
-def turnings(legs: Sequence[Leg], width_mm: float) -> Array:
-    """By how much a way turns from each leg to each other, rad; infinite if they are no line."""
+def turnings(legs: Sequence[Leg], width_mm: float, view: View | None = None) -> Array:
+    """By how much a way turns from each leg to each other, rad; infinite if they are no line.
+
+    With a view two legs are a line wherever ink leads from both to where they meet.
+    """
     count = len(legs)
     costs = np.full((count, count), math.inf)
     middle = meeting_place(legs)
@@ -61,8 +67,17 @@ def turnings(legs: Sequence[Leg], width_mm: float) -> Array:
     about = middle, max(AT_VERTEX * width_mm, OF_WIDE * wide_mm)
     for a in range(count):
         for b in range(a + 1, count):
-            costs[a, b] = costs[b, a] = _turning(legs[a], legs[b], about, width_mm)
+            costs[a, b] = costs[b, a] = _turning(legs[a], legs[b], about, width_mm, view)
     return costs
+
+
+def likeliest(costs: Array, count: int) -> list[tuple[Pair, ...]]:
+    """So many ways to pair some legs, those that turn least first; of many legs one."""
+    if len(costs) > MOST_LEGS:
+        return [tuple(partners(costs))]
+    every = _pairings(tuple(range(len(costs))))
+    least = nsmallest(count, every, key=lambda pairs: _cost(pairs, costs))
+    return [tuple(pair for pair in pairs if _is_joined(pair, costs)) for pairs in least]
 
 
 def partners(costs: Array) -> list[Pair]:
@@ -149,10 +164,12 @@ def _through_places(
     return through_nodes([begin, *zip(places, headings.tolist(), strict=True), end])
 
 
-def _turning(one: Leg, other: Leg, about: tuple[Array, float], width_mm: float) -> float:
+def _turning(
+    one: Leg, other: Leg, about: tuple[Array, float], width_mm: float, view: View | None
+) -> float:
     """By how much a way turns from one incoming leg onto another, rad; infinite if they are no line.
 
-    `about` is where all legs meet, and how near to that a corner is, mm.
+    `about` is where all legs meet, and how near to that a corner is, mm; with a view ink leads there.
     """
     out = other.turned_round()
     chord = out.end_mm - one.end_mm
@@ -168,9 +185,23 @@ def _turning(one: Leg, other: Leg, about: tuple[Array, float], width_mm: float) 
     if turning < SMOOTHLY:
         return turning + longer
     corner = Corner.of(one, out)
-    if corner is None or math.dist(corner.vertex_mm, about[0]) > about[1]:
+    if corner is None:
+        return math.inf
+    if math.dist(corner.vertex_mm, about[0]) > about[1] and not _is_inked(corner, view):
         return math.inf
     return math.sqrt(CORNERED**2 + SHARPER * corner.deflection_rad + longer**2)
+
+
+def _is_inked(corner: Corner, view: View | None) -> bool:
+    """Whether ink leads from both legs of a corner to where they meet."""
+    if view is None or corner.nearest_mm < -corner.width_mm:
+        return False
+    share = np.linspace(0.0, 1.0, INKED)
+    ways = [
+        corner.incoming.at(share * corner.beyond_mm),
+        corner.outgoing.at(-share * corner.before_mm),
+    ]
+    return bool(np.mean(view.darkness_along(np.vstack(ways)) > view.level) > ON_IT)
 
 
 def _bending(a: float, b: float) -> float:

@@ -1,0 +1,52 @@
+"""Corners that lie in the ink of other lines: how lines go on there is told by the ink."""
+
+from __future__ import annotations
+
+import pytest
+import shapely
+
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.trace_ink import trace_ink
+from tests.tracer.inked import UM, Points, inked, polyline
+
+OFF_MM = (
+    60 * UM
+)  # a stroke from its line, at most: corners in others' ink are three times as far off as alone
+
+
+def each_by_a_stroke(lines: list[Points], seed: int) -> list[float]:
+    """How far each line is from that stroke which is nearest to all of it, mm."""
+    strokes = [shapely.LineString(line.xy_mm[::5]) for line in _strokes(lines, seed)]
+    return [
+        min(shapely.hausdorff_distance(shapely.LineString(line), each) for each in strokes)
+        for line in lines
+    ]
+
+
+def _strokes(lines: list[Points], seed: int) -> list[Line]:
+    return list(trace_ink(inked(*lines, seed=seed)).lines)
+
+
+ACROSS = polyline((4, 20), (36, 20))
+# a corner beside that line or in it, and of some a third line that passes there
+TIPS = {
+    "beyond": [
+        polyline((21.5, 6.8), (20, 20.7), (32.9, 15.2)),
+        polyline((29.9, 7.4), (10.1, 32.6)),
+    ],
+    "above": [
+        polyline((32.9, 15.5), (19.9, 20.7), (29.1, 31.3)),
+        polyline((31.3, 8.7), (8.7, 31.3)),
+    ],
+    "below": [
+        polyline((28.7, 8.6), (19.5, 19.2), (32.8, 23.5)),
+        polyline((21.4, 4.1), (18.6, 35.9)),
+    ],
+    "within": [polyline((33.2, 14.8), (20, 19.6), (31.5, 27.6))],
+}
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("tip", TIPS)
+def test_a_corner_in_the_ink_of_another_line_is_its_lines(tip: str, seed: int) -> None:
+    assert max(each_by_a_stroke([ACROSS, *TIPS[tip]], seed)) < OFF_MM

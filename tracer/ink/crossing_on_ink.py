@@ -1,0 +1,234 @@
+"""Crossings on their ink: where the ways that legs tell leave a crossing's ink, others are held against it.
+
+    ────────┬────       the corner of one line lies in the ink of another: its legs meet beside the place
+       ╱    │           where all lines meet, and how they go on is told by the ink that a pen would leave
+
+A pen along all ways through a crossing, along its legs and the ends of lines without a partner is held
+against the ink there. Where it leaves ink for a third of a line's width, or draws as much on paper, other
+pairs are tried, the likeliest first, with a corner wherever two legs meet in ink; corners move to where the
+pen leaves least. What explains the ink goes before what the legs tell. Not on scans whose pixels were made
+finer, nor of pencil: their ink shows no pen, and blots and arrowheads were run to and fro.
+
+Signals: a crossing in; its pairs, and the corners between them, out.
+
+Four legs of one pen that turn are redrawn first, over as many vertices as it takes (see `redrawn_crossing`).
+
+Source: our own; the pen and how corners move are those of `tangles`, whose lines have no legs of their own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import evenly
+from morfax.tracer.effort import LOOKED_MM
+from morfax.tracer.head.course import on_ink
+from morfax.tracer.ink.partners import SMOOTHLY, Pair, likeliest, turnings
+from morfax.tracer.junctions.corner import Corner
+from morfax.tracer.tangles import pen, settling
+from morfax.tracer.tangles.sketch import ALL, softness_of
+from morfax.tracer.tangles.tangle import DARKEST
+
+if TYPE_CHECKING:
+    from morfax.tracer.ink.crossing import Crossing
+
+# All limits below were chosen by trial on crowded sheets of lines, circles and rectangles.
+OFF = 0.08  # widths², in a box as wide as a line: of right crossings none comes above
+MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
+CORNER = 0.03  # what a corner more must explain, widths²: as a vertex of a tangle
+REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
+TRIED = 5  # pairings
+MOST_LEGS = (
+    16  # of a larger crossing each trial takes a second, and hardly any explains its ink
+)
+PLAIN = math.radians(6)  # lines that turn by less, all of which go on, are plain
+
+
+class Drawn(NamedTuple):
+    """How lines go on through a crossing: pairs of legs, and of some the corners (n, 2) mm between them."""
+
+    pairs: tuple[Pair, ...]
+    corners: Mapping[Pair, Array]
+
+
+@dataclass(frozen=True)
+class Redrawing:
+    """A crossing as it would be drawn: what its pen leaves, and draws on paper, of the ink about it."""
+
+    crossing: Crossing
+    ink: _Ink
+
+    @cached_property
+    def ways(self) -> list[Array]:
+        """The ways through it, and the ends of lines without a partner, (n, 2) mm."""
+        return [*self.crossing.ways_mm, *self.crossing.ended_mm]
+
+    @cached_property
+    def _wrong(self) -> Array:
+        return self.ink.wrong(self.ways)
+
+    @property
+    def off(self) -> float:
+        """By how much it is off the ink in the worst box as wide as a line, widths²."""
+        return self.ink.worst(self._wrong)
+
+    @property
+    def cost(self) -> float:
+        """What is wrong in all, and the price of its corners, widths²."""
+        corners = sum(map(len, self.crossing.solution.corners.values()))
+        return self.ink.left(self._wrong) + CORNER * corners
+
+
+def told_by_ink(crossing: Crossing, told: Drawn) -> Drawn:
+    """How lines go on through a crossing: as the legs tell, or otherwise, if that explains the ink."""
+    if not 3 <= len(crossing.legs) <= MOST_LEGS or _is_plain(crossing, told):
+        return told
+    if crossing.views[0].parted > 1 or crossing.views[0].grainy:
+        return told  # no pen is told by such ink
+    by_legs = crossing.as_drawn(told)
+    ink = _Ink.about(crossing, by_legs.ways_mm)
+    now = Redrawing(by_legs, ink)
+    if ink.is_empty or now.off < OFF:
+        return told
+    tried = [Redrawing(crossing.as_drawn(drawn), ink) for drawn in _others(crossing, told, ink)]
+    best = min(tried, key=lambda each: each.cost, default=now)
+    gain = 0.0 if best.off < OFF else MUCH
+    if best.off < now.off and best.cost < now.cost - gain:
+        return best.crossing.solution
+    return told
+
+
+def _is_plain(crossing: Crossing, told: Drawn) -> bool:
+    """Whether all lines of a crossing go straight on."""
+    costs = turnings(crossing.legs, crossing.width_mm)
+    return 2 * len(told.pairs) == len(crossing.legs) and all(
+        costs[pair] < PLAIN for pair in told.pairs
+    )
+
+
+def _others(crossing: Crossing, told: Drawn, ink: _Ink) -> Iterator[Drawn]:
+    """Other ways to go on, with their corners where these explain the ink best."""
+    legs, view = crossing.legs, crossing.views[0]
+    costs = turnings(legs, crossing.width_mm, view)
+    for pairs in dict.fromkeys([told.pairs, *likeliest(costs, TRIED)]):
+        corners = dict[Pair, Array]()
+        for a, b in pairs:
+            corner = Corner.of(legs[a], legs[b].turned_round())
+            if corner is not None and corner.deflection_rad > SMOOTHLY:
+                corners[a, b] = corner.vertex_mm[None]
+        drawn = Drawn(pairs, corners)
+        if corners:
+            drawn = ink.settled(crossing, drawn)
+            ways = [crossing.as_drawn(drawn).way(pair) for pair in corners]
+            if not all(on_ink(view, [way]) for way in ways):
+                continue
+        yield drawn
+
+
+@dataclass(frozen=True)
+class _Ink:
+    """The ink of a crossing: its pixels in a window, with how far each is from the crossing's legs."""
+
+    ink: pen.Ink
+    pixels: tuple[NDArray[np.int64], NDArray[np.int64]]
+    shape: tuple[int, int]
+    pitch_mm: float
+
+    @classmethod
+    def about(cls, crossing: Crossing, ways: list[Array]) -> _Ink:
+        """The ink about the ways through a crossing, and what was felt within it."""
+        view, width_mm = crossing.views[0], crossing.width_mm
+        felt = [inner.run.places_mm for inner in crossing.inked]
+        ends = np.array([leg.end_mm for leg in crossing.legs])
+        about = np.vstack([ends, *ways, *felt])
+        # 1. pixels of a window that are near
+        pitch_mm, reach_mm = view.pitch_mm, REACH * width_mm
+        rows, columns = view.cells.shape
+        low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
+        left, right = max(int(low[0] / pitch_mm), 0), min(int(high[0] / pitch_mm) + 1, columns)
+        top = max(int(rows - high[1] / pitch_mm), 0)
+        bottom = min(int(rows - low[1] / pitch_mm) + 1, rows)
+        seen = view.cells.window(top, bottom, left, right)
+        i, j = np.indices(seen.shape)
+        places = np.column_stack([j.ravel() + left + 0.5, rows - i.ravel() - top - 0.5])
+        places = places * pitch_mm
+        away_mm = np.full(len(places), pen.NOWHERE_MM)
+        for way in (*ways, *felt):
+            away_mm = np.minimum(away_mm, pen.away_from(places, _thinned(way)))
+        near = np.flatnonzero(away_mm < reach_mm)
+        # 2. their ink, and how far the legs are
+        dark = np.minimum(seen.ravel()[near] / (2 * view.level), DARKEST).astype(float)
+        known_mm = np.full(len(near), pen.NOWHERE_MM)
+        for leg in crossing.near:
+            if len(leg) > 1:
+                within = np.all((leg > low) & (leg < high), axis=1)
+                if within.sum() > 1:
+                    known_mm = np.minimum(known_mm, pen.away_from(places[near], leg[within]))
+        softness_mm = softness_of(view, crossing.legs[0])
+        ink = pen.Ink(places[near], dark, known_mm, 0.5 * width_mm, softness_mm)
+        return cls(ink, (i.ravel()[near], j.ravel()[near]), seen.shape, pitch_mm)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no pixel is near."""
+        return not len(self.ink.darkness)
+
+    def known_with(self, ways: list[Array]) -> Array:
+        """How far each pixel is from the legs and some ways, mm."""
+        known_mm = self.ink.known_mm
+        for way in ways:
+            if len(way) > 1:
+                known_mm = np.minimum(
+                    known_mm, pen.away_from(self.ink.places_mm, _thinned(way))
+                )
+        return known_mm
+
+    def wrong(self, ways: list[Array]) -> Array:
+        """What a pen along the legs and some ways draws too dark at each pixel."""
+        drawn = np.empty(len(self.ink.darkness))
+        pen.ink(self.known_with(ways), self.ink.half_mm, self.ink.softness_mm, drawn)
+        return np.asarray(drawn - self.ink.darkness)
+
+    def left(self, wrong: Array) -> float:
+        """The sum of the squares of what is wrong, widths²."""
+        return float(np.sum(wrong**2)) * (self.pitch_mm / (2 * self.ink.half_mm)) ** 2
+
+    def worst(self, wrong: Array) -> float:
+        """The same of ink that is left, or drawn on paper, in the worst box as wide as a line."""
+        side, most = 2 * round(self.ink.half_mm / self.pitch_mm) + 1, 0.0
+        for signed in (wrong, -wrong):
+            squares = np.zeros(self.shape)
+            squares[self.pixels] = np.maximum(signed, 0.0) ** 2
+            sums = cv2.boxFilter(squares, -1, (side, side), normalize=False)
+            most = max(most, float(sums.max()))
+        return most * (self.pitch_mm / (2 * self.ink.half_mm)) ** 2
+
+    def settled(self, crossing: Crossing, drawn: Drawn) -> Drawn:
+        """The same pairs with their corners moved to where they explain the ink best."""
+        some = crossing.as_drawn(drawn)
+        smooth = [some.way(pair) for pair in drawn.pairs if pair not in drawn.corners]
+        known_mm = self.known_with([*smooth, *some.ended_mm])
+        poses = np.array([(*leg.end_mm, leg.heading_rad) for leg in crossing.legs])
+        ends = poses[np.array(list(drawn.corners), np.int64)]
+        counts = np.array([len(some) for some in drawn.corners.values()], np.int64)
+        vertices = np.vstack(list(drawn.corners.values()))
+        ink, cells = self.ink._replace(known_mm=known_mm), crossing.views[0].cells
+        settling.weighed(ink, cells, pen.Drawn(ends, counts, 0), vertices, ALL)
+        parts = np.split(vertices, np.cumsum(counts)[:-1])
+        return drawn._replace(corners=dict(zip(drawn.corners, parts, strict=True)))
+
+
+def _thinned(way: Array) -> Array:
+    """A way (n, 2) mm by places so far apart that its ink tells no difference."""
+    if len(way) < 3:
+        return way
+    return np.vstack([evenly(way, LOOKED_MM), way[-1]])
