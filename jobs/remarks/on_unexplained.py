@@ -66,6 +66,13 @@ SAID: dict[Kind, tuple[tuple[str, str], str]] = {
         "{many} about as broad as two lines, the longest {mm:.1f} mm at {at}: if it is a slot, a notch or a "
         "tongue, its two sides are not followed; draw it with a finer pen, or scan it at a higher resolution",
     ),
+    # strokes that leave ink, or go over paper, where lines meet
+    "off": (
+        ("place", "places"),
+        "the strokes are not what is drawn at {many}, the worst at {at}, for {mm:.1f} mm: a corner or an end "
+        "in the ink of another line, or ink that is no line; look there in --picture, and draw it with a "
+        "finer pen, or a little further from that line",
+    ),
     # a way over pale pixels of a coarse scan
     "pale": (
         ("place", "places"),

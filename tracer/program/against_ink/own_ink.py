@@ -143,7 +143,8 @@ def _doubtful(drawing: Drawing, ways: Ways, of_limit: float) -> NDArray[np.bool_
     """Which lines are not surely on their ink: most are, and need not be judged."""
     doubtful = np.zeros(len(ways.judged), bool)
     limits = of_limit * _least(ways.half_px)
-    for part in _parts(drawing, ways, ways.judged, QUICK_PX, of_limit):
+    pen = _pen(drawing, ways, of_limit * OVER)
+    for part in parts(drawing, ways, _are_stations(ways, ways.judged), QUICK_PX, pen):
         line = ways.line[part.stations]
         is_over = np.empty(len(line), bool)
         may_be_over(part.seen, part.ways, part.at, limits[line], part.pen, part.room, is_over)
@@ -155,12 +156,13 @@ def _judged(
     drawing: Drawing, ways: Ways, of_limit: float, which: NDArray[np.bool_]
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
     """The stations of some lines, tile by tile: line, number of the place, and what is over."""
-    for part in _parts(drawing, ways, which, TILE_PX, of_limit):
+    pen = _pen(drawing, ways, of_limit * OVER)
+    for part in parts(drawing, ways, _are_stations(ways, which), TILE_PX, pen):
         over = over_at(part.seen, part.ways, part.at, part.pen, part.room)
         yield ways.line[part.stations], part.stations, over
 
 
-class _Part(NamedTuple):
+class Part(NamedTuple):
     """A tile of the sheet with what lies about it: the darkness, the ways as they are seen from its corner,
     the numbers of the stations in the tile and their pixels, the pen, and room to work in.
     """
@@ -173,14 +175,11 @@ class _Part(NamedTuple):
     room: Room
 
 
-def _parts(
-    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], side_px: int, of_limit: float
-) -> Iterator[_Part]:
-    """The tiles of a side in which some of the lines have stations."""
-    tiles, pen = _Tiles.of(ways, side_px), _pen(drawing, ways, of_limit * OVER)
-    is_station = (
-        which[ways.line] & ~_near_ends(ways) & (np.arange(len(ways.line)) % _every(ways) == 0)
-    )
+def parts(
+    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], side_px: int, pen: Pen
+) -> Iterator[Part]:
+    """The tiles of a side in which some of the places that stand for ways are stations."""
+    tiles = _Tiles.of(ways, side_px)
     margin = math.ceil(2 * (REACH_WIDTHS + 1) * pen.half_px) + 1
     room = Room.of((side_px + 2 * margin) ** 2, pen.reach_px)
     for number in sorted(set(tiles.of_place[is_station].tolist())):
@@ -193,7 +192,13 @@ def _parts(
         corner = np.array([left, top], np.float32)
         at = np.round(ways.places_px[stations] - corner).astype(int)
         at = np.clip(at, 0, np.array(seen.shape)[::-1] - 1)
-        yield _Part(seen, ways.seen_from(corner, near), stations, at, pen, room)
+        yield Part(seen, ways.seen_from(corner, near), stations, at, pen, room)
+
+
+def _are_stations(ways: Ways, which: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which places are stations of some lines."""
+    is_every = np.arange(len(ways.line)) % _every(ways) == 0
+    return np.asarray(which[ways.line] & ~_near_ends(ways) & is_every)
 
 
 def _near_ends(ways: Ways) -> NDArray[np.bool_]:

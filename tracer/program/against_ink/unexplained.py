@@ -57,7 +57,7 @@ ASTRAY = 0.2
 # finer, ink looks broader at corners
 MISSED, MISSED_COARSE = 1.25, 2.0
 
-Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale"]
+Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale", "off"]
 
 
 class Unexplained(NamedTuple):
@@ -68,6 +68,7 @@ class Unexplained(NamedTuple):
     bare      a way over bare paper: for how long
     beside    a way beside its own pen's ink: for how long
     broad     strokes within ink that is as broad as two lines: for how long
+    off       strokes of all the ink off it, where lines meet (see `strokes_off_ink`): for how long
     pale      on a coarse scan a way over ink that is pale: for how long; and `wants_dpi`, the resolution that
         would show what is there
     """

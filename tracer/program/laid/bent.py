@@ -190,7 +190,7 @@ class _Way:
                 ink, own = self._seen(begin - leg, end + leg, felt)
                 wrong = wrong_about(ink, own, about_corners(own), STEP_WIDTHS)[leg:-leg]
                 off[np.arange(begin, end + 1) % len(off)] |= wrong > felt.limit
-        yield from _runs(self._between_ends(off), leg, self.is_closed)
+        yield from _runs(off, leg, self.is_closed)
 
     def _between_ends(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Those of some places (n,) that are a leg and a step from the ends of an open way."""

@@ -25,7 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import broad_mm, evenly, nearest_mm
-from morfax.tracer.effort import MANY
+from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import bar_at, reaches
@@ -64,7 +64,6 @@ FURTHER = 0.01  # as much more must be left for each width more of a way that ru
 # or what a rubber left
 MOST_LEFT = 0.3
 DOUBTFUL = 0.3  # of the limit above which a way is beside its ink: it may be wrong
-ROUNDS = 3  # a bay may come to light when another is mended
 
 
 LeftBy = Callable[[Setup, Sequence[Line], float], tuple[Unexplained, ...]]

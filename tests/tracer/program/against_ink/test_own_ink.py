@@ -128,14 +128,16 @@ def test_what_is_found_is_told_once_with_its_place() -> None:
 
 def test_the_nearest_of_some_places_within_reach() -> None:
     away2, number = np.full((3, 5), 1.6**2, np.float32), np.zeros((3, 5), np.int32)
-    places, numbered = np.array([(0.0, 1.0), (3.0, 1.5)], np.float32), np.empty((2, 15), int)
-    ways = Ways(places, np.array([7, 8], np.int32), np.empty(0), np.empty(0, bool))
-    count = _nearest.py_func(ways, 1.6, away2, number, numbered)
+    # the last three lie beside this part of the sheet
+    some = [(0.0, 1.0), (3.0, 1.5), (-3.0, 1.0), (60.0, 1.0), (1.0, -40.0)]
+    lines = np.array([7, 8, 9, 9, 9], np.int32)
+    ways = Ways(np.array(some, np.float32), lines, np.empty(0), np.empty(0, bool))
+    count, reached = _nearest.py_func(ways, 1.6, away2, number)
     assert number[1].tolist() == [8, 8, 9, 9, 9]
     assert away2[1].tolist() == [0, 1, 1.25, 0.25, 1.25]
     assert number[0, 4] == 0 and count == np.count_nonzero(number)
-    # the nearest place of the second line takes a pixel of the first over, which is listed once
-    assert len(set(zip(*numbered[:, :count].tolist(), strict=True))) == count
+    # each pixel that has a number, once, though the second line takes one of the first over
+    assert reached.tolist() == [[0, 5], [0, 5], [0, 5]]
 
 
 def test_sums_over_boxes_and_the_most_of_them_about_a_pixel() -> None:
