@@ -13,11 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import length_mm, lengths_mm
+from morfax.motion.polyline import length_mm, lengths_mm, nearest_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import Led
+from morfax.tracer.program.against_ink.bars import reaches
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.setup import Setup
@@ -30,6 +31,7 @@ MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 OF_LOOP = 0.8  # of a line: a stretch that is more of it is no bay and no touch
 # of what a way leaves unexplained: what is laid in its place and leaves more is none, unless that is noise
 STILL_LEFT = 0.35
+BESIDE = 2.0  # from the middle of one line to another's: their ink may be joined
 REACH = 2.2  # of the ink about a place that is looked at
 
 
@@ -62,6 +64,16 @@ def rest_of(way: Array, first: int, last: int, is_closed: bool) -> tuple[Array, 
     if is_closed:
         return (way[np.arange(last, first + len(way) + 1) % len(way)],)
     return way[: first + 1], way[last:]
+
+
+def is_beside(own: Array, line: Line, lines: Sequence[Line]) -> bool:
+    """Whether another of some lines comes so near to a stretch (n, 2) mm of one that they share ink."""
+    near_mm = BESIDE * line.width_mm
+    low, high = own.min(axis=0) - near_mm, own.max(axis=0) + near_mm
+    others = (other.places_mm for other in lines if other is not line)
+    return any(
+        reaches(way, low, high) and nearest_mm(own, way).min() < near_mm for way in others
+    )
 
 
 def part_of(line: Line, first: int, last: int) -> Line:
