@@ -13,6 +13,7 @@ from morfax.motion.plane import CORNER_RAD
 AHEAD_RAD = 2 * CORNER_RAD  # what lies within this of a heading lies ahead; it goes straight on
 TIP_RAD = 6 * CORNER_RAD  # a corner that turns by more is a tip
 BACK_RAD = math.radians(150)  # what turns by more goes back
+NEARLY_PARALLEL = 0.02  # sine of the angle between two legs that do not meet
 
 PAPER = 0.25  # of the ink's darkness: paler places are paper
 AS_WIDE = 0.15  # of a width: what differs by more is no line of the same pen ...

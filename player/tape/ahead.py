@@ -1,14 +1,14 @@
-"""Reading ahead: the tape is read in a thread of its own while the drives follow what was read before.
+"""Reading ahead: a tape is read in threads of their own while the drives follow what was read before.
 
-    tape ─► reader ─► at most two blocks wait ─► drives, monitor
-            a thread of its own                  the thread that plays
+    tape ─► check signal ─► two blocks wait ─► phases, vouching ─► two blocks wait ─► drives, monitor
+            a thread of its own                a thread of its own                    the thread that plays
 
 Signals in: what makes blocks, one after the other. Signals out: the same blocks, in the same order, and
-behind the last one the fault that it ended with.
+behind the last one the fault that it ended with. A bare tape has no check signal, and one thread less.
 
 The reader may ask where the machine stands. It is told when the machine has used all that was read before, as
 if both took turns; so no fault says another place than it would without the thread. Kernels leave Python's
-lock to the other thread, and both take about as long.
+lock to the other threads. Phases and drives take about as long, the check signal about half of that.
 
 Source: our own. Questions: a tape that comes through a pipe or from a device is not read ahead: a thread that
 waits for its next frames could not be stopped.
@@ -17,7 +17,7 @@ waits for its next frames could not be stopped.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
@@ -50,7 +50,7 @@ class ReadAhead(Generic[Block]):
         self._is_given_up = False
         self._waiting: SimpleQueue[Block | _Ended] = SimpleQueue()
 
-    def blocks(self, make: Callable[[], Iterator[Block]]) -> Iterator[Block]:
+    def blocks(self, make: Callable[[], Iterator[Block]]) -> Generator[Block, None, None]:
         """The blocks that `make` gives; raises what it raises."""
         thread = threading.Thread(target=self._run, args=(make,), name=NAME, daemon=True)
         thread.start()

@@ -25,6 +25,7 @@ from collections.abc import Sequence
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
+from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.phases import Phases
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
@@ -53,8 +54,12 @@ class BareTape:
         self.notes: tuple[str, ...] = (NOT_VOUCHED,) if is_placed else (NOT_VOUCHED, NOT_PLACED)
         self._own = OwnMotion(len(fmt.axes))
 
-    def hear(self, frames: Stored) -> None:
-        """Take the next frames of the tape, in which nothing is to be heard."""
+    def listen(self, frames: Stored) -> list[FrameReport]:
+        """Nothing is to be heard in the next frames of the tape."""
+        return []
+
+    def hear(self, reports: list[FrameReport]) -> None:
+        """Take what there is not."""
 
     def begin(self, rows: Phases) -> Phases:
         """The first rows of the tape, as they are."""

@@ -152,6 +152,11 @@ class CheckReader:
         """Take the next frames of the tape."""
         self._points.feed(frames)
 
+    def heard(self, frames: Stored) -> list[FrameReport]:
+        """The frames of the check signal that are whole with the next frames of the tape."""
+        self.feed(frames)
+        return self.reports()
+
     def finish(self) -> None:
         """Take the end of the tape: a frame that ends with it is whole."""
         hop = self._points.hop

@@ -231,7 +231,7 @@ class TapePlayback(Supervised):
             return self.end_mm.tolist()
 
         def made() -> Iterator[tuple[Read, int]]:
-            for read in self.reader.read(stands_mm):
+            for read in self.reader.read(stands_mm, ahead=self.reads_ahead):
                 yield read, len(self.reader.bridged)
 
         try:

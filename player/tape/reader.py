@@ -15,8 +15,8 @@ Questions: the patent's machine starts where the tape does; here a run may also 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import AbstractContextManager, closing
 from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
@@ -26,11 +26,13 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
+from morfax.player.tape.ahead import ReadAhead
 from morfax.player.tape.bare import BareTape
 from morfax.player.tape.bridges import Bound, Bridge
 from morfax.player.tape.check_reader import CheckReader, read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, discriminate
 from morfax.player.tape.dropouts import Gaps, under_way
+from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.lost_ways import Laid
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.riding import Riding
@@ -41,6 +43,8 @@ from morfax.player.tape.warrant import Certain, Warrant
 from morfax.player.tape.watch import Watch, demand_apart
 from morfax.recorder.sound.source import BLOCK_FRAMES
 from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
+
+Listened = tuple[Stored, list[FrameReport]]
 
 
 class Read(NamedTuple):
@@ -103,10 +107,13 @@ class TapeReader:
         )
         self.mended: list[Laid] = []
 
-    def read(self, stands_mm: Callable[[], Sequence[float]]) -> Iterator[Read]:
+    def read(
+        self, stands_mm: Callable[[], Sequence[float]], *, ahead: bool = False
+    ) -> Iterator[Read]:
         """Rows, bearings, and the first uncertain row of a block; `stands_mm`: the machine's place.
 
-        Raises TapeFault where the tape is none, or its reference is on another track.
+        With `ahead` the check signal is read in a thread of its own. Raises TapeFault where the tape is none,
+        or its reference is on another track.
         """
         fmt, rate_hz = self._format, self._format.motion_rate_hz
         discriminator = Discriminator(
@@ -120,21 +127,23 @@ class TapeReader:
             blocks = tape.stored_blocks(
                 BLOCK_FRAMES, (first_row - lead) * fmt.samples_per_motion
             )
-            ahead = read_ahead(blocks, fmt)
-            warrant = self._warrant(ahead, first_row - lead)
+            begun = read_ahead(blocks, fmt)
+            warrant = self._warrant(begun, first_row - lead)
             held: list[Stored] = []
-            rows = (
-                evened(rows.moved(first_row - lead), fmt)
-                for rows in discriminate(_noted(ahead, blocks, warrant, held), discriminator)
-            )
-            # 2. the first rows tell where the axes stand
-            start = next(rows, None)
-            if start is None:
-                raise _too_short(tape.frames, discriminator.filter_frames)
-            start = start.cut(lead if first_row else 0, len(start))
-            run = self._run(warrant, start, full_scale(held[-1]), discriminator)
-            # 3. row by row, to the end
-            yield from self._through(chain([start], rows), run, held, stands_mm)
+            with closing(_listened(blocks, warrant, ahead=ahead)) as listened:
+                noted = _noted(begun, listened, warrant, held)
+                rows = (
+                    evened(rows.moved(first_row - lead), fmt)
+                    for rows in discriminate(noted, discriminator)
+                )
+                # 2. the first rows tell where the axes stand
+                start = next(rows, None)
+                if start is None:
+                    raise _too_short(tape.frames, discriminator.filter_frames)
+                start = start.cut(lead if first_row else 0, len(start))
+                run = self._run(warrant, start, full_scale(held[-1]), discriminator)
+                # 3. row by row, to the end
+                yield from self._through(chain([start], rows), run, held, stands_mm)
 
     def _run(
         self,
@@ -242,18 +251,32 @@ def _certain(gaps: Gaps, phases: Phases, *, last: bool = False) -> Certain:
     return Certain(rows, fault, gaps.found())
 
 
+def _listened(
+    blocks: Iterator[Stored], warrant: Warrant, *, ahead: bool
+) -> Generator[Listened, None, None]:
+    """Blocks of the tape, and what its check signal says by each of them."""
+
+    def listened() -> Generator[Listened, None, None]:
+        for block in blocks:
+            yield block, warrant.listen(block)
+
+    return (
+        ReadAhead[Listened]().blocks(listened) if ahead and warrant.is_checked else listened()
+    )
+
+
 def _noted(
-    ahead: list[Stored],
-    blocks: Iterator[Stored],
+    begun: list[Stored],
+    listened: Iterator[Listened],
     warrant: Warrant,
     held: list[Stored],
 ) -> Iterator[Stored]:
-    """All blocks of the tape; the last one is held, and the check signal is read from those not yet read."""
-    for block in ahead or [np.zeros((0, 1), np.float32)]:
+    """All blocks of the tape, those first that it began with; the last one is held."""
+    for block in begun or [np.zeros((0, 1), np.float32)]:
         held[:] = [block]
         yield block
-    for block in blocks:
-        warrant.hear(block)
+    for block, reports in listened:
+        warrant.hear(reports)
         held[:] = [block]
         yield block
 

@@ -39,7 +39,6 @@ from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.check_frame import SYMBOLS
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
-from morfax.recorder.tape.tape import Stored
 from morfax.recorder.tape.told_figures import Stated, agreed
 
 LARGEST_OFF_S = 6e-6  # of a delay off the line through seven: 0.036 cycle; 26 dB leave 2
@@ -70,12 +69,13 @@ class Vouching:
         self._given = 0  # rows that were given out and are still held, to lend their speed
         self._counted = [0.0] * len(fmt.axes)  # the last row at which the count was right
         self._order = FrameOrder(fmt)
+        self.listen, self._heard = check.heard, check.reports()  # of the first blocks
         self._fault: Fault | None = None
         self.notes: tuple[str, ...] = ()
 
-    def hear(self, frames: Stored) -> None:
-        """Take the next frames of the tape."""
-        self._check.feed(frames)
+    def hear(self, reports: list[FrameReport]) -> None:
+        """Take these frames; they are looked at when somebody asks what they tell."""
+        self._heard += reports
 
     def begin(self, rows: Phases) -> Phases:
         """The first rows, put right as far as the first frames tell; raises TapeFault for a wrong track."""
@@ -105,16 +105,16 @@ class Vouching:
         self.notes = agreed(self._check.found[0][0].said, fmt.stated, used)
 
     def _take_reports(self) -> None:
-        """Take what the check reader has read by now."""
-        for report in self._check.reports():
-            if self._fault is None:
-                self._take(report)
+        """Take what was heard by now."""
+        while self._heard and self._fault is None:
+            self._take(self._heard.pop(0))
 
     def feed(self, certain: Certain, stands_mm: StandsMm, *, last: bool = False) -> Given:
         """Take the next rows and the fault behind them; the rows that are vouched for, and the fault."""
         self._hold(certain)
         if last:
             self._check.finish()
+            self._heard += self._check.reports()
         self._take_reports()
         self._check_counts(stands_mm)
         if last:
@@ -233,8 +233,7 @@ class Vouching:
         A right one vouches for nothing, as whole cycles do not show; behind a dropout the next count tells.
         """
         for axis, found in off.items():
-            is_open = self._ways.any_open(axis) or bool(self._weak[axis])
-            if not found.is_right and not is_open:
+            if not (found.is_right or self._ways.any_open(axis) or self._weak[axis]):
                 self._fault = self._fault or self._miscounted(axis, row, found, stands_mm)
 
     def _miscounted(self, axis: int, row: float, off: Off, stands_mm: StandsMm) -> Fault:

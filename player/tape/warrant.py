@@ -16,6 +16,7 @@ from typing import NamedTuple, Protocol
 
 from morfax.motion.arrays import Array
 from morfax.player.tape.bridges import Gap
+from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.tape import Stored
@@ -39,8 +40,12 @@ class Warrant(Protocol):
     is_checked: bool
     notes: tuple[str, ...]  # on the tape, once it has begun
 
-    def hear(self, frames: Stored) -> None:
-        """Take the next frames of the tape."""
+    def listen(self, frames: Stored) -> list[FrameReport]:
+        """What the check signal says by the next frames of the tape; may run in a thread of its own."""
+        ...
+
+    def hear(self, reports: list[FrameReport]) -> None:
+        """Take what it says, as far as rows were read."""
 
     def begin(self, rows: Phases) -> Phases:
         """The first rows of the tape, put right; raises TapeFault for a wrong track."""

@@ -6,6 +6,7 @@ what the kernel itself holds, and works nothing out again: residues, loop Q, cou
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -14,12 +15,15 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.player.gcode import residues
-from morfax.player.gcode.pulses import PulseControl, PulsePlayback
+from morfax.player.gcode.pulses import HISTORIC_CONTROL, PulseControl, PulsePlayback
 from morfax.player.gcode.residues import LINE, Feed, ResidueInterpolator
 from morfax.player.gcode.rs274 import parse_rs274
 
 Counts = NDArray[np.int64]
+RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ
+ALWAYS = Feed(gate_period=1)
 
 
 @dataclass(frozen=True)
@@ -145,3 +149,32 @@ def played(control: PulseControl, *lines: str) -> list[Block]:
         for _ in playback:
             pass
     return made[0].blocks
+
+
+def ways(pulses: np.ndarray, start: tuple[int, ...] = (0, 0, 0)) -> np.ndarray:
+    """Places after each recirculation, the start first."""
+    return (
+        np.vstack([np.zeros((1, 3), np.int64), np.cumsum(pulses, axis=0, dtype=np.int64)])
+        + start
+    )
+
+
+def step(residue: int, error: int, total: int, gate_open: bool) -> tuple[int, int]:
+    """One recirculation of the compiled loop: the new residue, and the pulse (0 for none)."""
+    size = max(1, abs(error))
+    loop = ResidueInterpolator(servo_constant=total - size, guard=False)
+    end = (int(math.copysign(size, error)), 0, 0)
+    block = read(loop, end, Feed(gate_period=1 if gate_open else 2), residue, most=1)
+    return int(block.residue[1, 0]), int(block.pulses[0, 0])
+
+
+def oblique() -> list[Block]:
+    """Lines in three axes as the historic control plays them, at a feed below its fastest."""
+    lines = "G1 X0 Y0 Z0 F1800", "G1 X9 Y-4 Z2", "G1 X1 Y4 Z2", "G1 X-9 Y1 Z0"
+    return played(HISTORIC_CONTROL, *lines)[-3:]
+
+
+def quarters() -> list[Block]:
+    """Quarter circles of 12 mm, either way round, as the historic control plays them."""
+    there, back = "G3 X0 Y12 I-12 J0", "G2 X12 Y0 I0 J-12"
+    return played(HISTORIC_CONTROL, "G1 X12 Y0 F1200", there, back)[-2:]

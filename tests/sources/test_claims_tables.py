@@ -33,12 +33,13 @@ def test_every_file_that_a_table_names_is_there(table: str) -> None:
 @pytest.mark.parametrize("patent", BROKEN)
 def test_every_claim_has_a_test_and_a_line_that_can_be_broken(patent: str) -> None:
     text = table_of(f"claims-{patent}.md")
-    tests = (ROOT / file_of_tests(text)).read_text(encoding="utf-8")
     rows = [line for line in text.splitlines() if re.match(r"\| \d+ \|", line)]
     broken = broken_lines(patent)
     assert len(broken) == len(rows) == len({line.claim for line in broken})
     for line in broken:
-        assert f"def {line.test}(" in tests
+        file, _, test = line.test.rpartition("::")
+        tests = (ROOT / (file or file_of_tests(text))).read_text(encoding="utf-8")
+        assert f"def {test}(" in tests
         assert line.mutant().new != line.before
 
 

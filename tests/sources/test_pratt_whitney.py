@@ -1,5 +1,5 @@
-"""Patent from US application 631 214 (Pratt & Whitney, 1967): its worked examples, and one test for each
-claim.
+"""Patent from US application 631 214 (Pratt & Whitney, 1967): one test for each claim on lines, feeds and
+servos; claims on arcs and worked examples have files of their own.
 
 `docs/background/claims-pratt-whitney.md` has the table from claim to test. Pulses are of 0.0005 in, position
 counts of 0.001 in.
@@ -7,8 +7,6 @@ counts of 0.001 in.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,263 +14,38 @@ import numpy as np
 import pytest
 
 from morfax.motion.drive import Condition
-from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.player.gcode.feed_control import (
     BLOCKED,
     EIGHTH,
     FEED_EIGHTHS,
     FOURTH,
-    GREATEST,
-    MIDDLE,
-    SMALLEST,
     count_feed,
     feed_number,
     override_number,
     resultant_weights,
 )
 from morfax.player.gcode.pulse_servo import (
-    PULSES_PER_COUNT,
     PulseServo,
     PulseServos,
-    lag,
-    subtracted,
     unit_circuit,
 )
 from morfax.player.gcode.pulses import HISTORIC_CONTROL
 from morfax.player.gcode.residues import (
-    CLOCKWISE,
-    COUNTER_CLOCKWISE,
     LINE,
     Feed,
     ResidueInterpolator,
 )
 from tests.console.conftest import Morfax
-from tests.sources.pulse_registers import Block, played, read
-
-Vectors = Callable[[str], Any]
-RECIRCULATIONS_HZ = 8 * MOTION_RATE_HZ
-ALWAYS = Feed(gate_period=1)
-
-
-def ways(pulses: np.ndarray, start: tuple[int, ...] = (0, 0, 0)) -> np.ndarray:
-    """Places after each recirculation, the start first."""
-    return (
-        np.vstack([np.zeros((1, 3), np.int64), np.cumsum(pulses, axis=0, dtype=np.int64)])
-        + start
-    )
-
-
-def step(residue: int, error: int, total: int, gate_open: bool) -> tuple[int, int]:
-    """One recirculation of the compiled loop: the new residue, and the pulse (0 for none)."""
-    size = max(1, abs(error))
-    loop = ResidueInterpolator(servo_constant=total - size, guard=False)
-    end = (int(math.copysign(size, error)), 0, 0)
-    block = read(loop, end, Feed(gate_period=1 if gate_open else 2), residue, most=1)
-    return int(block.residue[1, 0]), int(block.pulses[0, 0])
-
-
-def oblique() -> list[Block]:
-    """Lines in three axes as the historic control plays them, at a feed below its fastest."""
-    lines = "G1 X0 Y0 Z0 F1800", "G1 X9 Y-4 Z2", "G1 X1 Y4 Z2", "G1 X-9 Y1 Z0"
-    return played(HISTORIC_CONTROL, *lines)[-3:]
-
-
-def quarters() -> list[Block]:
-    """Quarter circles of 12 mm, either way round, as the historic control plays them."""
-    there, back = "G3 X0 Y12 I-12 J0", "G2 X12 Y0 I0 J-12"
-    return played(HISTORIC_CONTROL, "G1 X12 Y0 F1200", there, back)[-2:]
-
-
-# --- worked examples
-
-
-def test_table_1_row_by_row(vectors: Vectors) -> None:
-    for row in vectors("pw_table1")["printed_rows"]:
-        end, pulse = step(
-            row["RR_start"], row["error"], row["addend_magnitude"], row["gate_open"]
-        )
-        assert (end, pulse or None) == (row["RR_end"], row["pulse"]), row["cycle"]
-
-
-def test_table_1_as_a_run_with_one_rule(vectors: Vectors) -> None:
-    run = vectors("pw_table1")["run_same_cycle_rule"]
-    loop = ResidueInterpolator(servo_constant=4, guard=False)
-    found = read(loop, (-6, 0, 0), Feed(gate_period=3), 5)
-    for row in run["rows"]:
-        at = row["cycle"] - 1
-        began, ended = found.residue[at : at + 2, 0].tolist()
-        assert (began, ended) == (row["start"], row["end"])
-        assert began + found.entered[at, 0] == row["after_error"]
-        assert (found.error[at, 0], found.total[at]) == (row["E"], row["L_plus_Em"])
-        assert found.against[at, 0] == row["added"] and row["gate"] == found.was_open[at]
-        assert (found.pulses[at, 0] or None) == row["pulse"]
-    pulsed = [cycle for cycle, pulse in enumerate(found.pulses[:, 0], 1) if pulse]
-    assert pulsed == run["pulse_cycles"] == [4, 9, 16, 21, 30, 45]
-
-
-@pytest.mark.parametrize("rule", ["zero_positive", "zero_negative"])
-def test_a_sum_that_is_late_pulses_elsewhere_and_once_the_wrong_way(
-    vectors: Vectors, rule: str
-) -> None:
-    """The rule that is not built, as the vectors have it; the compiled loop does otherwise."""
-    told = vectors("pw_table1")["run_one_cycle_late_rule"][rule]
-    residue, left, late, pulses = 5, -6, 10, []
-    low = 0 if rule == "zero_positive" else 1
-    for cycle in range(1, told[-1][0] + 1):
-        total, late = late, 4 + abs(left)
-        now = residue + (left if cycle % 3 == 0 else 0) + (total if residue < low else -total)
-        if (now < low) == (residue < low):
-            pulse = -1 if now < low else 1
-            left -= pulse
-            pulses.append([cycle, pulse])
-        residue = now
-    assert pulses == told
-    built = read(
-        ResidueInterpolator(servo_constant=4, guard=False), (-6, 0, 0), Feed(gate_period=3), 5
-    )
-    ours = [[k, int(pulse)] for k, pulse in enumerate(built.pulses[:, 0], 1) if pulse]
-    assert ours != told and {pulse for _, pulse in ours} == {-1}
-
-
-def test_one_axis_never_pulses_the_wrong_way_and_always_arrives() -> None:
-    for error in range(1, 25, 2):
-        for constant in (1, 2, 4, 8):
-            for at in range(1 - constant - error, constant + error, 4):
-                for period in (1, 2, 3, 4, 5, 7):
-                    loop = ResidueInterpolator(servo_constant=constant, guard=False)
-                    pulses = loop.line((error,) * 3, Feed(gate_period=period), at)[:, 0]
-                    assert len(pulses) < 4_000 and pulses.min() >= 0
-                    assert pulses.sum() == error
-
-
-def test_linear_runs(vectors: Vectors) -> None:
-    for case in vectors("pw_linear")["cases"]:
-        pulses = ResidueInterpolator(servo_constant=case["L"], guard=False).line(
-            tuple(case["target"]), ALWAYS, case["R0"]
-        )
-        assert len(pulses) == case["cycles"]
-        first = [[int(i) + 1, pulses[i].tolist()] for i in np.flatnonzero(pulses.any(axis=1))]
-        assert first[: len(case["first_pulses"])] == case["first_pulses"]
-        assert (len(first), first[-1][0]) == (case["steps"], case["last_cycle"])
-        along = np.array(case["target"]) / np.linalg.norm(case["target"])
-        way = ways(pulses)
-        off = np.linalg.norm(way - np.outer(way @ along, along), axis=1)
-        assert off.max() == pytest.approx(case["max_dev_pulses"], abs=1e-4)  # as printed
-        assert wrong_ways(pulses, case["target"]) == case["wrong_direction_pulses"]
-
-
-def wrong_ways(pulses: np.ndarray, target: list[int]) -> int:
-    """Pulses against the sense of their axis, or of an axis that is to stand."""
-    return int(
-        (pulses * np.sign(target) < 0).sum() + (pulses[:, np.array(target) == 0] != 0).sum()
-    )
-
-
-def test_linear_runs_from_a_residue_of_nothing(vectors: Vectors) -> None:
-    for case in vectors("pw_linear")["cases"]:
-        told = case["with_R0_zero"]
-        loop = ResidueInterpolator(servo_constant=case["L"], guard=False)
-        pulses = loop.line(tuple(case["target"]), ALWAYS, 0)
-        along = np.array(case["target"]) / np.linalg.norm(case["target"])
-        way = ways(pulses)
-        off = np.linalg.norm(way - np.outer(way @ along, along), axis=1)
-        assert len(pulses) == told["cycles"]
-        assert off.max() == pytest.approx(told["max_dev"], abs=1e-4)  # as printed
-        assert wrong_ways(pulses, case["target"]) == told["wrong_direction_pulses"]
-
-
-def test_circular_runs(vectors: Vectors) -> None:
-    for case in vectors("pw_circular")["cases"]:
-        start, sense = (*case["start"], 0), COUNTER_CLOCKWISE if case["ccw"] else CLOCKWISE
-        pulses = ResidueInterpolator(start, case["L"]).arc(
-            (*case["end"], 0), tuple(case["centre"]), sense, ALWAYS
-        )
-        way = ways(pulses[pulses.any(axis=1)], start)[:, :2]
-        assert len(pulses) == case["cycles"] and way[-1].tolist() == case["end"]
-        expected = case["path_every_50"]
-        assert way[::50][: len(expected)].tolist() == expected
-        off = np.hypot(*(way - case["centre"]).T) - math.dist(case["start"], case["centre"])
-        assert [off.min(), off.max()] == pytest.approx(case["radial_error_pulses"], abs=1e-3)
-        # the text's variant, with the larger error in 2h, is further off
-        assert np.abs(off).max() < np.abs(case["text_variant_radial_error"]).max()
-
-
-def test_the_weights_and_what_they_make_of_the_speed(vectors: Vectors) -> None:
-    norms = vectors("pw_feed_norm")
-    assert norms["counter_weights_eighths"] | {"note": ""} == {
-        "G": GREATEST,
-        "M": MIDDLE,
-        "S": SMALLEST,
-        "note": "",
-    }
-    for sample in norms["samples"]:
-        direction = np.array(sample["vector"])
-        approximate = (
-            direction @ resultant_weights(direction, true_norm=False) / (GREATEST * EIGHTH)
-        )
-        true = direction @ resultant_weights(direction, true_norm=True) / (GREATEST * EIGHTH)
-        assert approximate == pytest.approx(sample["approx"]) and true == pytest.approx(
-            sample["true"], rel=1e-4
-        )
-        assert true / approximate == pytest.approx(
-            sample["true_feed_over_programmed"], rel=1e-4
-        )  # weights of 15 bits
-
-
-def test_the_largest_and_the_smallest_feeds_of_the_weights(vectors: Vectors) -> None:
-    """Where two and three axes move, by directions a degree apart and those that the vectors name."""
-    told = vectors("pw_feed_norm")
-    for axes in (2, 3):
-        extremes = told["two_axis" if axes == 2 else "three_axis"]
-        tilts = np.radians(np.arange(91.0)) if axes == 3 else np.zeros(1)
-        ways = [
-            [math.cos(turn) * math.cos(tilt), math.sin(turn) * math.cos(tilt), math.sin(tilt)]
-            for turn in np.radians(np.arange(0.0, 91.0))
-            for tilt in tilts
-        ]
-        if axes == 3:
-            ways += [extremes["max_at"], extremes["min_at"]]
-            assert ratio(np.array([1.0, 1.0, 0.0])) == pytest.approx(extremes["at_1_1_0"])
-        else:
-            for name in ("max_at_deg", "min_at_deg"):
-                turn = math.radians(extremes[name])
-                ways.append([math.cos(turn), math.sin(turn), 0.0])
-        ratios = [ratio(np.array(way, float)) for way in ways]
-        assert max(ratios) == pytest.approx(extremes["max_ratio"]) == pytest.approx(ratios[-2])
-        assert min(ratios) == pytest.approx(extremes["min_ratio"]) == pytest.approx(ratios[-1])
-        slowest, fastest = (100 / one - 100 for one in (max(ratios), min(ratios)))
-        assert [slowest, fastest] == pytest.approx(extremes["feed_error_percent"], abs=1e-3)
-
-
-def ratio(direction: np.ndarray) -> float:
-    """The patent's resultant speed over the true one."""
-    weighed = direction @ resultant_weights(direction, true_norm=False) / (GREATEST * EIGHTH)
-    return float(weighed / np.linalg.norm(direction))
-
-
-def test_the_unit_circuit(vectors: Vectors) -> None:
-    for case in vectors("pw_unit_circuit")["cases"]:
-        asked = case["position"], case["icr5"], 5
-        assert subtracted(*asked) == (case["diff5"], case["borrow"])
-        assert unit_circuit(*asked) == case["interpolated"]
-        assert lag(*asked) == case["lag"]
-
-
-def test_the_unit_circuit_in_a_servo_whose_motor_is_stuck(vectors: Vectors) -> None:
-    """The axis stands at the vectors' position, and is told to go on by their lag: no fault."""
-    for case in vectors("pw_unit_circuit")["cases"]:
-        servos = PulseServos(
-            np.array([PULSES_PER_COUNT * case["position"]]), 6_000, HISTORIC_CONTROL.servo, 1
-        )
-        servos.conditions = [Condition(stuck=True)]
-        sense = np.int8(math.copysign(1, case["lag"]))
-        pulses = np.full((PULSES_PER_COUNT * abs(case["lag"]), 1), sense)
-        assert servos.follow(pulses)[2] == len(pulses)
-        assert servos.command[0] == PULSES_PER_COUNT * case["interpolated"]
-        assert servos.largest_lag[0] == abs(case["lag"])
-
-
-# --- claims
+from tests.sources.pulse_registers import (
+    ALWAYS,
+    RECIRCULATIONS_HZ,
+    oblique,
+    played,
+    quarters,
+    read,
+    step,
+    ways,
+)
 
 
 def rates(end: tuple[int, int, int], constant: int = 16) -> np.ndarray:
@@ -513,87 +286,3 @@ def test_claim_20_the_difference_is_a_representation_of_the_lag() -> None:
         lags.append(servos.command[0] - position)
         assert added == lags[-1]
     assert max(lags) >= 4 and min(lags) < 0 and lags[-1] == 0
-
-
-def crossings(block: Block) -> Iterator[tuple[slice, float, float, np.ndarray]]:
-    """Parts of an arc: rows, crossed recirculations too many, E/2h by geometry, and the place there."""
-    radius = math.dist(block.place[0, :2], block.centre)
-    for first in range(0, len(block.pulses) - 400, 400):
-        rows = slice(first, first + 400)
-        opened = block.was_open[rows]
-        crossed = int((opened & (block.ratio[:-1][rows] < 0)).sum())
-        straight = int(opened.sum()) - crossed
-        here = block.place[:-1][rows][opened][:, :2].mean(axis=0)
-        chord = math.dist(here, block.end[:2])
-        if chord > radius / 4 and opened.sum() > 60:
-            twice_h = math.sqrt(4 * radius**2 - chord**2)
-            yield rows, crossed - straight * chord / twice_h, chord / twice_h, here
-
-
-def test_claim_23_the_tangent_is_the_chord_and_twice_the_perpendicular() -> None:
-    """What enters the residues is, in the mean, E + A with A = E · E/2h at a right angle to E."""
-    seen = 0
-    for block in quarters():
-        for rows, _, ratio, here in crossings(block):
-            opened = block.was_open[rows]
-            came = block.entered[rows][opened, :2].mean(axis=0) * (1 + ratio)
-            chord = block.end[:2] - here
-            across = block.sense * ratio * np.array([chord[1], -chord[0]])
-            # 5 %: an error more or less crossed in 60
-            assert math.dist(came, chord + across) < 0.05 * math.hypot(*came)
-            radial = came @ (here - block.centre)
-            assert abs(radial) < 0.05 * math.hypot(*came) * math.dist(here, block.centre)
-            seen += 1
-    assert seen > 10
-
-
-@pytest.mark.parametrize("sense", [COUNTER_CLOCKWISE, CLOCKWISE])
-def test_claim_24_errors_are_added_or_taken_by_the_sense_of_rotation(sense: int) -> None:
-    start, end = (1_500, 0, 0), (0, 1_500 * sense, 0)
-    pulses = ResidueInterpolator(start).arc(end, (0, 0), sense, ALWAYS)
-    way = ways(pulses, start)
-    turning = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
-    assert turning[-1] == pytest.approx(sense * math.pi / 2)
-    assert (np.diff(turning[::100]) * sense > 0).all()
-
-
-def perpendicular(block: Block) -> np.ndarray:
-    """2h of the axis with the smaller error, by equations X and XI, along an arc."""
-    place, error = block.place[:-1, :2], block.error[:, :2]
-    both = 2 * (block.centre - place) - error
-    larger_x = np.abs(error[:, 0]) > np.abs(error[:, 1])
-    return np.abs(np.where(larger_x, both[:, 1], both[:, 0]))
-
-
-def test_claim_25_larger_error_and_smaller_perpendicular_choose_how_the_errors_go_in() -> None:
-    """They are crossed E/2h times as often as not, with E and h from the circle's geometry."""
-    for block in quarters():
-        parts = [(too_many, ratio) for _, too_many, ratio, _ in crossings(block)]
-        assert max(abs(too_many) for too_many, _ in parts) <= 2  # one at either end of a part
-        # as the chord gets shorter fewer are crossed; at the start of a quarter as many as not
-        assert parts[0][1] == pytest.approx(1, rel=0.1) and parts[-1][1] < 0.3
-
-
-def test_claim_26_one_more_loop_takes_the_larger_and_adds_the_smaller() -> None:
-    """Loop Q as it was compiled: - E_m where it is not negative, + 2h where it is, else as it was."""
-    for block in quarters():
-        largest = np.abs(block.error[:, :2]).max(axis=1)
-        change = np.where(block.ratio[:-1] >= 0, -largest, perpendicular(block))
-        assert (np.diff(block.ratio) == np.where(block.was_open, change, 0)).all()
-        assert block.ratio.min() < 0 < block.ratio.max()
-
-
-def test_claim_27_where_the_loop_is_positive_errors_go_to_their_own_circuits() -> None:
-    for block in quarters():
-        straight = block.was_open & (block.ratio[:-1] >= 0)
-        assert (block.entered[straight, :2] == block.error[straight, :2]).all()
-        assert straight.sum() > 500
-
-
-def test_claim_28_where_it_is_negative_they_are_crossed_and_one_is_subtracted() -> None:
-    for block in quarters():
-        crossed = block.was_open & (block.ratio[:-1] < 0)
-        to_x, to_y = block.entered[crossed, :2].T
-        error_x, error_y = block.error[crossed, :2].T
-        assert (to_x == block.sense * error_y).all() and (to_y == -block.sense * error_x).all()
-        assert crossed.sum() > 200

@@ -19,14 +19,14 @@ from morfax.motion.faults import Fault, LockFault
 from morfax.motion.motion import join
 from morfax.player.cubics.cubic import HISTORIC, play_cubic
 from morfax.player.cubics.interpolator import CubicInterpolator, ends
-from morfax.player.cubics.scales import Scales, gated_pulses, joined, read_scales
+from morfax.player.cubics.scales import Scales, gated_pulses, joined
 from morfax.player.cubics.servo import Servo
 from morfax.player.cubics.stores import LENGTHS, circulate, content, write
 from morfax.player.cubics.time_base import TimeBase
 from morfax.recorder.cubics.cubics import differences, record_cubics
 from morfax.recorder.cubics.file import CubicFormat, read_program
 from tests.console.conftest import Morfax
-from tests.player.cubics.registers import table, truncated_end
+from tests.player.cubics.registers import codes, table, truncated_end
 from tests.recorder.steps.paths import circle
 
 Vectors = Callable[[str], Any]
@@ -147,30 +147,6 @@ def test_the_time_base_of_figure_3(vectors: Vectors) -> None:
     assert base.step_hz == told["interpolation_rate_hz"]
     assert base.steps_per_block == told["interpolations_per_tape_block"]
     assert base.block_s == pytest.approx(told["tape_block_period_s"])
-
-
-def codes(positions: np.ndarray, scales: Scales) -> np.ndarray:
-    """What the historic control reads at positions in counts, each in the middle of its count."""
-    settings = scales.table(TimeBase())
-    found = [read_scales(x + 0.5, 0.0, 0.0, settings) for x in positions]
-    return np.array([(*both, joined(*both, scales.pitch_counts)) for both in found])
-
-
-def test_coarse_and_fine_are_joined_as_told(vectors: Vectors) -> None:
-    for case in vectors("sea_coarse_fine")["cases"]:
-        ((fine, coarse, code),) = codes(np.array([float(case["X"])]), HISTORIC.scales)
-        assert (fine, coarse) == (case["fine"], case["coarse_read"])
-        assert fine >> 5 == case["fine_msb"]
-        assert code == case["combined"] == case["X"]
-
-
-def test_the_coarse_scale_may_be_late_by_one_digit_at_most(vectors: Vectors) -> None:
-    position = np.arange(0, 39 * 64, dtype=float)
-    for lag, right in vectors("sea_coarse_fine")["lag_in_coarse_LSB_vs_correct"].items():
-        # half a count less, as a count is read in its middle
-        late = float(lag) + (0.5 / 32 if float(lag) in (0.0, 1.0) else 0)
-        read = codes(position, Scales(64, lag_digits=late))
-        assert (read[:, 2] == position).all() == right, lag
 
 
 # claims

@@ -39,42 +39,31 @@ def inked(
     """The drawing of lines (n, 2) mm on a sheet with a margin above and right of all; specks are filled
     outlines.
     """
-    high = np.vstack([*lines, *specks]).max(axis=0) + MARGIN_MM
-    pixels = np.ceil(high * dpi / MM_PER_INCH).astype(int)
-    fine = np.zeros((pixels[1] * OVERSAMPLE, pixels[0] * OVERSAMPLE), np.uint8)
-    scale = dpi / MM_PER_INCH * OVERSAMPLE
-    for line in lines:
-        cv2.polylines(
-            fine,
-            [_fixed(line, len(fine), scale)],
-            False,
-            255,
-            round(width_mm * scale),
-            cv2.LINE_AA,
-            8,
-        )
-    for speck in specks:
-        cv2.fillPoly(fine, [_fixed(speck, len(fine), scale)], 255, cv2.LINE_AA, 8)
-    return Drawing(_seen(fine, pixels, dpi, seed), MM_PER_INCH / dpi)
+    return _scanned([(line, width_mm) for line in lines], specks, dpi, seed)
 
 
 def together(*drawn: tuple[Points, float], seed: int | None = None) -> Drawing:
     """The drawing of lines (n, 2) mm, each with the width of its pen, mm."""
-    high = np.vstack([line for line, _ in drawn]).max(axis=0) + MARGIN_MM
-    pixels = np.ceil(high * DPI / MM_PER_INCH).astype(int)
+    return _scanned(drawn, (), DPI, seed)
+
+
+def _scanned(
+    drawn: Sequence[tuple[Points, float]],
+    specks: Sequence[Points],
+    dpi: float,
+    seed: int | None,
+) -> Drawing:
+    """The drawing of lines, each with the width of its pen, and specks."""
+    high = np.vstack([*(line for line, _ in drawn), *specks]).max(axis=0) + MARGIN_MM
+    pixels = np.ceil(high * dpi / MM_PER_INCH).astype(int)
     fine = np.zeros((pixels[1] * OVERSAMPLE, pixels[0] * OVERSAMPLE), np.uint8)
-    scale = DPI / MM_PER_INCH * OVERSAMPLE
+    scale = dpi / MM_PER_INCH * OVERSAMPLE
     for line, width_mm in drawn:
-        cv2.polylines(
-            fine,
-            [_fixed(line, len(fine), scale)],
-            False,
-            255,
-            round(width_mm * scale),
-            cv2.LINE_AA,
-            8,
-        )
-    return Drawing(_seen(fine, pixels, DPI, seed), MM_PER_INCH / DPI)
+        way, pen = _fixed(line, len(fine), scale), round(width_mm * scale)
+        cv2.polylines(fine, [way], False, 255, pen, cv2.LINE_AA, 8)
+    for speck in specks:
+        cv2.fillPoly(fine, [_fixed(speck, len(fine), scale)], 255, cv2.LINE_AA, 8)
+    return Drawing(_seen(fine, pixels, dpi, seed), MM_PER_INCH / dpi)
 
 
 def loops(count: int, apart_mm: float = 12.0) -> Points:

@@ -15,9 +15,9 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import cross, left_of, meeting, unit
 from morfax.tracer.effort import ROUNDS
+from morfax.tracer.limits import NEARLY_PARALLEL
 
 BENT = 0.7  # of what is left by a straight leg: a parabola has to leave less than this share
-NEARLY_PARALLEL = 0.1  # sine of the angle between legs that do not meet
 
 
 class EdgeLeg(NamedTuple):

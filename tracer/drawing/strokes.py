@@ -241,6 +241,10 @@ class Sheet:
         """Last pixels of some runs of ink, (n, 2) sheet mm."""
         return self._mm(self.patches.row[runs], self.patches.end[runs] - 1)
 
+    def places_mm(self, rows: Pixels, columns: Pixels) -> Array:
+        """Centres of some pixels, (n, 2) sheet mm."""
+        return self._mm(rows, columns)
+
     def _mm(self, rows: Pixels, columns: Pixels) -> Array:
         """Centres of pixels, (n, 2) sheet mm."""
         up = self.drawing.darkness.shape[0] - rows

@@ -28,7 +28,7 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.neighbours import Neighbours, those_near
 from morfax.motion.plane import left_of_headings
-from morfax.tracer.effort import EVERY_MM
+from morfax.tracer.effort import EVERY_MM, ROUNDS
 from morfax.tracer.limits import FADES, LONGER_WIDTHS, NEAR
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.parabola import FEWEST
@@ -50,7 +50,6 @@ STEP_MM = 0.01  # of ends that are tried
 FIRST_WIDTHS = 4.0  # of ends that are tried first
 MORE = 4  # times as many if that was not enough
 ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
-ROUNDS = 3  # in which lines that end in each other's ink have their ends found
 EVERY_PX = 0.7  # a place is looked at
 # of the line's darkness: no pen leaves its ink more exactly; and deviations, for places share what they see
 INEXACT, DEVIATIONS = 0.05, 5.0

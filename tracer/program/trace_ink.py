@@ -30,6 +30,7 @@ from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.struck_off import struck_off
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.against_ink.strokes_off_ink import strokes_off_ink
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.as_contours import as_contours
 from morfax.tracer.program.laid.bent import bent
@@ -92,6 +93,7 @@ def _of_strokes(
     lines, broad = as_contours(setup, lines)
     lines, beside = beside_mended(setup, bent(setup, lines))
     broad += _slots_left(setup, lines)
+    broad += strokes_off_ink(left.drawing, lines)
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
     ink = balance(sheet, felt, left, [line.xy_mm for line in lines])
     in_order = tuple(_in_order(lines))

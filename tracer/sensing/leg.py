@@ -19,7 +19,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import CORNER_RAD, direction, heading_of, left_of
 from morfax.tracer.effort import ROUNDS
-from morfax.tracer.limits import AHEAD_RAD, BACK_RAD
+from morfax.tracer.limits import AHEAD_RAD, BACK_RAD, NEARLY_PARALLEL
 from morfax.tracer.sensing.moments import LEAST_WEIGHT, bend_of
 from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, leg_through, parabola
 from morfax.tracer.sensing.scout import FEWEST
@@ -31,7 +31,6 @@ TURNS_BACK = BACK_RAD
 # two ends whose headings are so near to one line face each other; by trial
 FACING = math.radians(35)
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
-NEARLY_PARALLEL = 0.02  # sine of the angle between two legs that do not meet
 FEWEST_STATIONS, LEAST_WIDTHS = FEWEST, 0.8  # of clean line make a leg; by trial
 
 # how far two legs meet beyond the one's clean end and before the other's, mm

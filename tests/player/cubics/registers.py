@@ -1,8 +1,12 @@
-"""Registers worked out beside the compiled ones: table I, and registers that drop their lower digits."""
+"""Registers worked out beside the compiled ones: table I, registers with fewer digits, and the scales."""
 
 from __future__ import annotations
 
+import numpy as np
+
 from morfax.player.cubics.interpolator import CubicInterpolator
+from morfax.player.cubics.scales import Scales, joined, read_scales
+from morfax.player.cubics.time_base import TimeBase
 
 
 def table(
@@ -38,3 +42,10 @@ def truncated_end(
 def _moved(word: int, digits: int, to_digits: int) -> int:
     """A word with other digits behind the point; lower digits are dropped."""
     return word << to_digits - digits if to_digits >= digits else word >> digits - to_digits
+
+
+def codes(positions: np.ndarray, scales: Scales) -> np.ndarray:
+    """What the historic control reads at positions in counts, each in the middle of its count."""
+    settings = scales.table(TimeBase())
+    found = [read_scales(x + 0.5, 0.0, 0.0, settings) for x in positions]
+    return np.array([(*both, joined(*both, scales.pitch_counts)) for both in found])

@@ -16,6 +16,8 @@ from morfax.motion.drive import SOUND
 from morfax.motion.faults import Fault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion
 from morfax.player.tape.ahead import BLOCKS_AHEAD, NAME, ReadAhead
+from morfax.player.tape.check_reader import CheckReader
+from morfax.player.tape.discriminator import Discriminator
 from morfax.player.tape.playback import TapePlayback, play
 from morfax.recorder.tape.tape import TapeFormat, record
 
@@ -159,4 +161,26 @@ def test_a_tape_read_ahead_plays_as_one_that_is_not(tmp_path: Path, is_weak: boo
     assert told[0][1:] == told[1][1:]
     assert bool(told[0][1]) == is_weak
     assert len(told[0][2]) > 3
+    assert not is_anything_left()
+
+
+@pytest.mark.parametrize("ahead", [False, True])
+def test_the_check_signal_of_a_tape_read_ahead_has_a_thread_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ahead: bool
+) -> None:
+    threads: dict[str, set[int]] = {}
+    heard, fed = CheckReader.heard, Discriminator.feed
+
+    def noted(name: str) -> None:
+        threads.setdefault(name, set()).add(threading.get_ident())
+
+    monkeypatch.setattr(CheckReader, "heard", lambda *a: (noted("heard"), heard(*a))[1])
+    monkeypatch.setattr(Discriminator, "feed", lambda *a: (noted("fed"), fed(*a))[1])
+    playback = play(tape(tmp_path))
+    playback.reads_ahead = ahead
+    blocks = iter(playback)
+    next(blocks), next(blocks)
+    blocks.close()  # type: ignore[attr-defined]
+    own = threads["heard"] - threads["fed"]
+    assert len(own) == ahead
     assert not is_anything_left()

@@ -82,6 +82,25 @@ def test_ink_that_may_be_either_is_run_once_and_told() -> None:
     assert found.ink.single and found.ink.followed_share < 0.8
 
 
+def test_a_hand_that_presses_once_as_two_lines_cross_is_run_once() -> None:
+    """A ring, and a stroke from side to side that narrows at a slope; taken for two lines it would
+    be run twice from end to end.
+    """
+    turns, along = np.linspace(0, 2 * np.pi, 1500), np.linspace(0, 1, 900)
+    ring = np.column_stack([35 + 15 * np.cos(turns), 30 + 15 * np.sin(turns)])
+    across = np.column_stack([20 + 30 * along, 30 + np.sin(np.pi * along)])
+    pressed = 1.35 + 0.3 * np.sin(turns + 1)
+    narrows = 1 + np.minimum(4 * np.abs(along - 0.45), 0.7)
+    pieces = [
+        (way[k : k + 6], float(PEN_MM * widths[k]))
+        for way, widths in ((ring, pressed), (across, narrows))
+        for k in range(0, len(way) - 5, 5)
+    ]
+    found = trace_ink(together(*pieces, seed=1))
+    assert run_mm(found) == pytest.approx(length_mm(ring) + length_mm(across), rel=0.02)
+    assert found.ink is not None and len(found.ink.single) == 1
+
+
 def test_only_the_stroke_that_may_be_either_is_told() -> None:
     """A hand pressed beside it: all broad ink of a sheet was told, 362 of 4340 mm of a page."""
     either = lissajous(1, 2, 0.58 * PEN_MM)

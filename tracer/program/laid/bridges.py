@@ -43,7 +43,7 @@ from morfax.tracer.program.laid.line_parts import (
     part_of,
     run_on,
 )
-from morfax.tracer.program.laid.rim_bays import OPEN, is_a_pen, ways_within_rims
+from morfax.tracer.program.laid.rim_bays import is_a_pen, ways_within_rims
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.beside_itself import shortest
 from morfax.tracer.tangles.pen import away_from
@@ -173,10 +173,8 @@ def _sides(
     if len(found) < 2:
         return None
     there, back = found
-    # 2. apart, and of no other pen
+    # 2. of no pen that is as broad
     apart_mm = away_from(_middle_half(there.way), back.way)
-    if apart_mm.min() < OPEN * width_mm:
-        return None
     if is_a_pen(setup.sheet, median(apart_mm) + width_mm):
         return None
     # 3. held against the ink

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.drawing import Drawing
@@ -27,12 +28,19 @@ from morfax.tracer.program.setup import Setup
 LEGS = 1.5, 4.0
 MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 OF_LOOP = 0.8  # of a line: a stretch that is more of it is no bay and no touch
+# of what a way leaves unexplained: what is laid in its place and leaves more is none, unless that is noise
+STILL_LEFT = 0.35
 REACH = 2.2  # of the ink about a place that is looked at
 
 
 def is_plain(line: Line) -> bool:
     """Whether a line came round, and bears no mark."""
     return line.ending == "closed" and is_bare(line)
+
+
+def is_whole(line: Line) -> bool:
+    """Whether a line came round, or ended where its ink does, and bears no mark."""
+    return line.ending in ("closed", "ended") and is_bare(line)
 
 
 def is_bare(line: Line) -> bool:
@@ -47,6 +55,13 @@ def is_clear(drawing: Drawing) -> bool:
     """
     is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
     return is_fine and not drawing.grainy and not drawing.edges_mm
+
+
+def rest_of(way: Array, first: int, last: int, is_closed: bool) -> tuple[Array, ...]:
+    """A way (n, 2) mm but for the stretch from one of its places to another."""
+    if is_closed:
+        return (way[np.arange(last, first + len(way) + 1) % len(way)],)
+    return way[: first + 1], way[last:]
 
 
 def part_of(line: Line, first: int, last: int) -> Line:

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
+from morfax.tracer.effort import ROUNDS
 from morfax.tracer.program.against_ink.off_ink import wrong_about
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -36,7 +37,6 @@ TURNS_OVER = 0.25  # on either side of a place, by how much the way turns there
 CORNER_RAD, MAYBE_RAD = math.radians(30), math.radians(12)
 FOLDED_RAD = math.radians(165)  # a corner that turns by more is no tip, but a way out and back
 MOST_CORNERS = 5  # are tried at a time
-ROUNDS = 3  # of corners more or fewer
 PRICE = 0.001  # of a figure more, as misfit
 
 

@@ -28,24 +28,26 @@ SAME = 0.95  # of each of two is beside the other; the rest are spurs, and bridg
 
 def without_repeats(lines: Sequence[Line]) -> list[Line]:
     """The lines; of closed ones along one way the shortest, which runs out along no spur."""
-    kept = list[Line]()
-    for line in sorted(lines, key=lambda line: line.length_mm):
-        if not any(_are_one(line, other) for other in kept):
-            kept.append(line)
-    chosen = {id(line) for line in kept}
-    return [line for line in lines if id(line) in chosen]
+    closed = [line for line in lines if line.ending == "closed"]
+    closed.sort(key=lambda line: line.length_mm)
+    # the boxes of all at once: on a plate of many holes each was made anew for every other line
+    boxes = np.array([np.hstack(bounds(line.loop_mm)) for line in closed]).reshape(-1, 4)
+    kept = list[int]()
+    for number, line in enumerate(closed):
+        apart_mm = np.abs(boxes[kept] - boxes[number]).max(axis=1)
+        near = (closed[kept[k]] for k in np.flatnonzero(apart_mm <= BOX_MM).tolist())
+        if not any(_are_one(line, other) for other in near):
+            kept.append(number)
+    chosen = {id(closed[number]) for number in kept}
+    return [line for line in lines if line.ending != "closed" or id(line) in chosen]
 
 
 def _are_one(line: Line, other: Line) -> bool:
-    """Whether two lines are closed and run along one way."""
-    if {line.ending, other.ending} != {"closed"}:
-        return False
+    """Whether two closed lines, of which neither reaches further, run along one way."""
     lengths_mm = sorted([line.length_mm, other.length_mm])
     if lengths_mm[0] < ALIKE * lengths_mm[1]:
         return False
     near_mm = NEAR * min(line.width_mm, other.width_mm)
-    if np.max(np.abs(np.subtract(bounds(line.loop_mm), bounds(other.loop_mm)))) > BOX_MM:
-        return False
     ways = evenly(line.loop_mm, EVERY_MM), evenly(other.loop_mm, EVERY_MM)
     return all(
         float(np.mean(nearest_mm(one, two) < near_mm)) > SAME for one, two in (ways, ways[::-1])

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from morfax.motion.arrays import bounds
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program import trace_lines
+from morfax.tracer.program.lines import repeated
 from morfax.tracer.program.lines.repeated import without_repeats
 from morfax.tracer.program.one_of_each import OneOfEach
 from morfax.tracer.program.setup import Setup
@@ -46,6 +48,19 @@ def test_of_closed_lines_along_one_way_the_shortest_is_cut() -> None:
 )
 def test_other_lines_stay(other: Line) -> None:
     assert without_repeats([CIRCLE, other]) == [CIRCLE, other]
+
+
+def test_each_line_of_many_is_looked_through_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    holes = [along(arc((10 * k, 10), 3)) for k in range(1, 30)]
+    looked_at = list[int]()
+
+    def counted(rows: Points) -> tuple[Points, Points]:
+        looked_at.append(len(rows))
+        return bounds(rows)
+
+    monkeypatch.setattr(repeated, "bounds", counted)
+    assert without_repeats(holes) == holes
+    assert len(looked_at) == len(holes)
 
 
 def test_contours_have_no_repeats_and_numbers_have(monkeypatch: pytest.MonkeyPatch) -> None:
