@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.listener import SILENT, Listener, never_back
 from morfax.jobs.media import files as medium
 from morfax.jobs.remarks.on_survey import remarks_on_lines
 from morfax.jobs.remarks.scale_doubts import scale_doubts
@@ -85,11 +85,7 @@ def _followed(seen: Survey, setup: Setup, listener: Listener) -> Survey:
     from morfax.tracer.program.survey_followed import followed
 
     with listener.progress("following the lines", 1.0) as advance:
-
-        def tell(come_mm: float, all_mm: float) -> None:
-            advance(come_mm / all_mm)
-
-        return followed(seen, replace(setup, progress=tell))
+        return followed(seen, replace(setup, progress=never_back(advance)))
 
 
 def _figures(drawing: Drawing, seen: Survey) -> dict[str, Any]:

@@ -73,5 +73,19 @@ def watched(
             advance(done_s)
 
 
+def never_back(advance: Advance) -> Callable[[float, float], None]:
+    """Who hears how far the head has come of a length, mm, and tells the share, never less than before: what
+    is looked at before the head runs counts, too.
+    """
+    most = 0.0
+
+    def tell(come_mm: float, all_mm: float) -> None:
+        nonlocal most
+        most = max(most, come_mm / all_mm)
+        advance(most)
+
+    return tell
+
+
 def _pass_over(done: float) -> None:
     """Say nothing of work that is done."""

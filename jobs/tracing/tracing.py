@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from morfax.jobs.listener import never_back
 from morfax.jobs.remarks.on_contours import of_around, of_contouring, of_order
 from morfax.jobs.remarks.on_edges import of_picture_edge
 from morfax.jobs.remarks.on_reference import of_reference, of_zero
@@ -195,10 +196,7 @@ class Tracing:
 
         line = self.settings.line
         with listener.progress("following the line", 1.0) as advance:
-
-            def tell(come_mm: float, all_mm: float) -> None:
-                advance(come_mm / all_mm)
-
+            tell = never_back(advance)
             if line.arrows_mm or line.more_starts_mm:
                 starts_mm = line.starts_mm
                 if starts_mm:

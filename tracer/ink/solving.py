@@ -1,13 +1,19 @@
 """Solving: the junctions of a sheet, solved anew until all ink between them is a line's, or two lines'.
 
-Signals: a sheet as it was felt in; its junctions out.
+Signals: a sheet as it was felt in; its junctions out; on the way how far it has come, a share.
+
+How many rounds it takes is not known. In each less is left to solve, so each counts for half of what is left:
+
+    0 ├──────── 1st ────────┤───── 2nd ─────┤── 3rd ──┤ … 1      of each, first how lines go on, then what is
+                                                                 left between them
 
 Source: our own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from typing import TypeVar
 
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.ink.chains import Junctions
@@ -20,12 +26,16 @@ from morfax.tracer.ink.stretches import FeltSheet
 # trial on drawings of nets
 NARROWER = 0.8
 
+Told = Callable[[float], None]
+Item = TypeVar("Item")
 
-def solved(sheet: FeltSheet) -> Junctions:
+
+def solved(sheet: FeltSheet, told: Told | None = None) -> Junctions:
     """The junctions of a sheet. A stretch within one along which no way goes is a line of its own, or two.
 
     A stretch that turns out to be two lines that run together lies within a junction, or is too long for
-    that; then what meets it there is asked anew, for these two may be what goes along another stretch.
+    that; then what meets it there is asked anew, for these two may be what goes along another stretch. `told`
+    hears how much is done, a share.
     """
     cut = sheet.doubled.cut
     parted, two, bare = set(cut), set(cut), set[int]()
@@ -35,13 +45,14 @@ def solved(sheet: FeltSheet) -> Junctions:
     ]
     doubled = sheet.doubled.throughout(sheet.felt)
     known = dict[Hashable, Crossing]()
-    for _ in range(ROUNDS):
+    for number in range(ROUNDS):
+        done, quarter = 1 - 0.5**number, 0.25 * 0.5**number
         junctions = Junctions(net_of(sheet, two | bare), sheet.settings, known)
         lines = [line.stretch for line in junctions.net.lines]
         together = dict.fromkeys((doubled & set(lines)) - parted - bare, sheet.doubled.pen_mm)
         together |= {
             stretch: width_mm
-            for n, stretch in enumerate(lines)
+            for n, stretch in enumerate(_heard(lines, told, done, quarter))
             if stretch not in parted | bare
             and (width_mm := junctions.single_mm(n, _narrower_mm(sheet, stretch))) is not None
         }
@@ -54,12 +65,23 @@ def solved(sheet: FeltSheet) -> Junctions:
             two |= too_long
             bare -= _beside(junctions.net, too_long.union(together))
             continue
-        more = {inner.stretch for inner in junctions.net.inner if not junctions.covers(inner)}
+        inner = _heard(junctions.net.inner, told, done + quarter, quarter)
+        more = {it.stretch for it in inner if not junctions.covers(it)}
         if not more:
             return junctions
         two |= more & (doubled | sheet.together)
         bare |= more - two
     return Junctions(net_of(sheet, two | bare), sheet.settings, known)
+
+
+def _heard(
+    items: Sequence[Item], told: Told | None, done: float, part: float
+) -> Iterator[Item]:
+    """The items; `told` hears before each how much is done: so much before all, and a part more behind."""
+    for k, item in enumerate(items):
+        if told is not None:
+            told(done + part * k / len(items))
+        yield item
 
 
 def _beside(net: Net, stretches: set[int]) -> set[int]:

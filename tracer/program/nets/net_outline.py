@@ -20,6 +20,7 @@ point, a card, a turn or stop that was told) has one line, which its lead line l
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -162,8 +163,15 @@ def junctions_of(setup: Setup, patch: int) -> Junctions:
         ink = sheet.patches.painted(sheet.patches.alone(patch), top, bottom, left, right)
         felt = FeltSheet.of(sheet.drawing, settings, ink, window=window)
         setup.newest.clear()
-        setup.newest[patch] = solved(felt)
+        setup.newest[patch] = solved(felt, _told_of(setup, patch))
     return setup.newest[patch]
+
+
+def _told_of(setup: Setup, patch: int) -> Callable[[float], None] | None:
+    """Who hears how many of a patch's junctions are solved, a share: half of the work on it."""
+    ink_mm = float(setup.sheet.lengths_mm[patch])
+    told = setup.told(ink_mm)
+    return None if told is None else lambda share: told(0.5 * share * ink_mm)
 
 
 def touches_itself(junctions: Junctions) -> bool:

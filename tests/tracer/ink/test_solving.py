@@ -1,0 +1,42 @@
+"""What is heard while the junctions of a net are solved."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from morfax.jobs.listener import never_back
+from morfax.tracer.program.trace_ink import SOLVED, trace_ink
+from morfax.tracer.program.trace_lines import trace_lines
+from tests.tracer.inked import inked, polyline
+
+GRID = [
+    line
+    for at in np.arange(10.0, 41.0, 10.0)
+    for line in (polyline((5, at), (45, at)), polyline((at, 5), (at, 45)))
+]
+JUNCTIONS = 16
+
+
+def test_progress_moves_while_junctions_are_solved() -> None:
+    """It stood at 0 for half of the time of a heavy sheet."""
+    heard = list[float]()
+    trace_ink(inked(*GRID, seed=4), progress=lambda come, of: heard.append(come / of))
+    solved = [share for share in heard if share < SOLVED]
+    assert len(solved) > JUNCTIONS
+    assert heard == sorted(heard)
+    assert heard[0] < 0.01 and heard[-1] > 0.99
+
+
+def test_progress_of_contours_moves_while_junctions_are_solved() -> None:
+    """The bar shows what was solved until the head has come as far, and never goes back."""
+    frame, heard, shown = polyline((5, 5), (45, 5), (45, 45), (5, 45), (5, 5)), [0.0], [0.0]
+    tell = never_back(shown.append)
+
+    def progress(come_mm: float, of_mm: float) -> None:
+        heard.append(come_mm / of_mm)
+        tell(come_mm, of_mm)
+
+    trace_lines(inked(frame, *GRID, seed=4), progress=progress)
+    before = heard[: int(np.argmax(np.diff(heard) < 0)) + 1]  # the head runs then, from 0
+    assert len(before) > JUNCTIONS
+    assert shown == sorted(shown)
