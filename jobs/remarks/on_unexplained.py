@@ -1,4 +1,4 @@
-"""Remarks on places at which closed lines are not what is drawn.
+"""Remarks on places at which lines are not what is drawn.
 
 Signals in: the traced lines. Signals out: one text for each kind of place, each with what to do.
 """
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def of_unexplained(trace: Trace) -> Iterator[str]:
-    """Closed lines that may be other lines than those drawn, by what is there."""
+    """Lines that may be other lines than those drawn, by what is there."""
     is_closed = any(line.ending == "closed" for line in trace.lines)
     for kind in SAID:
         places = [place for place in trace.unexplained if place.kind == kind]
@@ -56,7 +56,7 @@ SAID: dict[Kind, tuple[tuple[str, str], str]] = {
     # a way beside its own ink
     "beside": (
         ("place", "places"),
-        "the closed line runs beside its ink at {many}, the longest {mm:.1f} mm at {at}: look there in "
+        "the path runs beside its ink at {many}, the longest {mm:.1f} mm at {at}: look there in "
         "--picture; a notch or a tongue that is narrower than two lines is followed if it is drawn with a "
         "finer pen",
     ),
@@ -65,6 +65,13 @@ SAID: dict[Kind, tuple[tuple[str, str], str]] = {
         ("piece of ink is", "pieces of ink are"),
         "{many} about as broad as two lines, the longest {mm:.1f} mm at {at}: if it is a slot, a notch or a "
         "tongue, its two sides are not followed; draw it with a finer pen, or scan it at a higher resolution",
+    ),
+    # strokes that leave ink, or go over paper, where lines meet
+    "off": (
+        ("place", "places"),
+        "the strokes are not what is drawn at {many}, the worst at {at}, for {mm:.1f} mm: a corner or an end "
+        "in the ink of another line, or ink that is no line; look there in --picture, and draw it with a "
+        "finer pen, or a little further from that line",
     ),
     # a way over pale pixels of a coarse scan
     "pale": (

@@ -21,6 +21,7 @@ UNEXPLAINED: dict[Kind, str] = {
     "bare": "way without ink",
     "beside": "way beside its ink",
     "broad": "strokes within ink as broad as two lines",
+    "off": "strokes off their ink",
     "pale": "pixels too large to tell",
 }
 

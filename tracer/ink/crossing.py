@@ -13,7 +13,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
@@ -25,21 +25,27 @@ from morfax.motion.curves import hermite
 from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
 from morfax.tracer.effort import EVERY_MM
+from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
 from morfax.tracer.ink.partners import CORNERED, Pair, partners, turnings, way_through
+from morfax.tracer.ink.redrawn_crossing import LEGS, redrawn
 from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
 from morfax.tracer.junctions.planner import Planner
+from morfax.tracer.limits import WIDER
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.strands import stretches_over
 
 # of a stretch within a crossing, along which ways go; by trial on drawings of nets
 COVERED_SHARE = 0.7
 # two lines that come to a tip side by side are one, or two whose ends are so many widths apart: within one
 # width their pens' rounds overlap, and legs that have felt each other tell ends 1.0 apart
 TIP, APART = math.radians(60), 1.2
+LONG = 15.0  # widths: in ink that reaches further lines run together, and their rims tell them
 NOWHERE = np.empty((0, 2))
 
 
@@ -77,8 +83,41 @@ class Crossing:
         """The legs, by their numbers here, that are one line."""
         if len(self.legs) == 2:
             return [] if self._tips else [(0, 1)]
-        costs = turnings(self.legs, self._width_mm)
-        return self._by_rims(partners(costs), costs)
+        return sorted(self._vertices) or self._by_turnings
+
+    @cached_property
+    def _turnings(self) -> Array:
+        """By how much a way turns from each leg to each other, rad."""
+        return turnings(self.legs, self._width_mm)
+
+    @cached_property
+    def _by_turnings(self) -> list[Pair]:
+        """The pairs that turn least."""
+        return self._by_rims(partners(self._turnings), self._turnings)
+
+    @cached_property
+    def _vertices(self) -> Mapping[Pair, Array]:
+        """Where the ways between the legs of each pair turn, (n, 2) mm, if legs that meet may be told by
+        their ink only.
+        """
+        pairs, costs = self._by_turnings, self._turnings
+        if len(self.legs) != LEGS or len(pairs) != LEGS // 2:
+            return {}
+        if max(costs[pair] for pair in pairs) < SMOOTH or not self._is_of_one_pen:
+            return {}
+        return redrawn(self.views[0], self.legs, costs)
+
+    @property
+    def _is_of_one_pen(self) -> bool:
+        """Whether its legs are about as wide, the ink between them is no narrower, and reaches no further
+        than that of lines that cross.
+        """
+        legs_mm = [leg.width_mm for leg in self.legs]
+        inked_mm = [usual_width_mm(inner.run) for inner in self.inked]
+        if max(legs_mm) > WIDER * min(legs_mm + inked_mm):
+            return False
+        reach_mm = float(np.ptp([leg.end_mm for leg in self.legs], axis=0).max())
+        return reach_mm < LONG * self._width_mm
 
     @property
     def _width_mm(self) -> float:
@@ -116,10 +155,23 @@ class Crossing:
 
     @cached_property
     def ink(self) -> SharedInk | None:
-        """Its own ink and the ways through it; None if nothing was felt within it."""
-        if not self.inked:
+        """Its own ink and the ways through it; None if nothing is known of it."""
+        if not self.inked and not self._vertices:
             return None
-        return replace(self._inked, ways=self._hermites(self.pairs))
+        vertices = [self._vertices.get(pair) for pair in self.pairs]
+        ways = [
+            self._over(pair, NOWHERE if places is None else places)
+            for pair, places in zip(self.pairs, vertices, strict=True)
+        ]
+        return replace(self._inked, ways=ways, vertices=vertices)
+
+    def _over(self, pair: Pair, vertices: Array) -> Array:
+        """The way from a leg over vertices to its partner, (n, 2) mm."""
+        if not len(vertices):
+            return self._hermites([pair])[0]
+        one, onto = self.legs[pair[0]], self.legs[pair[1]].turned_round()
+        stands = one.end_mm, one.heading_rad
+        return np.vstack(stretches_over(stands, one, vertices, onto))
 
     @cached_property
     def passing_mm(self) -> Array:

@@ -11,7 +11,7 @@ Source: our own; the two pens of a drawing differ by 1.4 or more (ISO 128).
 from __future__ import annotations
 
 from collections.abc import Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -33,9 +33,16 @@ class Onward:
 
     junctions: Junctions
     aside: Set[int] = frozenset()
+    _known: dict[Side, bool] = field(default_factory=dict)
 
     def goes_on(self, side: Side) -> bool:
         """Whether a line goes on smoothly at one of its sides, by its own pen, and not into a line aside."""
+        if side not in self._known:
+            self._known[side] = self._goes_on(side)
+        return self._known[side]
+
+    def _goes_on(self, side: Side) -> bool:
+        """The same, asked for the first time."""
         there = self.junctions.at(side)
         partner = there.partner(side)
         if partner is None or partner.line in self.aside or self.are_of_two_pens(side, partner):

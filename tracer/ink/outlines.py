@@ -20,7 +20,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from morfax.motion.arrays import Array, bounds
+from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.polyline import broad_mm
 from morfax.tracer.drawing.numbering import Ink, longest_first
@@ -93,25 +93,27 @@ def is_free(chain: Chain, junctions: Junctions) -> bool:
 
 def goes_round(chain: Chain, junctions: Junctions, aside: Set[int]) -> bool:
     """Whether nearly all lines of a net, but those aside, lie on or inside a closed chain: its silhouette."""
-    lines, on_it = junctions.net.lines, {link.line for link in chain.links}
-    counted = [n for n in range(len(lines)) if n not in aside]
-    all_mm = sum(lines[n].length_mm for n in counted)
+    lengths_mm, on_it = junctions.lengths_mm, [link.line for link in chain.links]
+    is_counted = np.ones(len(lengths_mm), bool)
+    is_counted[list(aside)] = False
+    least_mm = NEARLY_ALL * float(lengths_mm[is_counted].sum())
     # 1. what lies in its box
-    outline = junctions.places_along(chain).astype(np.float32)
-    low, high = bounds(outline)
+    low, high = (
+        junctions.boxes_mm[on_it, 0].min(axis=0),
+        junctions.boxes_mm[on_it, 1].max(axis=0),
+    )
     middles = junctions.middles_mm
     is_near = np.all((middles >= low) & (middles <= high), axis=1)
-    near = [n for n in counted if n in on_it or is_near[n]]
-    if sum(lines[n].length_mm for n in near) <= NEARLY_ALL * all_mm:
+    is_near[on_it] = True
+    if lengths_mm[is_counted & is_near].sum() <= least_mm:
         return False
     # 2. what lies on it or inside
-    around = outline.reshape(-1, 1, 2)
-    inside = [
-        n
-        for n in near
-        if n in on_it or cv2.pointPolygonTest(around, middles[n].tolist(), False) > 0
-    ]
-    return sum(lines[n].length_mm for n in inside) > NEARLY_ALL * all_mm
+    around = junctions.places_along(chain).astype(np.float32).reshape(-1, 1, 2)
+    is_in = np.zeros(len(lengths_mm), bool)
+    is_in[on_it] = True
+    for n in np.flatnonzero(is_counted & is_near & ~is_in):
+        is_in[n] = cv2.pointPolygonTest(around, middles[n].tolist(), False) > 0
+    return bool(lengths_mm[is_counted & is_in].sum() > least_mm)
 
 
 def goes_round_paper(chain: Chain, junctions: Junctions) -> bool:
@@ -202,8 +204,9 @@ def spurs(left: set[int], junctions: Junctions) -> set[int]:
 
 def _bars(left: set[int], junctions: Junctions) -> set[int]:
     """The lines with the same area on both sides: they only lead from one part of a net to another."""
-    faces = [set(face) for face in ways_round(left, junctions)]
-    return {n for n in left if any((n, False) in face and (n, True) in face for face in faces)}
+    faces = enumerate(ways_round(left, junctions))
+    area_of = {edge: area for area, face in faces for edge in face}
+    return {n for n in left if area_of[n, False] == area_of[n, True]}
 
 
 def _simple(face: list[Edge], junctions: Junctions) -> list[list[Edge]]:

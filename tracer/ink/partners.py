@@ -31,6 +31,7 @@ from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink, off_rims_mm
 from morfax.tracer.junctions.corner import Corner, sharp_corner
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.tangles.strands import stretches_over
 
 # All limits below were chosen by trial on drawings of nets.
 SMOOTHLY = math.radians(22)  # a way that turns by no more between two legs is smooth
@@ -98,14 +99,21 @@ def way_through(
     onto = outgoing.end_mm, outgoing.heading_rad
     straight = hermite(*planner.stands, *onto)
     smooth, others = [straight], list[Array]()
+    vertices: Array | None = None
     if ink is not None:
-        others = ink.besides(np.vstack([incoming.end_mm, outgoing.end_mm]))
+        ends = np.vstack([incoming.end_mm, outgoing.end_mm])
+        others, vertices = ink.besides(ends), ink.turns_at(ends)
         smooth = [kept_in_ink(straight, ink, planner.view.width_mm, others)]
+    if vertices is not None:
+        over = stretches_over(planner.stands, incoming, vertices, outgoing)
+        return over if len(vertices) else smooth
     corner = Corner.of(incoming, outgoing)
     ways = list[list[Array]]()
     if between is not None:
         ways.append(planner.through(incoming, outgoing, corner).stretches)
-    elif corner is not None and _is_corner(corner, planner.view.width_mm, ink is not None):
+    elif corner is not None and is_corner(
+        corner, planner.view.width_mm, is_felt=ink is not None
+    ):
         end_mm = max(0.0, BEYOND_MM - corner.before_mm)
         ways.append(sharp_corner(planner.stands, corner, end_mm))
     ways.append(smooth)
@@ -122,7 +130,7 @@ def way_through(
     return next((way for way in ways if on_ink(planner.view, way)), smooth)
 
 
-def _is_corner(corner: Corner, width_mm: float, is_felt: bool) -> bool:
+def is_corner(corner: Corner, width_mm: float, *, is_felt: bool = True) -> bool:
     """Whether two legs of a junction turn at a vertex, and do not go on smoothly.
 
     Far from both their legs can not tell a vertex; if the ink there was felt its rims tell the way.

@@ -33,6 +33,8 @@ from morfax.tracer.effort import EVERY_MM, ROUNDS
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing.parabola import FEWEST
 
+NOWHERE = np.empty((0, 4))
+
 # All limits below were chosen by trial on drawings of nets.
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
 ABREAST = 0.25  # widths: a station further before or behind a place tells nothing of it
@@ -50,10 +52,13 @@ FITS = 0.8  # of the places are as near to their rims as these are exact
 
 @dataclass(frozen=True)
 class SharedInk:
-    """What was felt along the stretches within a junction, and about how lines go through it, (n, 2) mm."""
+    """What was felt along the stretches within a junction, and about how lines go through it, (n, 2) mm; of
+    each way, where it turns, (m, 2) mm, if the ink has told that.
+    """
 
     runs: Sequence[Run] = ()
     ways: Sequence[Array] = ()
+    vertices: Sequence[Array | None] = ()
 
     @cached_property
     def stations(self) -> Array:
@@ -62,7 +67,7 @@ class SharedInk:
             np.column_stack([run.places_mm, run.headings_rad, run.widths_mm])
             for run in self.runs
         ]
-        every = np.vstack(felt)
+        every = np.vstack([NOWHERE, *felt])
         return np.asarray(every[np.isfinite(every[:, 3])])
 
     @cached_property
@@ -77,10 +82,21 @@ class SharedInk:
 
     def besides(self, way: Array) -> list[Array]:
         """The ways of the other lines: those that begin and end elsewhere."""
-        there = np.abs(self._ends - way[[0, -1]]).max(axis=(1, 2))
-        back = np.abs(self._ends - way[[-1, 0]]).max(axis=(1, 2))
-        others = np.flatnonzero(np.minimum(there, back) > SAME_MM)
+        others = np.flatnonzero(np.minimum(*self._off_ends_mm(way)) > SAME_MM)
         return [self.ways[k] for k in others.tolist()]
+
+    def turns_at(self, ends: Array) -> Array | None:
+        """Where the way between two ends (2, 2) mm turns, (m, 2) mm; None if the ink has not told that."""
+        there, back = self._off_ends_mm(ends)
+        for vertices, on_mm, round_mm in zip(self.vertices, there, back, strict=False):
+            if vertices is not None and min(on_mm, round_mm) < SAME_MM:
+                return vertices if on_mm < round_mm else vertices[::-1]
+        return None
+
+    def _off_ends_mm(self, way: Array) -> tuple[Array, Array]:
+        """How far the ends of each way are from those of another, and from those of that way back, mm."""
+        there = np.abs(self._ends - way[[0, -1]]).max(axis=(1, 2))
+        return there, np.abs(self._ends - way[[-1, 0]]).max(axis=(1, 2))
 
 
 def kept_in_ink(

@@ -25,6 +25,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from morfax.motion.neighbours import those_near
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.corrections.on_sheet import StopAt
 from morfax.tracer.drawing.strokes import Stroke
@@ -129,8 +130,7 @@ def _lines_among(strokes: list[Line], line: Line, contour: Contour) -> tuple[lis
 def _left_over_mm(stroke: Stroke, lines: list[Line], beside_widths: float) -> float:
     """The length of a patch's ink beside which no line runs, mm."""
     ink = LeftInk(stroke, beside_widths * stroke.width_mm)
-    for line in lines:
-        ink.pass_by(line.places_mm)
+    ink.pass_by(np.vstack([line.places_mm for line in lines]))
     return ink.left().length_mm
 
 
@@ -140,5 +140,7 @@ def _is_line(line: Line, others: list[Line]) -> bool:
     if line.ending not in ("closed", "ended") or line.length_mm < shortest_mm:
         return False
     same_mm = SAME_WIDTHS * line.width_mm
-    near = [nearest_mm(line.places_mm, other.places_mm) < same_mm for other in others]
-    return bool(np.mean(~np.any(near, axis=0)) > NEW)
+    near = list(those_near([other.places_mm for other in others], line.places_mm, same_mm))
+    if not near:
+        return True
+    return bool(np.mean(nearest_mm(line.places_mm, np.vstack(near)) >= same_mm) > NEW)

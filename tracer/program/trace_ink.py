@@ -22,13 +22,15 @@ from morfax.tracer.drawing.shapes_among_lines import has_lines
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.chains import Junctions, solved
+from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import InkLeft, ink_left
+from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.struck_off import struck_off
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.against_ink.strokes_off_ink import strokes_off_ink
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.as_contours import as_contours
 from morfax.tracer.program.laid.bent import bent
@@ -90,6 +92,7 @@ def _of_strokes(
     lines, broad = as_contours(setup, lines)
     lines, beside = beside_mended(setup, bent(setup, lines))
     broad += _slots_left(setup, lines)
+    broad += strokes_off_ink(left.drawing, lines)
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
     ink = balance(sheet, felt, left, [line.xy_mm for line in lines])
     in_order = tuple(_in_order(lines))

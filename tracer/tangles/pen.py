@@ -33,6 +33,7 @@ STEEPEST = 0.6  # cosine: a bend that leaves further aside of its chord reaches 
 SPECK_PX = 1.5  # from the middle of a speck to the ink beside it
 NARROW_RAD = math.radians(3)  # a tip as narrow as this is a tick
 NOWHERE_MM = 1e3  # from all that is drawn
+LONG, BOXED = 300, 64  # pieces of a long way, and those of it that have one box; by trial
 
 
 class Ink(NamedTuple):
@@ -160,8 +161,49 @@ def away_from(places: Array, way: Array) -> Array:
     """How far places (n, 2) are from a way (m, 2), mm."""
     distance = np.full(len(places), NOWHERE_MM)
     lines = np.ascontiguousarray(np.hstack([way[:-1], way[1:]]).T)
-    away(places, lines, len(way) - 1, distance)
+    if len(way) <= LONG:
+        away(places, lines, len(way) - 1, distance)
+    else:
+        _away_by_boxes(places, lines, distance)
     return distance
+
+
+@njit(cache=True, fastmath=True)
+def _away_by_boxes(places, lines, out):  # type: ignore[no-untyped-def]
+    """The same as `away` of a long way: a place meets only those pieces in whose box it may be nearer."""
+    count = lines.shape[1]
+    x0, y0 = lines[0], lines[1]
+    vx, vy = lines[2] - x0, lines[3] - y0
+    per = 1.0 / (vx * vx + vy * vy + NOTHING_MM2)
+    # 1. boxes of so many pieces each
+    boxes = np.empty(((count + BOXED - 1) // BOXED, 4))
+    for b in range(len(boxes)):
+        low_x = low_y = NOWHERE_MM
+        high_x = high_y = -NOWHERE_MM
+        for i in range(b * BOXED, min((b + 1) * BOXED, count)):
+            low_x, high_x = min(low_x, x0[i], lines[2, i]), max(high_x, x0[i], lines[2, i])
+            low_y, high_y = min(low_y, y0[i], lines[3, i]), max(high_y, y0[i], lines[3, i])
+        boxes[b, 0], boxes[b, 1], boxes[b, 2], boxes[b, 3] = low_x, low_y, high_x, high_y
+    # 2. the box in which the place before was nearest comes first
+    newest = 0
+    for k in range(len(places)):
+        best = out[k] * out[k]
+        x, y = places[k, 0], places[k, 1]
+        for n in range(-1, len(boxes)):
+            b = newest if n < 0 else n
+            dx = max(boxes[b, 0] - x, x - boxes[b, 2], 0.0)
+            dy = max(boxes[b, 1] - y, y - boxes[b, 3], 0.0)
+            if dx * dx + dy * dy >= best:
+                continue
+            before = best
+            for i in range(b * BOXED, min((b + 1) * BOXED, count)):
+                wx, wy = x - x0[i], y - y0[i]
+                t = min(max((wx * vx[i] + wy * vy[i]) * per[i], 0.0), 1.0)
+                wx, wy = wx - t * vx[i], wy - t * vy[i]
+                best = min(best, wx * wx + wy * wy)
+            if best < before:
+                newest = b
+        out[k] = math.sqrt(best)
 
 
 @njit(cache=True)

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.tracer.drawing.drawing import Darkness
 from morfax.tracer.junctions.rings import FARTHEST_MM, FARTHEST_WIDTHS
 from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
@@ -66,17 +65,10 @@ def tangle_ahead(view: View, incoming: Leg) -> Tangle:
     if not len(fronts.at):  # no ink joins the leg
         return Tangle([incoming], np.empty((0, 2)), np.empty(0), 0.0, whole=False)
     legs, ended = _legs(view, fronts, reach_mm)
-    ink = _ink(view, fronts, ended)
+    inside = (fronts.label >= 0) & ~ended[np.maximum(fronts.label, 0)]
+    ink = ink_of(view, inside, fronts.corner)
     running = fronts.at * fronts.step_mm > reach_mm - 2 * fronts.step_mm
     return Tangle([incoming, *legs], *ink, not np.any(running & ~ended))
-
-
-def _inside(view: View, fronts: Fronts, ended: Flags) -> tuple[Flags, Darkness]:
-    """Which pixels of the fronts' window are the tangle's ink, and the darkness there."""
-    inside = (fronts.label >= 0) & ~ended[np.maximum(fronts.label, 0)]
-    top, left = fronts.corner
-    rows, columns = inside.shape
-    return inside, view.cells.window(top, top + rows, left, left + columns)
 
 
 def _legs(view: View, fronts: Fronts, reach_mm: float) -> tuple[list[Leg], Flags]:
@@ -153,13 +145,14 @@ def _tapers(seen: Array) -> bool:
     return len(seen) >= TAPERED_STATIONS and far < TAPERED * near
 
 
-def _ink(view: View, fronts: Fronts, ended: Flags) -> tuple[Array, Array, float]:
-    """Places, darkness, and area (mm²) of the tangle's ink and of the paper about it.
+def ink_of(view: View, inside: Flags, corner: tuple[int, int]) -> tuple[Array, Array, float]:
+    """Places, darkness, and area (mm²) of a tangle's ink and of the paper about it.
 
-    Paper near ink that is not the tangle's is left out.
+    `inside`: the pixels of the tangle's ink in a window that begins at a row and column of the sheet. Paper
+    near ink that is not the tangle's is left out.
     """
-    pitch = view.pitch_mm
-    (inside, seen), (top, left) = _inside(view, fronts, ended), fronts.corner
+    pitch, (top, left), (rows, columns) = view.pitch_mm, corner, inside.shape
+    seen = view.cells.window(top, top + rows, left, left + columns)
     # 1. its pixels
     square = np.ones((3, 3), np.uint8)
     wide = max(ABOUT_PX, round(ABOUT_MM / pitch))

@@ -7,8 +7,9 @@ import pytest
 
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink import areas
-from morfax.tracer.ink.chains import Junctions, solved
+from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.outlines import _area_mm2
+from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from tests.tracer.inked import inked, polyline
 

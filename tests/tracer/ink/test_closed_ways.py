@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink import onward as onward_room
 from morfax.tracer.ink import outlines
 from morfax.tracer.ink.aside import has_arrowhead
 from morfax.tracer.ink.chains import Chain, Junction, Junctions, Link, Side
@@ -129,3 +130,22 @@ def test_a_way_round_the_rims_of_one_line_s_ink_is_no_outline(
     monkeypatch.setattr(outlines, "_outside", lambda _: None)
     assert goes_round_paper(chain, junctions) == is_paper
     assert bool(outlines.outlines(junctions)) == is_paper
+
+
+def test_how_a_line_goes_on_is_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search for closed ways asks for each side of a crowded net a dozen times."""
+    asked = list[Leg]()
+
+    def turned_by(one: Leg, other: Leg) -> float:
+        asked.append(one)
+        return 0.0
+
+    legs = [Leg(np.zeros(2), n * np.pi, 0.0, 0.5, np.empty((0, 3))) for n in range(2)]
+    sides = [Side(n, False) for n in range(2)]
+    there = Junction(sides, False, Crossing(legs, [], Settings()))
+    monkeypatch.setattr(Junctions, "at", lambda *_: there)
+    monkeypatch.setattr(onward_room, "turned_by", turned_by)
+    lines = [FeltLine([], [], (0, 1), 0.5, 1.0, n, np.empty(0)) for n in range(2)]
+    onward = Onward(Junctions(Net(lines), Settings()))
+    assert all(onward.goes_on(side) for _ in range(3) for side in sides)
+    assert len(asked) == len(sides)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from morfax.tracer.ink.partners import _is_corner, meeting_place, partners, turnings
+from morfax.tracer.ink.partners import is_corner, meeting_place, partners, turnings
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.sensing.leg import Leg
 
@@ -114,4 +114,4 @@ def test_a_vertex_far_within_shared_ink_is_told_by_no_leg(
     """Eight widths beyond both legs a bend of 17 degrees was laid as a vertex, 0.28 mm beside its line."""
     corner = Corner.of(leg(180, away_mm), leg(24, away_mm).turned_round())
     assert corner is not None
-    assert _is_corner(corner, WIDTH_MM, bool(is_felt)) == bool(is_vertex)
+    assert is_corner(corner, WIDTH_MM, is_felt=bool(is_felt)) == bool(is_vertex)

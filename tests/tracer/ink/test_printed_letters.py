@@ -12,9 +12,10 @@ from PIL import Image, ImageDraw, ImageFont
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink import chains
-from morfax.tracer.ink.chains import Junctions, solved
+from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.left_out import ink_left
+from morfax.tracer.ink.net import net_of
+from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import DPI, NOISE, arc, inked, polyline
@@ -68,7 +69,7 @@ def test_lines_that_are_found_elsewhere_do_not_undo_what_was_solved(
     """Stretches that no way goes along become lines; two lines told far away left them without any again."""
     drawing = printed("DejaVuSerif-Bold.ttf", 48, "REARED", "| | | | |")
     felt = FeltSheet.of(drawing, Settings(), ink_left(drawing.sheet).ink)
-    before = {line.stretch for line in chains.net_of(felt, set()).lines}
+    before = {line.stretch for line in net_of(felt, set()).lines}
     alone = [n for n, ends in enumerate(felt.ends) if ends == (True, True)]
     told = dict[int, int]()  # by whom
 

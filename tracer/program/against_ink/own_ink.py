@@ -1,4 +1,4 @@
-"""Own ink: whether a pen along closed ways would leave the ink that is on the sheet.
+"""Own ink: whether a pen along ways would leave the ink that is on the sheet.
 
     ║  ╭╮  ║      the head went straight across a bay, or cut its end short: there the pen's ink lies beside
     ║  ││  ║      the sheet's
@@ -13,10 +13,11 @@ pen draws on paper there is summed,
 and so is the ink that it leaves; a way is beside its ink where the lesser of both is large, and far above
 that of most of its line. By itself neither tells: another line or a tick leaves ink, and a gap is paper.
 
-Signals: the drawing and lines that were followed in; stretches of closed ones beside their ink out.
+Signals: the drawing and lines that were followed in; stretches of them beside their ink out, of those that
+closed or ended.
 
 Source: our own, as tangles are redrawn. Questions: a way that cuts off ink, and stays on ink, as along a
-tick, is not found.
+tick, is not found. At the end of an open line there is paper ahead, or another line's ink: neither counts.
 """
 
 from __future__ import annotations
@@ -47,12 +48,16 @@ OF_WIDTH = (0.8, 0.9, 1.0, 1.1, 1.25)  # of the line's: pens that are tried
 STATION_WIDTHS = 0.25  # between the places at which a way is judged
 # between the places that stand for a way: near its edge they are 0.04 px off it
 PLACES_PX = 1.0
+JUDGED = (
+    "closed",
+    "ended",
+)  # lines that ran into others, or were lost, may have turned off their ink
 TILE_PX = 128  # of what is judged in one
 QUICK_PX = 256  # of what is looked through first
 
 
 class Beside(NamedTuple):
-    """A stretch of a closed way beside its ink: the place furthest beside it, how long it is, mm, and whether
+    """A stretch of a way beside its ink: the place furthest beside it, how long it is, mm, and whether
     it is above the whole limit.
     """
 
@@ -90,11 +95,13 @@ class _Tiles(NamedTuple):
 
 
 def beside(drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0) -> Iterator[Beside]:
-    """Where closed lines run beside their ink, by so much of the limit; nothing where no pen can be told."""
+    """Where lines that closed or ended run beside their ink, by so much of the limit; nothing where no pen
+    can be told.
+    """
     if not drawing.noise.softness_px > 0 or drawing.grainy:
         return
     ways = _ways(drawing, lines)
-    doubtful = _doubtful(drawing, ways, of_limit) if ways.closed.any() else ways.closed
+    doubtful = _doubtful(drawing, ways, of_limit) if ways.judged.any() else ways.judged
     judged = list(_judged(drawing, ways, of_limit, doubtful)) if doubtful.any() else []
     if not judged:
         return
@@ -128,15 +135,16 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
         np.vstack([(some / pitch_mm - 0.5).astype(np.float32) for some in places]),
         np.repeat(np.arange(len(ways), dtype=np.int32), [len(way) for way in ways]),
         np.array([0.5 * line.width_mm / pitch_mm for line in lines]),
-        np.array([line.ending == "closed" and not line.on_edge for line in lines]),
+        np.array([line.ending in JUDGED and not line.on_edge for line in lines]),
     )
 
 
 def _doubtful(drawing: Drawing, ways: Ways, of_limit: float) -> NDArray[np.bool_]:
-    """Which closed lines are not surely on their ink: most are, and need not be judged."""
-    doubtful = np.zeros(len(ways.closed), bool)
+    """Which lines are not surely on their ink: most are, and need not be judged."""
+    doubtful = np.zeros(len(ways.judged), bool)
     limits = of_limit * _least(ways.half_px)
-    for part in _parts(drawing, ways, ways.closed, QUICK_PX, of_limit):
+    pen = _pen(drawing, ways, of_limit * OVER)
+    for part in parts(drawing, ways, _are_stations(ways, ways.judged), QUICK_PX, pen):
         line = ways.line[part.stations]
         is_over = np.empty(len(line), bool)
         may_be_over(part.seen, part.ways, part.at, limits[line], part.pen, part.room, is_over)
@@ -147,13 +155,14 @@ def _doubtful(drawing: Drawing, ways: Ways, of_limit: float) -> NDArray[np.bool_
 def _judged(
     drawing: Drawing, ways: Ways, of_limit: float, which: NDArray[np.bool_]
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
-    """The stations of some closed lines, tile by tile: line, number of the place, and what is over."""
-    for part in _parts(drawing, ways, which, TILE_PX, of_limit):
+    """The stations of some lines, tile by tile: line, number of the place, and what is over."""
+    pen = _pen(drawing, ways, of_limit * OVER)
+    for part in parts(drawing, ways, _are_stations(ways, which), TILE_PX, pen):
         over = over_at(part.seen, part.ways, part.at, part.pen, part.room)
         yield ways.line[part.stations], part.stations, over
 
 
-class _Part(NamedTuple):
+class Part(NamedTuple):
     """A tile of the sheet with what lies about it: the darkness, the ways as they are seen from its corner,
     the numbers of the stations in the tile and their pixels, the pen, and room to work in.
     """
@@ -166,12 +175,11 @@ class _Part(NamedTuple):
     room: Room
 
 
-def _parts(
-    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], side_px: int, of_limit: float
-) -> Iterator[_Part]:
-    """The tiles of a side in which some of the closed lines have stations."""
-    tiles, pen = _Tiles.of(ways, side_px), _pen(drawing, ways, of_limit * OVER)
-    is_station = which[ways.line] & (np.arange(len(ways.line)) % _every(ways) == 0)
+def parts(
+    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], side_px: int, pen: Pen
+) -> Iterator[Part]:
+    """The tiles of a side in which some of the places that stand for ways are stations."""
+    tiles = _Tiles.of(ways, side_px)
     margin = math.ceil(2 * (REACH_WIDTHS + 1) * pen.half_px) + 1
     room = Room.of((side_px + 2 * margin) ** 2, pen.reach_px)
     for number in sorted(set(tiles.of_place[is_station].tolist())):
@@ -184,12 +192,17 @@ def _parts(
         corner = np.array([left, top], np.float32)
         at = np.round(ways.places_px[stations] - corner).astype(int)
         at = np.clip(at, 0, np.array(seen.shape)[::-1] - 1)
-        yield _Part(seen, ways.seen_from(corner, near), stations, at, pen, room)
+        yield Part(seen, ways.seen_from(corner, near), stations, at, pen, room)
+
+
+def _are_stations(ways: Ways, which: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which places are stations of some lines."""
+    return np.asarray(which[ways.line] & (np.arange(len(ways.line)) % _every(ways) == 0))
 
 
 def _pen(drawing: Drawing, ways: Ways, over: float) -> Pen:
-    """The pen of most closed lines; what it draws on paper matters above a limit."""
-    half_px, noise = median(ways.half_px[ways.closed]), drawing.noise
+    """The pen of most lines; what it draws on paper matters above a limit."""
+    half_px, noise = median(ways.half_px[ways.judged]), drawing.noise
     reach_px, paper = 2 * REACH_WIDTHS * half_px, 0.5 * noise.paper**2
     return Pen(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, over)
 

@@ -6,7 +6,7 @@
     3. else the pen, of some widths, that explains each box best: what it draws on paper, and what it leaves
 
 Signals: darkness of a part of the sheet (rows, columns), places of the ways (n, 2) in its columns and rows,
-stations (m, 2) of closed lines among them; what is over about each station out (see `own_ink`).
+stations (m, 2) of lines that are judged among them; what is over about each station out (see `own_ink`).
 
 Source: our own. Questions: none.
 """
@@ -41,13 +41,13 @@ class Pen(NamedTuple):
 
 class Ways(NamedTuple):
     """Places (n, 2) of all ways on a sheet, columns and rows in pixels; the number of the line of each; and
-    by lines: half the width in pixels, and whether it is closed.
+    by lines: half the width in pixels, and whether it is judged.
     """
 
     places_px: NDArray[np.float32]
     line: NDArray[np.int32]
     half_px: Array
-    closed: NDArray[np.bool_]
+    judged: NDArray[np.bool_]
 
     def seen_from(self, corner: NDArray[np.float32], some: NDArray[np.int64]) -> Ways:
         """Some of the places, counted from a corner."""
@@ -72,7 +72,9 @@ class Room(NamedTuple):
 
 
 class Band(NamedTuple):
-    """Pixels nearest to closed ways: rows and columns, how far the way is, half its width, the darkness."""
+    """Pixels nearest to ways that are judged: rows and columns, how far the way is, half its width, the
+    darkness.
+    """
 
     row: NDArray[np.int32]
     column: NDArray[np.int32]
@@ -138,8 +140,8 @@ def _best(band, pen, spread, on_paper, on_ink):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def band_of(seen, ways, pen, room):  # type: ignore[no-untyped-def]
-    """The pixels of a part of the sheet that are nearest to closed ways; their numbers, from 1, are left in
-    the room until it is cleared.
+    """The pixels of a part of the sheet that are nearest to ways that are judged; their numbers, from 1, are
+    left in the room until it is cleared.
     """
     away2 = room.away2[: seen.size].reshape(seen.shape)
     number = room.number[: seen.size].reshape(seen.shape)
@@ -153,7 +155,7 @@ def band_of(seen, ways, pen, room):  # type: ignore[no-untyped-def]
             if line < 0:
                 continue
             number[i, j] = 0
-            if ways.closed[line]:
+            if ways.judged[line]:
                 row[n], column[n] = i, j
                 away[n], half[n] = math.sqrt(away2[i, j]), ways.half_px[line]
                 dark[n] = min(float(seen[i, j]), DARKEST)

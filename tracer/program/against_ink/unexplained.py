@@ -1,4 +1,4 @@
-"""What lines that came round do not explain: ink of theirs along which no line runs, and ways without ink.
+"""What lines do not explain: ink of theirs along which no line runs, and ways without ink.
 
 Signals: the sheet and the lines that were followed in; out the places at which the head's own pen would not
 have drawn what is there.
@@ -57,7 +57,7 @@ ASTRAY = 0.2
 # finer, ink looks broader at corners
 MISSED, MISSED_COARSE = 1.25, 2.0
 
-Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale"]
+Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale", "off"]
 
 
 class Unexplained(NamedTuple):
@@ -68,6 +68,7 @@ class Unexplained(NamedTuple):
     bare      a way over bare paper: for how long
     beside    a way beside its own pen's ink: for how long
     broad     strokes within ink that is as broad as two lines: for how long
+    off       strokes of all the ink off it, where lines meet (see `strokes_off_ink`): for how long
     pale      on a coarse scan a way over ink that is pale: for how long; and `wants_dpi`, the resolution that
         would show what is there
     """
@@ -82,20 +83,15 @@ class Unexplained(NamedTuple):
 def unexplained(
     setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
 ) -> tuple[Unexplained, ...]:
-    """What the closed ones of some lines leave unexplained, the longest first; of lines that ran into
-    themselves only ink, for there the head may have turned off its line. A way is beside its ink from so much
-    of the limit on.
+    """What some lines leave unexplained, the longest first: of closed ones all, of lines that ran into
+    themselves only ink, for there the head may have turned off its line, of open ones only where they run
+    beside their ink, from so much of the limit on.
 
     Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
     """
-    closed = [line for line in lines if line.ending == "closed"]
-    if not _come_round(lines) or setup.operator.reads_marks(lines):
+    if not lines or setup.operator.reads_marks(lines):
         return ()
-    sheet, gap_mm = setup.sheet, setup.settings.gap_mm
-    found = [*ink_beside(sheet, lines), *_bare_ways(sheet, closed, gap_mm)]
-    found += _tips_cut(sheet.drawing.edges_mm, closed)
-    found += _once(_off_edges(sheet.drawing, closed))
-    found = found or list(_astray(sheet, closed))
+    sheet, found = setup.sheet, _of_closed(setup, lines)
     # ink that was missed by little may lie in a bay that was cut short
     reach_mm = (0.5 + CLEAR_WIDTHS) * max(line.width_mm for line in lines)
     other = [place for place in found if place.kind != "ink" or place.length_mm > reach_mm]
@@ -105,10 +101,22 @@ def unexplained(
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
+def _of_closed(setup: Setup, lines: Sequence[Line]) -> list[Unexplained]:
+    """What those of some lines that came round leave unexplained, but for stretches beside their ink."""
+    if not _come_round(lines):
+        return []
+    closed = [line for line in lines if line.ending == "closed"]
+    sheet, gap_mm = setup.sheet, setup.settings.gap_mm
+    found = [*ink_beside(sheet, lines), *_bare_ways(sheet, closed, gap_mm)]
+    found += _tips_cut(sheet.drawing.edges_mm, closed)
+    found += _once(_off_edges(sheet.drawing, closed))
+    return found or list(_astray(sheet, closed))
+
+
 def beside_ink(
     setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
 ) -> tuple[Unexplained, ...]:
-    """Where closed lines run beside their ink, from so much of the limit on; the longest first."""
+    """Where lines run beside their ink, from so much of the limit on; the longest first."""
     found = _beside_ink(setup.sheet.drawing, lines, (), of_limit) if lines else ()
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
@@ -116,7 +124,7 @@ def beside_ink(
 def _beside_ink(
     drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained], of_limit: float
 ) -> Iterator[Unexplained]:
-    """Stretches of closed lines beside their ink, but for those about what was found otherwise."""
+    """Stretches of lines beside their ink, but for those about what was found otherwise."""
     for place_mm, long_mm, is_sure in beside(drawing, lines, of_limit):
         place = Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
         if not _is_about(place, found, lines):

@@ -43,7 +43,7 @@ from morfax.tracer.program.against_ink.off_ink import (
 )
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_bare, is_clear
+from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_bare, is_clear, rest_of
 from morfax.tracer.program.laid.spline_fit import (
     CORNER_RAD,
     MAYBE_RAD,
@@ -185,7 +185,7 @@ class _Way:
                 ink, own = self._seen(begin - leg, end + leg, felt)
                 wrong = wrong_about(ink, own, about_corners(own), STEP_WIDTHS)[leg:-leg]
                 off[np.arange(begin, end + 1) % len(off)] |= wrong > felt.limit
-        yield from _runs(self._between_ends(off), leg, self.is_closed)
+        yield from _runs(off, leg, self.is_closed)
 
     def _between_ends(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Those of some places (n,) that are a leg and a step from the ends of an open way."""
@@ -199,17 +199,10 @@ class _Way:
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
         near = list(self.beside.within(low, high, self.line))
-        for rest in self._rest(first, last):
+        for rest in rest_of(way, first, last, self.is_closed):
             near += _within(rest, low, high)
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_lone_pixels(ink, own, drawing.pitch_mm), own
-
-    def _rest(self, first: int, last: int) -> tuple[Array, ...]:
-        """The way but for a stretch of it."""
-        way = self.places
-        if not self.is_closed:
-            return way[: first + 1], way[last:]
-        return (way[np.arange(last, first + len(way) + 1) % len(way)],)
 
     def _bay(self, first: int, last: int, felt: Felt) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""

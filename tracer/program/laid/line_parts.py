@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.drawing import Drawing
@@ -35,6 +36,11 @@ def is_plain(line: Line) -> bool:
     return line.ending == "closed" and is_bare(line)
 
 
+def is_whole(line: Line) -> bool:
+    """Whether a line came round, or ended where its ink does, and bears no mark."""
+    return line.ending in ("closed", "ended") and is_bare(line)
+
+
 def is_bare(line: Line) -> bool:
     """Whether a line bears no mark, and is no edge of a shape."""
     is_marked = line.is_lead or line.reference_mm is not None or line.marks or line.guides
@@ -47,6 +53,13 @@ def is_clear(drawing: Drawing) -> bool:
     """
     is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
     return is_fine and not drawing.grainy and not drawing.edges_mm
+
+
+def rest_of(way: Array, first: int, last: int, is_closed: bool) -> tuple[Array, ...]:
+    """A way (n, 2) mm but for the stretch from one of its places to another."""
+    if is_closed:
+        return (way[np.arange(last, first + len(way) + 1) % len(way)],)
+    return way[: first + 1], way[last:]
 
 
 def part_of(line: Line, first: int, last: int) -> Line:

@@ -1,9 +1,9 @@
-"""Narrow bays: notches and tongues of a closed line hardly wider than two lines, laid where the head fails.
+"""Narrow bays: notches and tongues of a line hardly wider than two lines, laid where the head fails.
 
     ───╮   ╭───     the head cut the end short, ran out and back between the sides, or passed the bay by
        ╰───╯
 
-Where a closed way leaves its ink unexplained (see `unexplained`), or comes beside itself (see
+Where a way leaves its ink unexplained (see `unexplained`), or comes beside itself (see
 `beside_itself`), a rule of a few straight pieces is laid by the ink between clean places of the way on either
 side (see `tangles.folding_rule`). If that explains the ink, and the head's own way does not, the head runs
 along the rule from memory.
@@ -44,7 +44,8 @@ from morfax.tracer.program.laid.line_parts import (
     OF_LOOP,
     REACH,
     is_clear,
-    is_plain,
+    is_whole,
+    rest_of,
 )
 from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays
 from morfax.tracer.program.setup import Setup
@@ -145,10 +146,10 @@ class _Bays:
     def mended(self) -> Line:
         """The line as it is, or along the rules that explain narrow bays on it."""
         line = self.line
-        if not is_plain(line) or not is_clear(self.setup.sheet.drawing):
+        if not is_whole(line) or not is_clear(self.setup.sheet.drawing):
             return line
         step_mm = STEP_WIDTHS * line.width_mm
-        way = evenly(line.loop_mm, step_mm)
+        way = evenly(line.loop_mm if self._is_closed else line.places_mm, step_mm)
         round_mm = len(way) * step_mm
         suspects = list(self._suspects(way, step_mm))[:MANY]
         bays = [bay for each in suspects if (bay := self._bay(way, step_mm, each)) is not None]
@@ -156,6 +157,11 @@ class _Bays:
             bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < round_mm]
         bays = apart(bays, round_mm)
         return laid(self.setup, line, bays, round_mm) if bays else line
+
+    @property
+    def _is_closed(self) -> bool:
+        """Whether the line comes round."""
+        return self.line.ending == "closed"
 
     def _suspects(self, way: Array, step_mm: float) -> Iterator[Suspect]:
         """Where the way may have passed a bay by or cut it short."""
@@ -227,8 +233,10 @@ class _Bays:
         long = last - first
         if long > OF_LOOP * len(way) or long * step_mm > LONGEST * self.line.width_mm:
             return None
+        if not self._is_closed and not 0 < first < last < len(way) - 1:
+            return None
         own = way[np.arange(first, last + 1) % len(way)]
-        rest = way[np.arange(last, first + len(way) + 1) % len(way)]
+        rest = rest_of(way, first, last, self._is_closed)
         about = np.vstack([own, suspect.beyond_mm])
         ink = self._ink(about, rest)
         return None if goes_on(ink, about, REACH) else Stretch(first, last, own, ink)
@@ -268,12 +276,12 @@ class _Bays:
             kept[key] = folding_rule.explained(ink, rules)
         return kept[key]
 
-    def _ink(self, about: Array, rest: Array) -> SeenInk:
+    def _ink(self, about: Array, rest: Sequence[Array]) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
         ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm, REACH)
         reach_mm = REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
-        known_mm = pen.away_from(ink.places_mm, rest)
+        known_mm = np.min([pen.away_from(ink.places_mm, part) for part in rest], axis=0)
         for line in self.lines:
             if line is not self.line and reaches(line.places_mm, low, high):
                 known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, line.places_mm))

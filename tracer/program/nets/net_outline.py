@@ -151,7 +151,7 @@ def _closed(
 
 def junctions_of(setup: Setup, patch: int) -> Junctions:
     """The junctions of a patch of ink, each solved once; those of the newest patch are remembered."""
-    from morfax.tracer.ink.chains import solved
+    from morfax.tracer.ink.solving import solved
     from morfax.tracer.ink.stretches import FeltSheet
 
     if patch not in setup.newest:

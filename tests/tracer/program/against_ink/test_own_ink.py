@@ -40,6 +40,14 @@ def notched(deep_mm: float) -> Points:
     return polyline((4, 4), (44, 4), (44, 24), *notch, (4, 24), (4, 4))
 
 
+def open_notch(first_mm: float, deep_mm: float) -> Points:
+    """A line along y = 24 mm with a notch, that ends at 44 mm."""
+    left, right, bottom = 24.0, 24.0 + NOTCH_MM, 24.0 - deep_mm
+    return polyline(
+        (first_mm, 24), (left, 24), (left, bottom), (right, bottom), (right, 24), (44, 24)
+    )
+
+
 def closed(places_mm: Points, ending: str = "closed") -> Line:
     """A line as if the head had come along some places."""
     whole_mm = length_mm(places_mm)
@@ -90,9 +98,22 @@ def test_a_way_beside_its_line_is_found_where_it_leaves_and_not_beyond() -> None
     assert 6.0 < stretch.length_mm < 6.0 + 3 * WIDTH_MM
 
 
-def test_open_lines_and_drawn_programs_are_not_judged() -> None:
+def test_an_open_line_that_cuts_a_notch_short_is_found_and_its_ends_are_not() -> None:
+    """It ends on another line's ink, on paper, and where its own ink goes on."""
+    bar = polyline((9, 20), (9, 28))
+    drawing = inked(open_notch(9.0, DEEP_MM), bar, seed=1)
+    short = closed(open_notch(9.0, DEEP_MM - 0.7), "ended")
+    (place,) = found(drawing, short, closed(bar, "ended"))
+    assert math.dist(place, (24.45, 24.0 - DEEP_MM + 0.7)) < 1.5 * WIDTH_MM
+    for first_mm in (9.0, 12.0):
+        right = closed(open_notch(first_mm, DEEP_MM), "ended")
+        assert found(drawing, right, closed(bar, "ended")) == []
+    assert [each.kind for each in unexplained(Setup(drawing.sheet), [short])] == ["beside"]
+
+
+def test_lines_that_ran_into_others_and_drawn_programs_are_not_judged() -> None:
     drawing, short = inked(notched(DEEP_MM), seed=1), notched(DEEP_MM - 0.7)
-    assert found(drawing, closed(short, "ended")) == []
+    assert found(drawing, closed(short, "joined")) == []
     setup = Setup(drawing.sheet, operator=Operator(marks="on"))
     assert unexplained(setup, [closed(short)]) == ()
 

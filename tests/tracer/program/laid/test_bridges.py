@@ -10,8 +10,10 @@ import shapely
 
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
+from morfax.tracer.program.laid import bridges
 from morfax.tracer.program.trace_lines import trace_lines
-from tests.tracer.inked import Points, inked, polyline
+from tests.tracer.inked import Points, arc, inked, polyline
+from tests.tracer.program.laid.ways import run_along
 
 WIDTH_MM = 0.5
 UM = 1e-3
@@ -92,3 +94,65 @@ def test_a_bar_of_a_broader_pen_is_none_where_that_pen_has_drawn_a_line() -> Non
     ring, hole = points_of(disc(20, 15, 11)), points_of(disc(20, 15, 5))
     closed = [line for line in contours(ring, hole, *twice) if line.ending == "closed"]
     assert len(closed) == 2
+
+
+RING, OTHER = points_of(disc(12, 15, 6)), points_of(disc(30, 15, 7))
+
+
+def bars_of(*between: Points) -> list[Points]:
+    """The places of the bars between two rings, along which no line runs."""
+    drawing = inked(RING, OTHER, *between, width_mm=WIDTH_MM, dpi=300, seed=1)
+    lines = [run_along(RING), run_along(OTHER)]
+    return list(bridges._bars(drawing, lines, lines))
+
+
+def test_the_ink_between_lines_is_a_bar_and_what_a_line_runs_along_is_none() -> None:
+    """From line to line, but for the ink of the lines themselves, and a bit more than that."""
+    assert bars_of() == []
+    (bar,) = bars_of(polyline((18, 15), (23, 15)))
+    assert np.abs(bar[:, 1] - 15).max() < 0.5 * WIDTH_MM + 0.1
+    low, high = bar[:, 0].min(), bar[:, 0].max()
+    assert low == pytest.approx(18 + 0.65 * WIDTH_MM, abs=0.15)
+    assert high == pytest.approx(23 - 0.65 * WIDTH_MM, abs=0.15)
+
+
+@pytest.mark.parametrize("side_mm", [0.1, 0.25, 0.6])
+def test_a_flaw_of_the_ink_is_no_bar(side_mm: float) -> None:
+    """Smaller than a third of the line is broad, each way; not one that reaches far."""
+    speck = polyline(
+        (20, 15), (20 + side_mm, 15), (20 + side_mm, 15 + side_mm), (20, 15 + side_mm)
+    )
+    drawing = inked(RING, OTHER, width_mm=WIDTH_MM, dpi=300, seed=1, specks=[speck])
+    lines = [run_along(RING), run_along(OTHER)]
+    assert len(list(bridges._bars(drawing, lines, lines))) == (side_mm > 0.2)
+
+
+@pytest.mark.parametrize("from_deg", [0, 45, 179, 300])
+def test_a_bar_joins_a_line_at_its_mouth_wherever_the_line_begins(from_deg: float) -> None:
+    """A bar to the right of a ring that is run counter-clockwise, and of one that is run clockwise; a leg of
+    2 mm before and behind it.
+    """
+    bar = np.column_stack([np.linspace(18.4, 22, 50), np.full(50, 15.0)])
+    for turn, is_left in ((1, False), (-1, True)):
+        ring = arc((12, 15), 6, from_deg, from_deg + 360)[::turn]
+        line = run_along(ring)
+        mouth = bridges._mouth(line, bar, 2.0)
+        assert mouth is not None and mouth.is_left == is_left
+        reach_mm = 2.0 + math.sqrt(WIDTH_MM**2 - 0.4**2)
+        for at, side in ((mouth.first, -turn), (mouth.last, turn)):
+            angle = math.atan2(*(line.places_mm[at] - [12, 15])[::-1])
+            assert angle * 6 * side == pytest.approx(reach_mm, abs=0.12)
+
+
+def test_a_bar_along_most_of_a_line_and_one_far_off_have_no_mouth() -> None:
+    line = run_along(RING)
+    assert bridges._mouth(line, arc((12, 15), 6.3, 0, 200), 1.0) is None
+    assert bridges._mouth(line, arc((12, 15), 6.3, 0, 60), 1.0) is not None
+    assert bridges._mouth(line, polyline((19, 15), (22, 15)), 1.0) is None
+    # with legs of a quarter of the ring on either side it is half of it
+    assert bridges._mouth(line, polyline((18.4, 15), (22, 15)), 9.6) is None
+
+
+def test_the_middle_half_of_a_way_has_no_ends() -> None:
+    way = np.column_stack([np.arange(40.0), np.zeros(40)])
+    assert np.array_equal(bridges._middle_half(way), way[10:30])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +10,14 @@ import pytest
 import shapely
 
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.laid import narrow_bays
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import followed
+from morfax.tracer.program.trace import followed, trace
+from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
 from morfax.tracer.tangles import folding_rule
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -60,6 +63,24 @@ def test_a_bay_is_followed_as_it_is_drawn(truth: Points) -> None:
     """Within 60 um, 0.7 of a pixel of 300 dpi; half a line is cut off or run past otherwise."""
     (line,) = contours(truth).lines
     assert line.ending == "closed" and off_mm(line, truth) < 60 * UM
+
+
+@pytest.mark.parametrize("traced", [trace_ink, trace], ids=["all", "one"])
+@pytest.mark.parametrize("widths", [1.1, 1.5])
+@pytest.mark.parametrize("deep_mm", [DEEP_MM, -DEEP_MM])
+def test_a_bay_of_an_open_line_is_followed_as_well(
+    traced: Callable[[Drawing], Trace], widths: float, deep_mm: float
+) -> None:
+    """Its end was cut off by 0.3 mm, or the line went past it, and nothing was said."""
+    left, right, end = 18.0, 18 + widths * WIDTH_MM, 20 - deep_mm
+    truth = polyline(
+        (6, 20), (left, 20), (left + 0.8, end), (right + 0.8, end), (right, 20), (30, 20)
+    )
+    trace = traced(inked(truth, width_mm=WIDTH_MM, dpi=300, seed=1))
+    (line,) = trace.lines
+    way = shapely.LineString(line.places_mm)
+    assert way.hausdorff_distance(shapely.LineString(truth)) < 60 * UM
+    assert line.ending == "ended" and not trace.unexplained
 
 
 def contours(*lines: Points) -> Trace:

@@ -12,6 +12,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.program.laid import touches
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import Points, inked, polyline
+from tests.tracer.program.laid.ways import run_along
 
 WIDTH_MM = 0.5
 UM = 1e-3
@@ -95,3 +96,61 @@ def test_circles_that_cross_at_a_small_angle_still_cross(
     first, second = (shapely.LinearRing(line.loop_mm) for line in lines)
     crossings = first.intersection(second)
     assert isinstance(crossings, shapely.MultiPoint) and len(crossings.geoms) == 2
+
+
+def beside(apart_mm: float, long_mm: float, other_way: bool = False) -> list[Line]:
+    """Two closed lines that run beside each other for so long, so far apart; then away at right angles."""
+    end, above = 5 + long_mm, 20 + apart_mm
+    low = polyline((5, 20), (end, 20), (end, 6), (5, 6), (5, 20))
+    high = polyline((5, above), (5, 35), (end, 35), (end, above), (5, above))
+    return [run_along(low), run_along(high[::-1] if other_way else high)]
+
+
+def touches_of(lines: list[Line]) -> list[touches._Touch]:
+    """Where lines touch."""
+    return list(touches._touches(lines, range(len(lines))))
+
+
+@pytest.mark.parametrize(
+    ("apart_mm", "long_mm", "touch"),
+    [(0.6, 10, True), (0.7, 10, False), (0.6, 2, False), (0.6, 28, True), (0.6, 32, False)],
+)
+def test_lines_touch_that_run_together_for_some_widths(
+    apart_mm: float, long_mm: float, touch: bool
+) -> None:
+    """Nearer than 1.3 widths of 0.5 mm, where they leave one ink, for 5 to 60 widths."""
+    assert bool(touches_of(beside(apart_mm, long_mm))) == touch
+
+
+@pytest.mark.parametrize("other_way", [False, True])
+def test_a_touch_is_told_with_legs_of_two_widths_on_either_line(other_way: bool) -> None:
+    """The one line begins with it, so that its leg is before the beginning; it runs 10 mm along it."""
+    (touch,) = touches_of(beside(0.6, 10.0, other_way))
+    assert touch.lines == (0, 1)
+    for first_mm, last_mm in zip(touch.first_mm, touch.last_mm, strict=True):
+        assert last_mm - first_mm == pytest.approx(10.0 + 2 * 2 * WIDTH_MM, abs=0.6)
+    assert touch.first_mm[0] == pytest.approx(-2 * WIDTH_MM, abs=0.3)
+    assert touch.is_parallel == other_way
+
+
+@pytest.mark.parametrize(("apart_mm", "is_one"), [(0.5, True), (0.8, False)])
+def test_a_line_that_runs_beside_itself_touches_itself_once(
+    apart_mm: float, is_one: bool
+) -> None:
+    """A slot in from the right that goes on as a slit of 9 mm, 18 widths."""
+    bar = shapely.box(11, 15, 20, 15 + apart_mm)
+    plate = shapely.box(5, 5, 30, 25).difference(bar).difference(shapely.box(20, 13, 32, 18))
+    found = touches_of([run_along(np.array(plate.exterior.coords))])
+    assert len(found) == is_one
+
+
+def test_how_steeply_ways_cross_is_their_steepest_crossing() -> None:
+    """0 of ways that do not cross."""
+    x = np.linspace(0, 20, 401)
+    level = np.column_stack([x, 0 * x])
+    for degrees in (3.0, 10.0, 30.0):
+        slope = math.tan(math.radians(degrees))
+        other = np.column_stack([x, slope * (x - 10.02)])
+        for ways in (touches._Ways(level, other), touches._Ways(other, level)):
+            assert math.degrees(touches._steepest_rad(ways)) == pytest.approx(degrees, abs=0.1)
+    assert touches._steepest_rad(touches._Ways(level, level + np.array((0, 0.3)))) == 0

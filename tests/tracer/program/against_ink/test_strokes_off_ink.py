@@ -1,0 +1,71 @@
+"""Strokes that are not what is drawn where lines meet are told, with their place; those that are not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.jobs.remarks.on_ink import of_ink
+from morfax.motion.polyline import at_lengths, length_mm
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import CELL, STATIONS, Led
+from morfax.tracer.program.against_ink.strokes_off_ink import strokes_off_ink
+from morfax.tracer.program.program import Trace
+from morfax.tracer.program.trace_ink import trace_ink
+from tests.tracer.inked import Points, inked, polyline
+
+WIDTH_MM, STEP_MM = 0.5, 0.0017
+ABOUT_MM = 1.5  # from where it is wrong, a place is told
+# a corner whose tip stands a little out of another line's ink
+ACROSS = polyline((4, 20), (36, 20))
+TIP = polyline((12, 8), (20, 20.6), (28, 8))
+CUT = polyline((12, 8), (19.4, 19.6), (20.6, 19.6), (28, 8))
+ENDED = polyline((12, 8), (19.3, 19.5)), polyline((20.7, 19.5), (28, 8))
+
+
+def stroke(places_mm: Points, leader: int = STATIONS) -> Line:
+    """A stroke along some places, led so all along."""
+    whole_mm = length_mm(places_mm)
+    way_mm = at_lengths(places_mm, np.arange(0.0, whole_mm, STEP_MM))
+    led = Led.along(np.full(len(way_mm), leader, np.int8))
+    return Line(way_mm, "ended", WIDTH_MM, whole_mm, led=led)
+
+
+@pytest.mark.parametrize("wrong", [(CUT,), ENDED], ids=["cut", "ended"])
+@pytest.mark.parametrize("seed", [None, 3])
+def test_a_corner_that_is_missing_in_another_line_is_told(
+    wrong: tuple[Points, ...], seed: int | None
+) -> None:
+    drawing = inked(ACROSS, TIP, seed=seed)
+    lines = [stroke(ACROSS), *map(stroke, wrong)]
+    (place,) = strokes_off_ink(drawing, lines)
+    assert np.hypot(*(np.array(place.place_mm) - TIP[len(TIP) // 2])) < ABOUT_MM
+    (said,) = of_ink(Trace(tuple(lines), unexplained=(place,)), several=True)
+    x, y = place.place_mm
+    assert f"not what is drawn at 1 place, the worst at {x:.1f},{y:.1f} mm" in said
+
+
+@pytest.mark.parametrize("seed", [None, 3, 4])
+def test_strokes_that_are_what_is_drawn_are_not_told(seed: int | None) -> None:
+    assert strokes_off_ink(inked(ACROSS, TIP, seed=seed), [stroke(ACROSS), stroke(TIP)]) == []
+
+
+def test_an_end_that_is_alone_is_not_told() -> None:
+    drawing = inked(ACROSS, seed=3)
+    assert strokes_off_ink(drawing, [stroke(polyline((4.6, 20), (35.4, 20)))]) == []
+
+
+def test_where_the_cell_led_the_ink_is_the_lines_own() -> None:
+    drawing = inked(ACROSS, TIP, seed=3)
+    assert strokes_off_ink(drawing, [stroke(line, CELL) for line in (ACROSS, CUT)]) == []
+
+
+def test_strokes_of_all_the_ink_are_held_against_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if the head had left out all but the first stroke."""
+    lines = polyline((4, 4), (36, 28)), polyline((4, 28), (36, 4)), polyline((4, 15), (36, 17))
+    from morfax.tracer.program import trace_ink as module
+
+    whole = trace_ink(inked(*lines, seed=1))
+    assert not whole.unexplained
+    monkeypatch.setattr(module, "_long_enough", lambda strokes: strokes[:2])
+    assert {place.kind for place in trace_ink(inked(*lines, seed=1)).unexplained} == {"off"}

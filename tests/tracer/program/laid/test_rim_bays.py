@@ -1,0 +1,120 @@
+"""Within the rim of its ink a way goes round a bay from end to end of a stretch, and never crosses itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from morfax.motion.crossings import crossings_of
+from morfax.motion.polyline import length_mm, nearest_mm, with_places
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.program.laid import rim_bays as rims
+from morfax.tracer.program.laid.laid_way import LaidWay
+from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays, ways_within_rims
+from tests.tracer.inked import UM, WIDTH_MM, Points, inked, polyline, together
+
+NOWHERE = np.empty((0, 2))
+
+
+def plate(*inner: tuple[float, float]) -> Points:
+    """The outline of a plate with some places in its upper side."""
+    return polyline((4, 4), (34, 4), (34, 20), *inner, (4, 20), (4, 4))
+
+
+SLIT = plate(
+    (18.5, 20), (18.5, 14), (18, 14), (18, 20)
+)  # as wide as the pen: its sides run together
+OVER = with_places(
+    polyline((19.6, 20), (16.9, 20)), 0.05
+)  # the head went straight over its mouth
+
+
+def ways(drawn: Points, own: Points, *others: Points) -> tuple[list[LaidWay], list[LaidWay]]:
+    """The ways within the rims from the first place of a stretch to its last, and which of them are bays."""
+    drawing = inked(drawn, *others, seed=1)
+    view = view_of(drawing.sheet, Settings().aperture_mm, WIDTH_MM)
+    beyond = with_places(polyline((18.25, 19.5), (18.25, 14.2)), 0.05)
+    every = ways_within_rims(drawing, view, own, beyond)
+    return list(every), list(rim_bays(drawing, view, own, beyond))
+
+
+def test_a_slit_that_the_head_passed_by_has_its_way_within_the_rim() -> None:
+    """Down one side and up the other, within 60 um, 0.7 of a pixel, in that direction."""
+    every, bays = ways(SLIT, OVER)
+    (bay,) = bays
+    assert bay.way[0] == pytest.approx(OVER[0]) and bay.way[-1] == pytest.approx(OVER[-1])
+    truth = polyline((19.6, 20), (18.5, 20), (18.5, 14), (18, 14), (18, 20), (16.9, 20))
+    apart_mm = shapely.LineString(bay.way).hausdorff_distance(shapely.LineString(truth))
+    assert apart_mm < 60 * UM
+    assert bay.half_mm == 0.5 * WIDTH_MM
+    assert all(not len(crossings_of(each.way, np.arange(len(each.way) - 1))) for each in every)
+
+
+def test_a_stretch_that_is_not_on_the_rims_way_has_none() -> None:
+    """Half a millimetre below the line, as wide as the line is: the rim is there another line's."""
+    assert ways(SLIT, OVER - [0, WIDTH_MM]) == ([], [])
+
+
+@pytest.mark.parametrize("out_mm", [1.0, 3.0])
+def test_a_tick_of_one_line_is_no_bay(out_mm: float) -> None:
+    """Within its rim the way goes out along the one line and back: between there and back is nothing."""
+    own = with_places(polyline((19.6, 20), (16.9, 20)), 0.05)
+    tick = polyline((18.25, 20), (18.25, 20 - out_mm))
+    every, bays = ways(plate(), own, tick)
+    assert every and not bays
+
+
+def test_a_stretch_beside_which_the_rim_is_no_longer_than_itself_is_no_bay() -> None:
+    own = with_places(polyline((26, 20), (22, 20)), 0.05)
+    every, bays = ways(plate(), own)
+    assert every and not bays
+    assert min(abs(length_mm(each.way) - 4.0) for each in every) < 20 * UM
+
+
+def test_a_way_comes_to_the_ends_of_its_stretch_over_a_leg() -> None:
+    """Its middle stays where it is; of a short way at least a fifth does."""
+    way = with_places(polyline((0, 0), (10, 0)), 0.1)
+    ends = np.array([[0.0, 0.2], [10.0, -0.1]])
+    moved = rims._to_ends(way, ends, 1.5)
+    assert moved[[0, -1]] == pytest.approx(ends)
+    off_mm = moved[:, 1] - way[:, 1]
+    assert np.all(off_mm[(way[:, 0] > 1.5) & (way[:, 0] < 8.5)] == 0)
+    assert off_mm[way[:, 0] < 1.5] == pytest.approx(0.2 * (1 - way[way[:, 0] < 1.5, 0] / 1.5))
+    assert off_mm[way[:, 0] > 8.5] == pytest.approx(
+        -0.1 * (way[way[:, 0] > 8.5, 0] - 8.5) / 1.5
+    )
+    short = rims._to_ends(way[:11], ends - [[0, 0], [9, 0]], 1.5)
+    assert np.all(short[5] == way[5]) and short[[0, -1]] == pytest.approx(
+        ends - [[0, 0], [9, 0]]
+    )
+
+
+def test_small_loops_of_a_way_become_corners_and_large_ones_stay() -> None:
+    """Two round ends as narrow as the pen, where the way crosses itself: at (9.67, 0.5) and (0.33, 2.5)."""
+    first = polyline((0, 0.4), (9, 0.4), (10, 0.55), (10.2, 0.5), (10, 0.45), (9, 0.6))
+    second = polyline((9, 2.4), (1, 2.4), (0, 2.55), (-0.2, 2.5), (0, 2.45), (1, 2.6), (9, 2.6))
+    way = np.vstack([first, second])
+    cut = rims._without_loops(way, 2.0)
+    assert not len(crossings_of(cut, np.arange(len(cut) - 1)))
+    assert nearest_mm(np.array([[29 / 3, 0.5], [1 / 3, 2.5]]), cut).max() < 1e-9
+    assert len(cut) == len(way) - 4
+    assert cut[:2] == pytest.approx(way[:2]) and cut[-2:] == pytest.approx(way[-2:])
+    assert np.array_equal(rims._without_loops(way, 0.5), way)
+
+
+def test_a_bar_is_a_pens_if_a_line_of_the_sheet_is_as_broad() -> None:
+    """Within 15 % of it."""
+    lines = (polyline((5, 5), (35, 5)), 0.5), (polyline((5, 10), (35, 10)), 1.0)
+    sheet = together(*lines).sheet
+    broad = [0.4, 0.5, 0.75, 0.9, 1.0, 1.1, 1.3]
+    assert [is_a_pen(sheet, each) for each in broad] == [
+        False,
+        True,
+        False,
+        True,
+        True,
+        True,
+        False,
+    ]

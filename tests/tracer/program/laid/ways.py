@@ -1,0 +1,29 @@
+"""Lines as a head would have run along them, apart from any drawing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.polyline import evenly, length_mm
+from morfax.motion.usual import FEED_MM_S, THINNED
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import CELL, Led
+from tests.tracer.inked import WIDTH_MM, Points
+
+STEP_MM = FEED_MM_S / MOTION_RATE_HZ  # from position to position
+
+
+def run_along(way: Points, ending: str = "closed", **more: Any) -> Line:
+    """The line of a head that ran along a way (n, 2) mm at its own speed, led by its cell."""
+    xy_mm = evenly(way, STEP_MM)
+    xy_mm = xy_mm[: len(xy_mm) // THINNED * THINNED]  # up to one of its thinned places
+    led = more.pop("led", Led.along(np.full(len(xy_mm), CELL, np.int8)))
+    return Line(xy_mm, ending, WIDTH_MM, length_mm(xy_mm), led=led, **more)
+
+
+def steps_mm(line: Line) -> Points:
+    """How far it is from each position of a line to the next, mm."""
+    return np.asarray(np.hypot(*np.diff(line.xy_mm, axis=0).T))

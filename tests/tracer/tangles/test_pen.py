@@ -1,0 +1,29 @@
+"""The distance of places from a way, as the pen takes it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import UM
+from morfax.tracer.tangles import pen
+
+
+def spiral(places: int) -> Array:
+    """A way that comes by its own side again and again, (n, 2) mm."""
+    turned = np.linspace(0.5, 12 * math.pi, places)
+    return 20 + 0.4 * np.column_stack([turned * np.cos(turned), turned * np.sin(turned)])
+
+
+@pytest.mark.parametrize("pieces", [pen.LONG - 1, pen.LONG, 5 * pen.BOXED + 1, 40 * pen.BOXED])
+def test_a_way_is_as_far_off_as_its_nearest_piece_however_long_it_is(pieces: int) -> None:
+    """Of a long way only the pieces about a place are looked at: none that is nearer is passed over."""
+    way, rng = spiral(pieces + 1), np.random.default_rng(pieces)
+    places = rng.uniform(0, 40, (300, 2))
+    steps = np.diff(way, axis=0)
+    along = np.einsum("pkx,kx->pk", places[:, None] - way[None, :-1], steps)
+    share = np.clip(along / np.sum(steps**2, axis=1), 0, 1)
+    nearest = way[None, :-1] + share[..., None] * steps
+    true_mm = np.hypot(*(places[:, None] - nearest).transpose(2, 0, 1)).min(axis=1)
+    assert np.abs(pen.away_from(places, way) - true_mm).max() < 0.001 * UM

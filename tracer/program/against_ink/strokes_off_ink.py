@@ -1,0 +1,162 @@
+"""Strokes off their ink: where those that run along all of it leave ink, or draw on paper.
+
+    ────────┬────       a corner within the ink of another line: the head has cut it, or ended two strokes
+       ╱    │           there, and a pen along these would leave part of the ink
+
+All the ink is some stroke's: what a pen leaves there is no other line's, as it may be beside a contour (see
+`own_ink`). So about each place that the head ran from memory both tell, each by itself:
+
+    off = max(ink left, ink drawn on paper), in widths of the pen squared, in a box as wide as the pen
+
+of the pen's widths that explain the box best. Ends that are alone are left out: a pen is lifted as it likes.
+
+Signals: the drawing and its strokes in; places out, the worst first.
+
+Source: our own. Questions: a way that is wrong within ink that other strokes explain is not seen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion.arrays import Array
+from morfax.motion.median import median
+from morfax.motion.neighbours import Neighbours
+from morfax.motion.polyline import at_lengths, lengths_mm
+from morfax.motion.usual import THINNED
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import CELL
+from morfax.tracer.limits import CLEAR_WIDTHS
+from morfax.tracer.program.against_ink.own_ink import PLACES_PX, Part, parts
+from morfax.tracer.program.against_ink.pen_on_ink import (
+    Band,
+    Pen,
+    Ways,
+    band_of,
+    clear,
+    in_boxes,
+    most_about,
+)
+from morfax.tracer.program.against_ink.unexplained import Unexplained
+from morfax.tracer.tangles.pen import ink
+
+# All limits below were chosen by trial on crowded sheets.
+OFF = 0.08  # widths²: of crossings that are right to 0.1 mm none comes above
+OF_WIDTH = (0.9, 1.0, 1.1)  # of the line's: pens that are tried
+ABOUT_END = 2.0  # widths: nearer to an end, the round of its pen is looked at
+ABOUT_PLACE = 3.0  # widths from the worst place of several, the others are it
+TILE_PX = 192  # of what is judged in one
+STATION_PX = 2  # places from one that is judged to the next
+
+
+def strokes_off_ink(drawing: Drawing, lines: Sequence[Line]) -> list[Unexplained]:
+    """Where strokes along all the ink are off it, the worst first; nothing where no pen can be told."""
+    noise, some = drawing.noise, [line for line in lines if not line.on_edge]
+    if not noise.softness_px > 0 or drawing.grainy or drawing.finer > 1 or not some:
+        return []
+    ways, from_memory = _ways(drawing, some)
+    is_station = from_memory & ~_at_lone_ends(ways)
+    is_station &= np.arange(len(is_station)) % STATION_PX == 0
+    if not is_station.any():
+        return []
+    half_px = median(ways.half_px)
+    reach_px, paper = 2 * CLEAR_WIDTHS * half_px, 0.5 * noise.paper**2
+    pen = Pen(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, OFF)
+    tiles = parts(drawing, ways, is_station, TILE_PX, pen)
+    found = [(part.stations, _off(part)) for part in tiles]
+    stations, off = (np.concatenate(column) for column in zip(*found, strict=True))
+    return list(_places(drawing, ways, stations[off > OFF], off[off > OFF]))
+
+
+def _ways(drawing: Drawing, lines: Sequence[Line]) -> tuple[Ways, NDArray[np.bool_]]:
+    """The ways of strokes in pixels of the sheet, and to which of their places the head ran from memory."""
+    pitch_mm, rows = drawing.pitch_mm, drawing.darkness.shape[0]
+    places, from_memory = list[Array](), list[NDArray[np.bool_]]()
+    for line in lines:
+        come_mm, (_, leaders) = (
+            lengths_mm(line.places_mm),
+            line.led.thinned(line.xy_mm, THINNED),
+        )
+        count = 2 + math.ceil(come_mm[-1] / (PLACES_PX * pitch_mm))
+        at_mm = np.linspace(0.0, come_mm[-1], count)
+        leads = leaders[np.minimum(np.searchsorted(come_mm, at_mm), len(leaders) - 1)]
+        places.append(at_lengths(line.places_mm, at_mm))
+        from_memory.append(leads != CELL)
+    every = np.vstack(places)
+    columns = np.column_stack([every[:, 0], rows * pitch_mm - every[:, 1]]) / pitch_mm - 0.5
+    number = np.repeat(np.arange(len(lines), dtype=np.int32), [len(way) for way in places])
+    half_px = np.array([0.5 * line.width_mm / pitch_mm for line in lines])
+    ways = Ways(columns.astype(np.float32), number, half_px, np.ones(len(lines), bool))
+    return ways, np.concatenate(from_memory)
+
+
+def _at_lone_ends(ways: Ways) -> NDArray[np.bool_]:
+    """Which places are about an end of a stroke beside which no other runs."""
+    about_px = ABOUT_END * 2 * ways.half_px
+    first = np.flatnonzero(np.diff(ways.line, prepend=-1))
+    last = np.r_[first[1:], len(ways.line)] - 1
+    count = min(2 * math.ceil(about_px.max() / PLACES_PX), len(ways.line))
+    lone = np.zeros(len(ways.line), bool)
+    for ends, way in ((first, 1), (last, -1)):
+        near = Neighbours(ways.places_px).several(ways.places_px[ends], count)
+        off_px = np.hypot(*np.moveaxis(ways.places_px[near] - ways.places_px[ends, None], 2, 0))
+        on = np.abs(near - ends[:, None]) * PLACES_PX
+        is_other = (ways.line[near] != ways.line[ends, None]) | (on > 2 * about_px[:, None])
+        is_lone = ~(is_other & (off_px < about_px[:, None])).any(axis=1)
+        for k in np.flatnonzero(is_lone).tolist():
+            reach = math.ceil(about_px[k] / PLACES_PX)
+            lone[ends[k] : ends[k] + way * reach : way] |= True
+    return lone
+
+
+def _off(part: Part) -> Array:
+    """By how much strokes are off their ink about each station of a tile, widths²."""
+    pen, shape = part.pen, part.seen.shape
+    band = band_of(part.seen, part.ways, pen, part.room)
+    clear(part.seen, band, part.room)
+    spread = part.room.spread[: part.seen.size].reshape(shape)
+    least, worst = np.full(shape, np.inf), np.zeros(shape)
+    for share in pen.of_width:
+        paper, left = _sums(band, pen, share, spread)
+        is_less = paper + left < least
+        least = np.where(is_less, paper + left, least)
+        worst = np.where(is_less, np.maximum(paper, left), worst)
+    side = _side(pen)
+    most = [most_about(worst, place, side) for place in part.at]
+    return np.array(most) / (2 * pen.half_px) ** 2
+
+
+def _side(pen: Pen) -> int:
+    """The side of a box as wide as the pen, in pixels."""
+    return 2 * round(pen.half_px) + 1
+
+
+def _sums(band: Band, pen: Pen, share: float, spread: Array) -> tuple[Array, Array]:
+    """What pens of a share of the lines' widths draw on paper in the box about each pixel, and leave."""
+    drawn, sums = np.empty(len(band.dark)), (np.empty(spread.shape), np.empty(spread.shape))
+    ink(band.away_px - share * band.half_px + pen.half_px, pen.half_px, pen.softness_px, drawn)
+    wrong = drawn - band.dark
+    for signed, into in zip((wrong, -wrong), sums, strict=True):
+        in_boxes(band, np.maximum(signed, 0.0) ** 2 - pen.noise, _side(pen), spread, into)
+    return sums
+
+
+def _places(
+    drawing: Drawing, ways: Ways, stations: NDArray[np.int64], off: Array
+) -> Iterator[Unexplained]:
+    """The places at which stations are off their ink, each the worst of those about it, the worst first."""
+    rows, pitch_mm, left = drawing.darkness.shape[0], drawing.pitch_mm, np.argsort(-off)
+    about_px = ABOUT_PLACE * 2 * median(ways.half_px)
+    while len(left):
+        at = ways.places_px[stations[left]]
+        is_near = np.hypot(*(at - at[0]).T) < about_px
+        long_px = np.hypot(*np.ptp(at[is_near], axis=0))
+        column, row = at[0].tolist()
+        place_mm = (column + 0.5) * pitch_mm, (rows - row - 0.5) * pitch_mm
+        yield Unexplained(place_mm, float(long_px) * pitch_mm, "off")
+        left = left[~is_near]
