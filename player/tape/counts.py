@@ -19,9 +19,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from morfax.motion.arrays import Array
 from morfax.motion.median import OUTLIERS
 from morfax.recorder.tape.check_frame import CheckFrame
 from morfax.recorder.tape.format import SURE_CYCLES
@@ -61,7 +58,7 @@ class Counts:
     """
 
     def __init__(self, axes: int, *, is_timed: bool) -> None:
-        self.zero_cycles: Array = np.full(axes, np.nan)
+        self.zero_cycles = [math.nan] * axes
         self._is_timed = is_timed
         self._waiting: list[Due] = []
 
@@ -83,7 +80,7 @@ class Counts:
         """What is told next within so many rows from one on; None if there is nothing yet."""
         while self._waiting and rows and self._waiting[0].row <= first_row + rows - 1:
             due = self._waiting.pop(0)
-            is_zeroed = not np.isnan(self.zero_cycles).any()
+            is_zeroed = not any(map(math.isnan, self.zero_cycles))
             # before the first row an axis still stands, unless the tape is taken up under way
             if is_zeroed or (due.row >= first_row and not due.is_middle):
                 return due
@@ -94,7 +91,7 @@ class Counts:
         said = due.told[axis]
         if math.isnan(self.zero_cycles[axis]):
             self.zero_cycles[axis] = found - said.cycles
-        off = found - float(self.zero_cycles[axis])
+        off = found - self.zero_cycles[axis]
         limit = due.limit_cycles[axis]
         if due.is_middle and said.middle_cycles is not None:
             return Off(math.remainder(off - said.middle_cycles, 1.0), limit)

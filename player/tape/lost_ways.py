@@ -64,7 +64,8 @@ class LostWays:
 
     def covers(self, axis: int, row: float) -> bool:
         """Whether a row lies within a gap."""
-        return any(gap.first - 1 <= row <= gap.last for gap in self._open[axis])
+        gaps = self._open[axis]  # nearly always none, and asked twice a frame
+        return bool(gaps) and any(gap.first - 1 <= row <= gap.last for gap in gaps)
 
     def bare(self, axis: int, rows: Sequence[float]) -> float | None:
         """The first of some rows that lies in no gap, nor close beside one."""

@@ -87,7 +87,7 @@ class Vouching:
         """Take the zeros of the axes; None: where their counts begin is told by the first frames."""
         self._place_mm = place_mm
         if zero_cycles is not None:
-            self._counts.zero_cycles = zero_cycles.copy()
+            self._counts.zero_cycles = zero_cycles.tolist()
 
     def bounds(self) -> Sequence[ToldBounds]:
         """What the track of each axis tells of the program, as far as its frames were read."""

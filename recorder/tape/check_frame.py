@@ -76,7 +76,13 @@ class CheckFrame(NamedTuple):
     @property
     def turn_cycles(self) -> float:
         """Cycles after which the counts begin again."""
-        return (1 << _COUNT_BITS - middle_bits(self.version, self.track)) * self.grain_cycles
+        return turn_cycles(self.version, self.track)
+
+
+@cache  # of three versions and 16 tracks: asked twice a frame
+def turn_cycles(version: int, track: int) -> float:
+    """Cycles after which the counts of a track begin again."""
+    return (1 << _COUNT_BITS - middle_bits(version, track)) / COUNTS_PER_CYCLE[version]
 
 
 def middle_bits(version: int, track: int) -> int:

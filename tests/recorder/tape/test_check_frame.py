@@ -23,6 +23,7 @@ from morfax.recorder.tape.check_frame import (
     to_bits,
     to_code,
     to_value,
+    turn_cycles,
 )
 
 OCTAVE_STEP = 2 ** (1 / 8)  # speeds and accelerations are rounded up to this
@@ -141,3 +142,14 @@ def test_eight_codes_are_an_octave_from_the_least_on(least: float) -> None:
     assert to_code(largest, least) == 126 and to_value(126, least) == pytest.approx(largest)
     assert to_code(1.01 * largest, least) == 127 and to_value(127, least) == math.inf
     assert to_value(0, least) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("version", "track", "cycles"),
+    [(1, 1, 1 << 22), (2, 1, 1 << 20), (3, 0, 1 << 20), (3, 1, 1 << 14)],
+)
+def test_counts_begin_again_behind_the_bits_that_tell_them(
+    version: int, track: int, cycles: int
+) -> None:
+    assert turn_cycles(version, track) == cycles
+    assert CheckFrame(track, 1, 0.0, version=version).turn_cycles == cycles
