@@ -86,6 +86,9 @@ class Sheet:
     window: Window | None = None
     has_references: bool = True  # small crosses and rings may be reference points
     bare_rings: bool = False  # rings are, whatever the line from them leads to
+    taken: frozenset[int] = (
+        frozenset()
+    )  # patches of other lines, onto which the head does not go
     weights: dict[int, Weight] = field(default_factory=dict, repr=False, compare=False)
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
@@ -185,9 +188,8 @@ class Sheet:
         """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches."""
         pitch_mm, rows = self.drawing.pitch_mm, self.drawing.darkness.shape[0]
         row, about_px = rows - 1 - math.floor(place_mm[1] / pitch_mm), ABOUT_PX
-        while (
-            True
-        ):  # all runs of a large sheet take longer than those of the rows about the place
+        # all runs of a large sheet take longer than those of the rows about the place
+        while True:
             runs = self.patches.runs_between(row - about_px, row + about_px + 1)
             found = self._nearest_of(place_mm, runs, among)
             is_all = runs == slice(0, len(self.patches.row))
@@ -238,6 +240,10 @@ class Sheet:
     def run_ends_mm(self, runs: Pixels) -> Array:
         """Last pixels of some runs of ink, (n, 2) sheet mm."""
         return self._mm(self.patches.row[runs], self.patches.end[runs] - 1)
+
+    def places_mm(self, rows: Pixels, columns: Pixels) -> Array:
+        """Centres of some pixels, (n, 2) sheet mm."""
+        return self._mm(rows, columns)
 
     def _mm(self, rows: Pixels, columns: Pixels) -> Array:
         """Centres of pixels, (n, 2) sheet mm."""

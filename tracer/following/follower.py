@@ -54,6 +54,7 @@ from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.junctions.width_change import of_another_pen
 from morfax.tracer.marks.dots import dot_at_end
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of
+from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.tangles.memory import Tangles
 
 # the share of a change of a clean line's width that the head takes over at once; by trial
@@ -206,12 +207,16 @@ class Follower(RunEnds):
         dot = None if goes_on else dot_at_end(self.view, incoming)
         if dot is not None:
             return self._end(aimed_at(incoming, dot), math.dist(incoming.end_mm, dot))
-        plan = self._planner().by_another_pen(incoming, choice)
-        if plan is not None:
-            return self._pass(plan)
+        plan, choices = self._planner().by_another_pen(incoming, choice), 0
         # 2. by the legs, or past what they do not explain
-        plan, choices = self._by_legs(incoming, choice, asked=asked)
-        return self._at_end(incoming, choices) if plan is None else self._pass(plan)
+        if plan is None:
+            plan, choices = self._by_legs(incoming, choice, asked=asked)
+        if plan is None:
+            return self._at_end(incoming, choices)
+        # 3. not onto another line: this one ends before that
+        if self.view.is_others(plan.leg.end_mm):
+            return self._end(incoming, end_of(self.view, incoming) or 0.0)
+        return self._pass(plan)
 
     def _by_legs(
         self, incoming: Leg, choice: Choice, *, asked: bool

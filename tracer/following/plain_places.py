@@ -61,7 +61,9 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
         cells = photocell.behind_aperture(sheet.drawing, aperture_mm, window=sheet.window)
         sheet.seen[aperture_mm] = cells
     cells, drawing = sheet.seen[aperture_mm], sheet.drawing
-    return View(cells, width_mm, parted=drawing.finer, grainy=drawing.grainy)
+    # a function: a head that is copied takes no copy of the sheet along
+    others = (lambda place: sheet.patch_at(place) in sheet.taken) if sheet.taken else None
+    return View(cells, width_mm, parted=drawing.finer, grainy=drawing.grainy, others=others)
 
 
 def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:

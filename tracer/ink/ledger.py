@@ -11,7 +11,8 @@ Source: our own; the patent has one contour to a tape.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import cv2
@@ -29,6 +30,7 @@ from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.ink.graph import Graph
 from morfax.tracer.ink.hatching import Hatching, hatching
 from morfax.tracer.ink.left_out import Area, InkLeft
+from morfax.tracer.ink.missed_ink import Missed, missed_ink
 from morfax.tracer.ink.pale import Pale, pale_lines
 from morfax.tracer.ink.stretches import FeltSheet
 
@@ -112,18 +114,27 @@ def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> 
     are_small = lengths_mm < np.maximum(SPECK_MM, DOT_WIDTHS * sheet.widths_mm)
     specks = ~solid & ~left.letters & (shares == 0) & are_small
     lines = ~solid & ~left.letters & ~specks
+    # 3. ink beside the strokes, of which the thinned pixels show nothing
+    single, lost = dict(_single(felt, places, run)), dict(_lost(graph, places, is_near))
+    pen_mm = felt.doubled.pen_mm if felt.doubled.stations else math.inf
+    of_lines_mm = np.minimum(wide_mm, pen_mm) * (lines & (shares > 0) & ~left.lettering)
+    pieces = missed_ink(sheet, left, run, of_lines_mm)
+    told = np.zeros(len(places), bool)
+    for n in {*single, *lost}:
+        told[graph.stretches[n].pixels] = True
+    missed, missed_mm = _missed(pieces, Neighbours(places), told, is_near)
     return Balance(
-        float(np.sum((shares * lengths_mm)[lines])),
-        float(np.sum(((1 - shares) * lengths_mm)[lines])),
+        float(np.sum((shares * lengths_mm)[lines])) - missed_mm,
+        float(np.sum(((1 - shares) * lengths_mm)[lines])) + missed_mm,
         float(lengths_mm[specks & (left.solid_px == 0)].sum()),
         float(lengths_mm[solid].sum()),
-        tuple(_lost(graph, places, is_near)),
+        _longest_first([*lost.values(), *missed]),
         float(lengths_mm[left.letters].sum()),
         float((shares * lengths_mm)[lines & left.lettering].sum()),
         left.areas,
         tuple(hatching(ways)),
         tuple(pale_lines(sheet.drawing)),
-        tuple(_single(felt, places, run)),
+        _longest_first(single.values()),
     )
 
 
@@ -155,9 +166,9 @@ def _patches_at(sheet: Sheet, rows: Indices, columns: Indices) -> Indices:
     return np.asarray(patches.patch[np.maximum(runs, 0)], np.int64)
 
 
-def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[Patch]:
-    """The stretches of doubled ink along which no second stroke runs, the longest first."""
-    doubled, found = felt.doubled, list[Patch]()
+def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[tuple[int, Patch]]:
+    """The stretches of doubled ink along which no second stroke runs, with their numbers."""
+    doubled = felt.doubled
     if not doubled.stations:
         return
     # 1. how much of the ways, places `LOOKED_MM` apart, each thinned pixel has
@@ -171,17 +182,40 @@ def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[Patch]:
         left_mm = float(np.clip(2 * long_mm - come[there].sum() * LOOKED_MM, 0.0, long_mm))
         if len(there) and left_mm > ONCE_SHARE * long_mm:
             x, y = places[there[len(there) // 2]]
-            found.append((round(float(x), 1), round(float(y), 1), round(left_mm, 1)))
-    yield from sorted(found, key=lambda patch: -patch[2])
+            yield n, (round(float(x), 1), round(float(y), 1), round(left_mm, 1))
 
 
-def _lost(graph: Graph, places: Array, is_near: NDArray[np.bool_]) -> list[Patch]:
-    """The stretches of which more than half is left, the longest first."""
-    found = list[Patch]()
-    for stretch in graph.stretches:
+def _missed(
+    pieces: Iterable[Missed],
+    thinned: Neighbours,
+    told: NDArray[np.bool_],
+    is_near: NDArray[np.bool_],
+) -> tuple[list[Patch], float]:
+    """The pieces of missed ink that are not told by the thinned pixels nearest to them, and the length of
+    those that these count as followed.
+    """
+    found, missed_mm = list[Patch](), 0.0
+    for piece in pieces:
+        nearest = thinned.nearest(piece.places_mm)[1]
+        if np.mean(told[nearest]) < HALF:
+            x, y = piece.places_mm.mean(axis=0)
+            found.append((round(float(x), 1), round(float(y), 1), round(piece.length_mm, 1)))
+            missed_mm += piece.length_mm * float(np.mean(is_near[nearest]))
+    return found, missed_mm
+
+
+def _longest_first(patches: Iterable[Patch]) -> tuple[Patch, ...]:
+    """Patches in order of their lengths."""
+    return tuple(sorted(patches, key=lambda patch: -patch[2]))
+
+
+def _lost(
+    graph: Graph, places: Array, is_near: NDArray[np.bool_]
+) -> Iterator[tuple[int, Patch]]:
+    """The stretches of which more than half is left, with their numbers."""
+    for n, stretch in enumerate(graph.stretches):
         middles = places[stretch.pixels]
         length_mm = float(np.hypot(*np.diff(middles, axis=0).T).sum())
         if length_mm > LOST_MM and np.mean(is_near[stretch.pixels]) < HALF:
             x, y = middles[len(middles) // 2]
-            found.append((round(float(x), 1), round(float(y), 1), round(length_mm, 1)))
-    return sorted(found, key=lambda patch: -patch[2])
+            yield n, (round(float(x), 1), round(float(y), 1), round(length_mm, 1))

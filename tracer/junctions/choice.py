@@ -86,11 +86,12 @@ class WayIn:
     _reaches_mm: dict[int, tuple[Leg, float]] = field(default_factory=dict)
 
     def legs_around(self, centre: Array) -> list[Leg]:
-        """The clean legs that leave a place (see `rings`), but for the way in."""
+        """The clean legs that leave a place (see `rings`), but for the way in, and those of other lines."""
         place = float(centre[0]), float(centre[1])
         if place not in self._felt:
             way_in = np.vstack([self.trail.recent(), self.incoming.seen[:, :2]])
-            self._felt[place] = legs_around(self.view, centre, way_in)
+            legs = legs_around(self.view, centre, way_in)
+            self._felt[place] = [leg for leg in legs if not self.view.is_others(leg.end_mm)]
         return self._felt[place]
 
     def reach_mm(self, leg: Leg) -> float:

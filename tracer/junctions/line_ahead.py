@@ -79,8 +79,8 @@ def _round_about(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
 
 
 def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
-    """The clean line met by going on along a leg."""
-    paper_mm, step = 0.0, STEP_PX * view.pitch_mm
+    """The clean line met by going on along a leg; across paper not that of others."""
+    paper_mm, step, is_across = 0.0, STEP_PX * view.pitch_mm, False
     farthest_mm = END_WIDTHS * view.width_mm + gap_mm
     for along in np.arange(0.5 * view.width_mm, farthest_mm, step):
         place = incoming.at(along)
@@ -88,12 +88,13 @@ def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
         if paper_mm > gap_mm + step:
             return None
         if paper_mm:
+            is_across = True
             continue
         seen = view.feel(place, incoming.heading_at(along), view.leg_mm)
         if len(seen) < FEWEST or np.hypot(*(seen[0, :2] - place)) > BEGIN * view.width_mm:
             continue
         leg = leg_of(seen, False, view.leg_mm)
-        if goes_straight(incoming, leg):
+        if goes_straight(incoming, leg) and not (is_across and view.is_others(leg.end_mm)):
             return leg
     return None
 
@@ -115,6 +116,7 @@ def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> L
             if off_heading(float(middle)) < AHEAD:
                 met = end + radius * direction(middle)
                 legs += [leg for leg in _from(view, met) if not trail.holds(leg, view.width_mm)]
+        legs = [leg for leg in legs if not view.is_others(leg.end_mm)]
         legs = [leg for leg in legs if off_heading(leg.heading_rad) < AHEAD]
         if legs:
             return min(legs, key=lambda leg: off_heading(leg.heading_rad))

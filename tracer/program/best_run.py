@@ -81,6 +81,8 @@ class Target:
         """Follow from a stance; with other turns also where straight on does not go round as asked."""
         sheet, operator = self.setup.sheet, self.setup.operator
         self.setup.runs.make_room()
+        if stance.reference_mm is not None:  # the line leads onto the contour
+            stance = replace(stance, view=replace(stance.view, others=None))
         attempts = Attempts(
             sheet.drawing,
             self.setup.settings,

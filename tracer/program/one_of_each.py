@@ -36,6 +36,7 @@ from morfax.tracer.program.nets.net_lines import lines_of_ring, net_of, or_outli
 from morfax.tracer.program.nets.net_outline import ABOUT_WIDTHS, goes_round, may_solve
 from morfax.tracer.program.nets.open_ink import can_stand, is_open, strokes_of, strokes_told
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.taken import beside, taken_by
 from morfax.tracer.program.trace import followed, followed_from_an_end
 
 # from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of
@@ -68,7 +69,7 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
     lines, boxes_mm, come_mm = list[Line](), list[Array](), 0.0
     begins_mm, unclear = list[tuple[float, float]](), list[Contour]()
     loops = SmallLoops(setup.sheet, setup.settings)
-    others = dict[int, list[Line]]()
+    others, taken = dict[int, list[Line]](), set[int]()
     letters = lettering(setup.sheet) if may_solve(setup) else set[int]()
     for contour in asked:
         if _is_done(contour, [lines[k] for k in _near(contour, boxes_mm)], begins_mm):
@@ -80,9 +81,12 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
             continue
         is_letter = contour.stroke.patch in letters
         reads_marks = setup.operator.reads_marks(lines)
-        found = _found(setup.after(come_mm, total_mm), loops, contour, is_letter, reads_marks)
+        here = setup.after(come_mm, total_mm)
+        here = beside(here, taken - {contour.stroke.patch})
+        found = _found(here, loops, contour, is_letter, reads_marks)
         line = found.line
         if line is not None:
+            taken |= taken_by(setup, [line])
             if found.others is not None:
                 others[contour.number] = found.others
             lines.append(line)

@@ -16,10 +16,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
-from morfax.motion import nesting
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
@@ -28,12 +24,13 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.arrows import turned_round, with_arrows
+from morfax.tracer.program.arrows import with_arrows
+from morfax.tracer.program.cutting_order import in_cutting_order
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.laid.bent import bent
 from morfax.tracer.program.laid.narrow_bays import explained, with_bars
 from morfax.tracer.program.laid.small_lines import small_lines
-from morfax.tracer.program.lines import order, selection
+from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.marks_read import with_marks_read
 from morfax.tracer.program.lines.repeated import without_repeats
 from morfax.tracer.program.lines.selection import COVERED, Contour, Which
@@ -51,6 +48,7 @@ from morfax.tracer.program.one_of_each import (
 )
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress, Setup
+from morfax.tracer.program.taken import beside, taken_by
 from morfax.tracer.program.trace import followed
 
 
@@ -93,7 +91,7 @@ def trace_lines(
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
     return Trace(
-        tuple(_in_order(setup, lines)),
+        tuple(in_cutting_order(setup, lines)),
         operator,
         left_out=found.left_out,
         left_out_mm=found.left_out_mm,
@@ -152,7 +150,9 @@ def trace_places(
     lines, unread = with_marks_read(with_arrows(setup, lines), operator)
     lines, left = explained(setup, bent(setup, lines))
     beside = left if alone else ()
-    return Trace(tuple(_in_order(setup, lines)), operator, unread=unread, unexplained=beside)
+    return Trace(
+        tuple(in_cutting_order(setup, lines)), operator, unread=unread, unexplained=beside
+    )
 
 
 def found_lines(setup: Setup, which: Which) -> FoundLines:
@@ -218,12 +218,12 @@ def _joined(
     that are known, or those that the head finds; and the length of ink left over, mm.
     """
     joined, left_mm = list[tuple[Line, int]](), 0.0
-    own = {line.number: line for line in lines}
+    own, taken = {line.number: line for line in lines}, taken_by(setup, lines)
     for contour in asked:
         line = own.get(contour.number)
         if line is not None and len(line.xy_mm) > 1:  # not one that was never begun
-            known = strokes.get(contour.number)
-            others, more_mm = joined_to(line, contour, setup, known)
+            here = beside(setup, taken - {contour.stroke.patch})
+            others, more_mm = joined_to(line, contour, here, strokes.get(contour.number))
             joined += [(other, contour.number) for other in others]
             left_mm += more_mm
     begins_mm = references_of(lines)
@@ -263,36 +263,3 @@ def _one_line(first_mm: tuple[float, float], second_mm: tuple[float, float]) -> 
         x_mm=u,
         y_mm=v,
     )
-
-
-def _in_order(setup: Setup, lines: list[Line]) -> list[Line]:
-    """The lines in the order of cutting; an open one followed anew from its other end if that is nearer."""
-    inner = nesting.nested(
-        [line.loop_mm for line in lines], [not line.is_open for line in lines]
-    )
-    begins = np.array([line.begin_mm for line in lines])
-    ends = np.array([line.end_mm for line in lines])
-    may_turn = np.array(
-        [line.is_open and not line.goes_back and not line.as_told for line in lines]
-    )
-    before = _as_told(inner, [line.number for line in lines], setup.operator.order)
-    sequence, turned = order.in_order_and_turned(begins, ends, before, may_turn)
-    return [turned_round(setup, lines[i]) if turned[i] else lines[i] for i in sequence]
-
-
-def _as_told(
-    inner: NDArray[np.bool_], numbers: list[int], told: tuple[int, ...]
-) -> NDArray[np.bool_]:
-    """Which line is cut before which: the told ones first, in their order; the others inner before outer.
-
-    Raises LineFault for a number that no line has.
-    """
-    if not told:
-        return inner
-    for number in told:
-        if number not in numbers:
-            raise selection.no_line(number, sorted(set(numbers)))
-    rank = np.array([told.index(n) if n in told else len(told) for n in numbers])
-    by_rank = np.asarray(rank[:, None] < rank[None])
-    both_free = (rank[:, None] == len(told)) & (rank[None] == len(told))
-    return np.where(both_free, inner, by_rank)

@@ -45,7 +45,8 @@ class View:
     `usual_mm` is the line's width as a rule, where the width here differs. What the head sees is `enlarged`
     times as large as on the drawing. `on_edge`: it is the edge of a filled shape, dark to one side, and the
     width is that of a line which would be as fine. `parted`: so many of the sheet's pixels lie side by side
-    in one of the scan's. `grainy`: the ink is that of a pencil or a dry pen, seen through a slit.
+    in one of the scan's. `grainy`: the ink is that of a pencil or a dry pen, seen through a slit. `others`
+    tells of a place on the sheet whether its ink is that of another line.
     """
 
     cells: Cells
@@ -55,6 +56,7 @@ class View:
     on_edge: bool = False
     parted: int = 1
     grainy: bool = False
+    others: Callable[[Array], bool] | None = None
 
     @property
     def pitch_mm(self) -> float:
@@ -98,6 +100,10 @@ class View:
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""
         return self.darkness_at(place) > self.level
+
+    def is_others(self, place: Array) -> bool:
+        """Whether the ink at a place is that of another line, onto which the head does not go."""
+        return self.others is not None and self.others(place / self.enlarged)
 
     def edges(self, place: Array, heading: float, reach_mm: float) -> tuple[float, float]:
         """Where the line under a place ends to the right and to the left of a heading, mm (see `ray`)."""

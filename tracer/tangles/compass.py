@@ -24,6 +24,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
+from morfax.motion import arrays
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM2, left_of, unit
@@ -217,22 +218,41 @@ def _ink(places, points, radius_mm, half_mm, softness_mm, is_filled, out):  # ty
     """Darkness (n,) that a pen leaves at places (n, 2) along the way at a radius from points (m, 2), and
     within it if it is filled.
     """
+    sides = _sides(points)
     for k in range(len(places)):
-        away_mm = _from_core(places[k, 0], places[k, 1], points) - radius_mm
+        away_mm = _from_core(places[k, 0], places[k, 1], points, sides) - radius_mm
         away_mm = away_mm if is_filled else abs(away_mm)
         out[k] = pen.ink_at(away_mm, half_mm, softness_mm)
 
 
 @njit(cache=True)
-def _from_core(x, y, points):  # type: ignore[no-untyped-def]
-    """Distance of a place from a point, a stretch or a polygon (m, 2); within a polygon it is negative."""
-    count, inside, best = len(points), False, math.inf
-    for i in range(count):
-        j = (i + 1) % count
+def _sides(points):  # type: ignore[no-untyped-def]
+    """The sides of a polygon (m, 2) from each point to the next: x, y and the square of the length (m, 3)."""
+    sides = np.empty((len(points), 3))
+    for i in range(len(points)):
+        j = (i + 1) % len(points)
         vx, vy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+        sides[i, 0], sides[i, 1], sides[i, 2] = vx, vy, vx * vx + vy * vy + NOTHING_MM2
+    return sides
+
+
+@njit(cache=True)
+def _from_core(x, y, points, sides):  # type: ignore[no-untyped-def]
+    """Distance of a place from a point, a stretch or a polygon (m, 2) with its sides; within a polygon it is
+    negative.
+
+    The root is taken only of squares that are, but for rounding, the least so far: it takes longest.
+    """
+    inside, best, best2 = False, math.inf, math.inf
+    for i in range(len(points)):
+        vx, vy = sides[i, 0], sides[i, 1]
         wx, wy = x - points[i, 0], y - points[i, 1]
-        t = min(max((wx * vx + wy * vy) / (vx * vx + vy * vy + NOTHING_MM2), 0.0), 1.0)
-        best = min(best, math.hypot(wx - t * vx, wy - t * vy))
+        t = min(max((wx * vx + wy * vy) / sides[i, 2], 0.0), 1.0)
+        ax, ay = wx - t * vx, wy - t * vy
+        square = ax * ax + ay * ay
+        if square <= best2:
+            best, best2 = min(best, math.hypot(ax, ay)), square * (1 + arrays.ROUNDED)
+        j = (i + 1) % len(points)
         if (points[i, 1] > y) != (points[j, 1] > y) and x < points[i, 0] + wy * vx / vy:
             inside = not inside
     return -best if inside else best

@@ -135,14 +135,32 @@ def test_the_way_of_a_core_is_closed_and_as_long_as_its_sides_and_arcs(
     assert len(stretches) == (1 if core.radius_mm else len(core.points_mm) + 1)
 
 
+def from_core(x: float, y: float, points: NDArray[np.float64]) -> float:
+    """The distance of a place from the core of some points, by the kernels' plain Python."""
+    sides = compass._sides.py_func(points)
+    return float(compass._from_core.py_func(x, y, points, sides))
+
+
 def test_the_distance_from_a_polygon_is_negative_within() -> None:
-    from_core = compass._from_core.py_func
     square: NDArray[np.float64] = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)])
     assert from_core(1.0, 0.5, square) == pytest.approx(-0.5)
     assert from_core(1.0, -0.5, square) == pytest.approx(0.5)
     assert from_core(3.0, 3.0, square) == pytest.approx(math.sqrt(2))
     assert from_core(1.0, 0.5, square[:1]) == pytest.approx(math.hypot(1.0, 0.5))
     assert from_core(1.0, 0.5, square[:2]) == pytest.approx(0.5)
+
+
+def test_a_root_is_taken_for_the_nearest_sides_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    angles = np.linspace(0, 2 * math.pi, 13)[:-1]
+    polygon, roots, hypot = np.column_stack([np.cos(angles), np.sin(angles)]), [], math.hypot
+
+    def counted(x: float, y: float) -> float:
+        roots.append((x, y))
+        return hypot(x, y)
+
+    monkeypatch.setattr(math, "hypot", counted)
+    assert from_core(2.0, 0.0, polygon) == pytest.approx(1.0)
+    assert len(roots) == 2  # both sides at the nearest corner, which is the first
 
 
 def test_a_core_that_turns_back_and_forth_is_none() -> None:

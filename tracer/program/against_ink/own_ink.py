@@ -197,7 +197,18 @@ def parts(
 
 def _are_stations(ways: Ways, which: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Which places are stations of some lines."""
-    return np.asarray(which[ways.line] & (np.arange(len(ways.line)) % _every(ways) == 0))
+    is_every = np.arange(len(ways.line)) % _every(ways) == 0
+    return np.asarray(which[ways.line] & ~_near_ends(ways) & is_every)
+
+
+def _near_ends(ways: Ways) -> NDArray[np.bool_]:
+    """Which places lie within a width of an end of an open way: many pens come to a point there."""
+    at, lines = np.arange(len(ways.line)), np.arange(len(ways.half_px))
+    first = np.searchsorted(ways.line, lines)
+    last = np.searchsorted(ways.line, lines, side="right") - 1
+    apart_px = np.hypot(*(ways.places_px[last] - ways.places_px[first]).T)
+    near = np.where(apart_px > 2 * PLACES_PX, 2 * ways.half_px / PLACES_PX, 0.0)[ways.line]
+    return np.asarray((at - first[ways.line] < near) | (last[ways.line] - at < near))
 
 
 def _pen(drawing: Drawing, ways: Ways, over: float) -> Pen:

@@ -43,7 +43,14 @@ from morfax.tracer.program.against_ink.off_ink import (
 )
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, is_bare, is_clear, rest_of
+from morfax.tracer.program.laid.line_parts import (
+    LEGS,
+    OF_LOOP,
+    STILL_LEFT,
+    is_bare,
+    is_clear,
+    rest_of,
+)
 from morfax.tracer.program.laid.spline_fit import (
     CORNER_RAD,
     MAYBE_RAD,
@@ -62,8 +69,6 @@ LONGEST = 18.0  # a stretch is no longer, legs apart
 LONGER = 0.15  # than a way that does not turn: it goes out along a burr and comes back
 TURNS_OVER = 1.0  # on either side of a place, by how much the way turns there
 MOST_ASIDE = 0.5  # that a spline lies off the way: further is out along a tick, or round a bay
-# of what the way leaves: a spline that leaves more is none, unless that is noise
-STILL_LEFT = 0.35
 
 
 def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:

@@ -28,6 +28,8 @@ from morfax.tracer.program.setup import Setup
 LEGS = 1.5, 4.0
 MOUTH = 1.0  # from a bar of ink to the way that it is joined to
 OF_LOOP = 0.8  # of a line: a stretch that is more of it is no bay and no touch
+# of what a way leaves unexplained: what is laid in its place and leaves more is none, unless that is noise
+STILL_LEFT = 0.35
 REACH = 2.2  # of the ink about a place that is looked at
 
 

@@ -43,6 +43,7 @@ from morfax.tracer.program.laid.line_parts import (
     MOUTH,
     OF_LOOP,
     REACH,
+    STILL_LEFT,
     is_clear,
     is_whole,
     rest_of,
@@ -260,6 +261,8 @@ class _Bays:
         own_misfit = ink.misfit(drawn_by_own)
         gain = own_misfit - rule.misfit + FURTHER * (STEP_WIDTHS * (len(own) - 1) - widths)
         is_like = rule.misfit < LIKE * widths
+        # an open line shares its ink with others at its ends and at junctions, and may be right there
+        is_like &= self._is_closed or rule.misfit < STILL_LEFT * own_misfit
         drawn = ink.drawn_along(rule.way, rule.half_mm)
         is_like &= suspect.is_beside_itself or ink.share_left(drawn, drawn_by_own) < MOST_LEFT
         return gain if is_like and gain >= GAIN * widths else None

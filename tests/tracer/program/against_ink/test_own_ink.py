@@ -128,14 +128,16 @@ def test_what_is_found_is_told_once_with_its_place() -> None:
 
 def test_the_nearest_of_some_places_within_reach() -> None:
     away2, number = np.full((3, 5), 1.6**2, np.float32), np.zeros((3, 5), np.int32)
-    places, numbered = np.array([(0.0, 1.0), (3.0, 1.5)], np.float32), np.empty((2, 15), int)
-    ways = Ways(places, np.array([7, 8], np.int32), np.empty(0), np.empty(0, bool))
-    count = _nearest.py_func(ways, 1.6, away2, number, numbered)
+    # the last three lie beside this part of the sheet
+    some = [(0.0, 1.0), (3.0, 1.5), (-3.0, 1.0), (60.0, 1.0), (1.0, -40.0)]
+    lines = np.array([7, 8, 9, 9, 9], np.int32)
+    ways = Ways(np.array(some, np.float32), lines, np.empty(0), np.empty(0, bool))
+    count, reached = _nearest.py_func(ways, 1.6, away2, number)
     assert number[1].tolist() == [8, 8, 9, 9, 9]
     assert away2[1].tolist() == [0, 1, 1.25, 0.25, 1.25]
     assert number[0, 4] == 0 and count == np.count_nonzero(number)
-    # the nearest place of the second line takes a pixel of the first over, which is listed once
-    assert len(set(zip(*numbered[:, :count].tolist(), strict=True))) == count
+    # each pixel that has a number, once, though the second line takes one of the first over
+    assert reached.tolist() == [[0, 5], [0, 5], [0, 5]]
 
 
 def test_sums_over_boxes_and_the_most_of_them_about_a_pixel() -> None:
@@ -171,3 +173,11 @@ def test_a_pen_of_its_own_width_explains_its_line_and_a_bare_way_is_over() -> No
     assert over[0] < 0.05
     # beyond its end the pen draws all of the box, but leaves no ink: a gap
     assert over[1] <= 0.0
+
+
+def test_a_line_that_comes_to_a_point_at_its_end_is_not_found() -> None:
+    """A broad pen's: there its round end is drawn on paper, and the point is left."""
+    point = np.array([(29, 10.25), (31, 10), (29, 9.75)])
+    drawing = inked(polyline((6, 10), (28.8, 10)), specks=[point], seed=1)
+    for end_mm in (29.6, 30.2):
+        assert found(drawing, closed(polyline((6, 10), (end_mm, 10)), "ended")) == []

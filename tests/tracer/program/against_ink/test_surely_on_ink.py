@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+from morfax.tracer.program.against_ink import surely_on_ink
 from morfax.tracer.program.against_ink.pen_on_ink import Pen, Room, Ways, over_at
 from morfax.tracer.program.against_ink.surely_on_ink import _in_boxes_about, may_be_over
 from tests.tracer.inked import Points
@@ -56,6 +59,39 @@ def test_a_right_way_is_surely_on_its_ink_and_a_wrong_one_is_not() -> None:
         limits = np.full(len(stations), 0.05)
         may_be_over.py_func(seen, ways, stations, limits, pen, room, may)
         assert may.any() == is_over
+
+
+def test_only_where_much_is_wrong_boxes_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen, ways, pen, stations = part(3.0, 1)
+    looked_at = list[int]()
+
+    def counted(*given: Any) -> None:
+        looked_at.append(int(given[1][0]))
+        _in_boxes_about(*given)
+
+    monkeypatch.setattr(surely_on_ink, "_in_boxes_about", counted)
+    room, may = Room.of(seen.size, pen.reach_px), np.empty(len(stations), bool)
+    may_be_over.py_func(seen, ways, stations, np.full(len(stations), 0.05), pen, room, may)
+    assert 30 in looked_at and not {0, 3, 6, 51, 54, 57} & {
+        *looked_at
+    }  # wrong in columns 21 to 39
+    assert may.any()
+
+
+def test_where_another_line_crosses_no_pens_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen, ways, pen, stations = part(0.0, 1)
+    seen[:, 44:48] = 1.0
+    room = Room.of(seen.size, pen.reach_px)
+    may, most = np.empty(len(stations), bool), list[float]()
+
+    def summed(*given: Any) -> None:
+        _in_boxes_about(*given)
+        most.append(float(given[3].max()))
+
+    monkeypatch.setattr(surely_on_ink, "_in_boxes_about", summed)
+    monkeypatch.setattr(surely_on_ink, "_is_over", None)  # nobody asks for it
+    may_be_over.py_func(seen, ways, stations, np.full(len(stations), 0.2), pen, room, may)
+    assert max(most) > 0.2 * (2 * pen.half_px) ** 2 and not may.any()
 
 
 @pytest.mark.parametrize("pixel", [(10, 8), (0, 0), (19, 14), (2, 13)])

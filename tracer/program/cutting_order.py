@@ -1,0 +1,57 @@
+"""The order in which lines are cut: as the operator told, or inner before outer, with short idle ways.
+
+Signals: lines that were followed in; the same in their order, open ones run from the nearer end, out.
+
+Source: our own (see `lines.order`); the patent has one contour to a tape.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from morfax.motion import nesting
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.arrows import turned_round
+from morfax.tracer.program.lines import order, selection
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.taken import beside, patches_of, taken_by
+
+
+def in_cutting_order(setup: Setup, lines: list[Line]) -> list[Line]:
+    """The lines in the order of cutting; an open one followed anew from its other end if that is nearer."""
+    inner = nesting.nested(
+        [line.loop_mm for line in lines], [not line.is_open for line in lines]
+    )
+    begins = np.array([line.begin_mm for line in lines])
+    ends = np.array([line.end_mm for line in lines])
+    may_turn = np.array(
+        [line.is_open and not line.goes_back and not line.as_told for line in lines]
+    )
+    before = _as_told(inner, [line.number for line in lines], setup.operator.order)
+    sequence, turned = order.in_order_and_turned(begins, ends, before, may_turn)
+    taken = taken_by(setup, lines)
+    return [_turned(setup, lines[i], taken) if turned[i] else lines[i] for i in sequence]
+
+
+def _turned(setup: Setup, line: Line, taken: set[int]) -> Line:
+    """A line followed from its other end, along none of the patches of others."""
+    return turned_round(beside(setup, taken - patches_of(setup.sheet, line)), line)
+
+
+def _as_told(
+    inner: NDArray[np.bool_], numbers: list[int], told: tuple[int, ...]
+) -> NDArray[np.bool_]:
+    """Which line is cut before which: the told ones first, in their order; the others inner before outer.
+
+    Raises LineFault for a number that no line has.
+    """
+    if not told:
+        return inner
+    for number in told:
+        if number not in numbers:
+            raise selection.no_line(number, sorted(set(numbers)))
+    rank = np.array([told.index(n) if n in told else len(told) for n in numbers])
+    by_rank = np.asarray(rank[:, None] < rank[None])
+    both_free = (rank[:, None] == len(told)) & (rank[None] == len(told))
+    return np.where(both_free, inner, by_rank)
