@@ -57,7 +57,6 @@ from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-WIDEST = 3.5  # a bar that is joined to twice as much of the way is no bay
 LONGEST = 80.0  # a longer stretch is no bay
 FURTHER = 0.01  # as much more must be left for each width more of a way that runs out and back on one line
 # of what a way leaves that does not come beside itself, where the rule draws otherwise: less is a blot,
@@ -180,10 +179,10 @@ class _Bays:
                 half = max(round(0.5 * place.length_mm / step_mm), 1)
                 yield Suspect(at - half, at + half, nothing)
             elif place.kind == "ink" and away_mm[at] < place.length_mm + width_mm:
-                yield from self._round_bar(way, step_mm, place, beside)
+                yield from self._round_bar(way, place, beside)
 
     def _round_bar(
-        self, way: Array, step_mm: float, place: Unexplained, beside: list[tuple[int, int]]
+        self, way: Array, place: Unexplained, beside: list[tuple[int, int]]
     ) -> Iterator[Suspect]:
         """The stretch of the way that a bar of ink is joined to, if it is joined to no other; all of one that
         comes beside itself.
@@ -194,11 +193,10 @@ class _Bays:
         if not len(mouth):
             return
         first, last = beside_itself.shortest(mouth, len(way))
-        if last - first < 2 * WIDEST * width_mm / step_mm:
-            for begin, end in beside:
-                if begin <= last and first <= end:
-                    first, last = min(first, begin), max(last, end)
-            yield Suspect(first, last, bar)
+        for begin, end in beside:
+            if begin <= last and first <= end:
+                first, last = min(first, begin), max(last, end)
+        yield Suspect(first, last, bar)
 
     def _bay(self, way: Array, step_mm: float, suspect: Suspect) -> Bay | None:
         """The bay that a stretch of the way is, if a rule explains its ink better than the way does, or else

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.crossings import crossings
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.polyline import at_lengths, evenly, length_mm, lengths_mm
+from morfax.motion.polyline import at_lengths, evenly, lengths_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
@@ -48,7 +48,7 @@ from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import partners, shortest
 from morfax.tracer.tangles.pen import away_from
-from morfax.tracer.tangles.seen_ink import LIKE, SeenInk
+from morfax.tracer.tangles.seen_ink import SeenInk
 
 # In widths of the line; chosen by trial on circles that touch lines and each other:
 STEP = 0.25  # between the places that are looked at
@@ -57,9 +57,7 @@ ON = 8.0  # of way between two sides of one line
 SHORT, LONG = 5.0, 60.0  # a shorter one is a crossing; a longer one is no touch
 LEG = 2.0  # of clean line before and after
 HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
-# for each width of the ways: head's ways that leave less explain the ink, and rims must leave so much less
-LEAVES, TIMES = 0.01, 2.0
-LONGER = 1.4  # a rim, than the head's way; and a width
+LEAVES = 0.01  # for each width of the ways: head's ways that leave less explain the ink
 # lines that cross by more do not touch: at a corner of one, both went past the other
 CROSSES = TIP_RAD / 2
 
@@ -183,7 +181,7 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
         return None
     # 2. the ways within the rims
     rims = _rims(setup, width_mm, ways, left)
-    if rims is None or rims.left > LIKE or own < TIMES * rims.left:
+    if rims is None or own < rims.left:
         return None
     if not rims.is_exchanged:
         return _laid_each(setup, (one, other), touch, rims, whole)
@@ -243,15 +241,13 @@ def _rims(
     """The ways within the rims that leave least, from either way's beginning to either's end."""
     view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
     drawing, about = setup.sheet.drawing, np.vstack(ways)
-    longest_mm = LONGER * max(length_mm(way) for way in ways) + width_mm
     best: _Rims | None = None
     for is_exchanged in (False, True):
         onto = ways[::-1] if is_exchanged else ways
         found = list[list[LaidWay]]()
         for into, out_of in zip(ways, onto, strict=True):
             own = np.vstack([into[:2], out_of[-2:]])
-            every = ways_within_rims(drawing, view, own, about)
-            found.append([rim for rim in every if rim.length_mm < longest_mm])
+            found.append(list(ways_within_rims(drawing, view, own, about)))
         for one, other in product(*found):
             rims = _Rims(one, other, is_exchanged, left(one.way, other.way))
             if best is None or rims.left < best.left:
