@@ -128,21 +128,18 @@ class Crossing:
         pairs, costs = self._by_turnings, self._turnings
         if len(self.legs) != LEGS or len(pairs) != LEGS // 2:
             return {}
-        if max(costs[pair] for pair in pairs) < SMOOTH or not self._is_of_one_pen:
+        reach_mm = float(np.ptp([leg.end_mm for leg in self.legs], axis=0).max())
+        is_smooth = max(costs[pair] for pair in pairs) < SMOOTH
+        if is_smooth or reach_mm > LONG * self.width_mm or not self.is_of_one_pen:
             return {}
         return redrawn(self.views[0], self.legs, costs)
 
     @property
-    def _is_of_one_pen(self) -> bool:
-        """Whether its legs are about as wide, the ink between them is no narrower, and reaches no further
-        than that of lines that cross.
-        """
+    def is_of_one_pen(self) -> bool:
+        """Whether its legs are about as wide, and the ink between them is no narrower."""
         legs_mm = [leg.width_mm for leg in self.legs]
         inked_mm = [usual_width_mm(inner.run) for inner in self.inked]
-        if max(legs_mm) > WIDER * min(legs_mm + inked_mm):
-            return False
-        reach_mm = float(np.ptp([leg.end_mm for leg in self.legs], axis=0).max())
-        return reach_mm < LONG * self.width_mm
+        return max(legs_mm) < WIDER * min(legs_mm + inked_mm)
 
     @property
     def width_mm(self) -> float:

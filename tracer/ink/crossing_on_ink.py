@@ -6,8 +6,9 @@
 A pen along all ways through a crossing, along its legs and the ends of lines without a partner is held
 against the ink there. Where it leaves ink for a third of a line's width, or draws as much on paper, other
 pairs are tried, the likeliest first, with a corner wherever two legs meet in ink; corners move to where the
-pen leaves least. What explains the ink goes before what the legs tell. Not on scans whose pixels were made
-finer, nor of pencil: their ink shows no pen, and blots and arrowheads were run to and fro.
+pen leaves least. What explains the ink goes before what the legs tell. Not where lines are of several widths,
+as those of letters are, nor on scans whose pixels were made finer, or of pencil: their ink shows no pen, and
+blots and arrowheads were run to and fro.
 
 Signals: a crossing in; its pairs, and the corners between them, out.
 
@@ -42,14 +43,13 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.crossing import Crossing
 
 # All limits below were chosen by trial on crowded sheets of lines, circles and rectangles.
-OFF = 0.08  # widths², in a box as wide as a line: of right crossings none comes above
+OFF = 0.08  # widths², in a box as wide as a line: of right crossings hardly any comes above
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
 CORNER = 0.03  # what a corner more must explain, widths²: as a vertex of a tangle
 REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
 TRIED = 5  # pairings
-MOST_LEGS = (
-    16  # of a larger crossing each trial takes a second, and hardly any explains its ink
-)
+# of a larger crossing each trial takes a second, and hardly any explains its ink
+MOST_LEGS = 16
 PLAIN = math.radians(6)  # lines that turn by less, all of which go on, are plain
 
 
@@ -92,7 +92,8 @@ def told_by_ink(crossing: Crossing, told: Drawn) -> Drawn:
     """How lines go on through a crossing: as the legs tell, or otherwise, if that explains the ink."""
     if not 3 <= len(crossing.legs) <= MOST_LEGS or _is_plain(crossing, told):
         return told
-    if crossing.views[0].parted > 1 or crossing.views[0].grainy:
+    view = crossing.views[0]
+    if view.parted > 1 or view.grainy or not crossing.is_of_one_pen:
         return told  # no pen is told by such ink
     by_legs = crossing.as_drawn(told)
     ink = _Ink.about(crossing, by_legs.ways_mm)

@@ -114,10 +114,12 @@ def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> 
     are_small = lengths_mm < np.maximum(SPECK_MM, DOT_WIDTHS * sheet.widths_mm)
     specks = ~solid & ~left.letters & (shares == 0) & are_small
     lines = ~solid & ~left.letters & ~specks
-    # 3. ink beside the strokes, of which the thinned pixels show nothing
+    # 3. ink beside the strokes, of which the thinned pixels show nothing; strokes that swell, as those of
+    # printed letters do, tell no pen
     single, lost = dict(_single(felt, places, run)), dict(_lost(graph, places, is_near))
     pen_mm = felt.doubled.pen_mm if felt.doubled.stations else math.inf
-    of_lines_mm = np.minimum(wide_mm, pen_mm) * (lines & (shares > 0) & ~left.lettering)
+    are_of_a_pen = lines & (shares > 0) & ~left.lettering & (felt.doubled.pen_mm > 0)
+    of_lines_mm = np.minimum(wide_mm, pen_mm) * are_of_a_pen
     pieces = missed_ink(sheet, left, run, of_lines_mm)
     told = np.zeros(len(places), bool)
     for n in {*single, *lost}:
