@@ -145,9 +145,10 @@ def _doubtful(drawing: Drawing, ways: Ways, of_limit: float) -> NDArray[np.bool_
     limits = of_limit * _least(ways.half_px)
     pen = _pen(drawing, ways, of_limit * OVER)
     for part in parts(drawing, ways, _are_stations(ways, ways.judged), QUICK_PX, pen):
-        line = ways.line[part.stations]
-        is_over = np.empty(len(line), bool)
-        may_be_over(part.seen, part.ways, part.at, limits[line], part.pen, part.room, is_over)
+        asked = ~doubtful[ways.line[part.stations]]
+        line = ways.line[part.stations[asked]]
+        is_over, at = np.empty(len(line), bool), part.at[asked]
+        may_be_over(part.seen, part.ways, at, limits[line], part.pen, part.room, is_over)
         doubtful[line[is_over]] = True
     return doubtful
 

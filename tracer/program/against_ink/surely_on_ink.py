@@ -44,7 +44,7 @@ def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[n
         squares[row // side + 1, column // side + 1] += max(spread[row, column], 0.0)
     # 2. where that is more than the limit, box by box: with the felt pen, what the widest draws, the best
     down, boxes, papers = np.empty(2 * side - 1), np.empty((side, side)), np.empty((side, side))
-    told, on_paper = np.full((KEPT, 3), -1.0), np.empty((0, 0))
+    told, on_paper, wrongs = np.full((KEPT, 3), -1.0), np.empty((0, 0)), np.empty((0, 0))
     for k in range(len(stations)):
         limit = (1 - ROUNDED) * limits[k] * (2 * pen.half_px) ** 2
         left, top = stations[k][0] // side, stations[k][1] // side
@@ -52,11 +52,14 @@ def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[n
         if out[k]:
             _in_boxes_about(spread, stations[k], down, boxes)
             out[k] = boxes.max() > limit
+        if out[k] and not wrongs.size:
+            wrongs = _wrongs(band, pen)
+            on_paper = _on_paper(band, wrongs[-1], pen, seen.shape)
         if out[k]:
-            on_paper = on_paper if on_paper.size else _drawn_on_paper(band, pen, seen.shape)
             _in_boxes_about(on_paper, stations[k], down, papers)
+            part = seen, wrongs, room
             out[k] = papers.max() > limit and _is_over(
-                (boxes, told), (seen, band, room), stations[k], limit, pen
+                (boxes, told), part, stations[k], limit, pen
             )
     for k in range(len(band.dark)):
         spread[band.row[k], band.column[k]] = 0.0
@@ -64,13 +67,22 @@ def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[n
 
 
 @njit(cache=True)
-def _drawn_on_paper(band, pen, shape):  # type: ignore[no-untyped-def]
-    """What the widest pen draws on paper, by pixels of a part of the sheet."""
-    on_paper, more = np.zeros(shape), pen.of_width[-1] - 1
-    for k in range(len(band.dark)):
-        away_px = band.away_px[k] - more * band.half_px[k]
-        wrong = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
-        on_paper[band.row[k], band.column[k]] = max(wrong, 0.0) ** 2 - pen.noise
+def _wrongs(band, pen):  # type: ignore[no-untyped-def]
+    """What each pen draws too dark at each pixel of a band, (pens, n)."""
+    wrongs = np.empty((len(pen.of_width), len(band.dark)))
+    for n in range(len(pen.of_width)):
+        for k in range(len(band.dark)):
+            away_px = band.away_px[k] - (pen.of_width[n] - 1) * band.half_px[k]
+            wrongs[n, k] = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
+    return wrongs
+
+
+@njit(cache=True)
+def _on_paper(band, wrong, pen, shape):  # type: ignore[no-untyped-def]
+    """What a pen draws on paper, by pixels of a part of the sheet."""
+    on_paper = np.zeros(shape)
+    for k in range(len(wrong)):
+        on_paper[band.row[k], band.column[k]] = max(wrong[k], 0.0) ** 2 - pen.noise
     return on_paper
 
 
@@ -130,20 +142,18 @@ def _best_in(part, box, pen):  # type: ignore[no-untyped-def]
     """What the pen that explains the box about a pixel (column, row) best draws on paper there, and what ink
     it leaves.
     """
-    seen, band, room = part
+    seen, wrongs, room = part
     number = room.number[: seen.size].reshape(seen.shape)
     half, least = round(pen.half_px), np.inf
     best_paper, best_left = 0.0, 0.0
-    for share in pen.of_width:
+    for wrong in wrongs:
         paper, left = 0.0, 0.0
         for i in range(max(0, box[1] - half), min(len(seen), box[1] + half + 1)):
             for j in range(max(0, box[0] - half), min(seen.shape[1], box[0] + half + 1)):
                 k = number[i, j] - 1
                 if k >= 0:
-                    away_px = band.away_px[k] - (share - 1) * band.half_px[k]
-                    wrong = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
-                    paper += max(wrong, 0.0) ** 2 - pen.noise
-                    left += max(-wrong, 0.0) ** 2 - pen.noise
+                    paper += max(wrong[k], 0.0) ** 2 - pen.noise
+                    left += max(-wrong[k], 0.0) ** 2 - pen.noise
         if paper + left < least:
             least, best_paper, best_left = paper + left, paper, left
     return best_paper, best_left
