@@ -170,6 +170,8 @@ class _Bays:
         for first, last in beside:
             yield Suspect(first, last, nothing, True)
         for place in self.left:
+            if not (self._is_closed or place.is_sure):
+                continue  # on ragged lines of a map each third bend is in doubt, and is none
             reach_mm, middle = place.length_mm + width_mm, np.array(place.place_mm)
             if not reaches(way, middle - reach_mm, middle + reach_mm):
                 continue

@@ -66,8 +66,9 @@ def test_a_bay_is_followed_as_it_is_drawn(truth: Points) -> None:
 
 
 @pytest.mark.parametrize("traced", [trace_ink, trace], ids=["all", "one"])
-@pytest.mark.parametrize("widths", [1.1, 1.5])
-@pytest.mark.parametrize("deep_mm", [DEEP_MM, -DEEP_MM])
+@pytest.mark.parametrize(
+    ("widths", "deep_mm"), [(1.1, DEEP_MM), (1.5, DEEP_MM), (1.5, -DEEP_MM)]
+)
 def test_a_bay_of_an_open_line_is_followed_as_well(
     traced: Callable[[Drawing], Trace], widths: float, deep_mm: float
 ) -> None:
