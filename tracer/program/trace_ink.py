@@ -31,7 +31,7 @@ from morfax.tracer.ink.struck_off import struck_off
 from morfax.tracer.ink.track import InkStroke, stroke_along
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.strokes_off_ink import strokes_off_ink
-from morfax.tracer.program.against_ink.unexplained import Unexplained
+from morfax.tracer.program.against_ink.unexplained import Unexplained, is_about
 from morfax.tracer.program.as_contours import as_contours
 from morfax.tracer.program.laid.bent import bent
 from morfax.tracer.program.laid.line_parts import is_clear
@@ -93,7 +93,8 @@ def _of_strokes(
     lines, broad = as_contours(setup, lines)
     lines, beside = beside_mended(setup, bent(setup, lines))
     broad += _slots_left(setup, lines)
-    broad += strokes_off_ink(left.drawing, lines)
+    off = strokes_off_ink(left.drawing, lines)
+    broad += [place for place in off if not is_about(place, beside, lines)]
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
     ink = balance(sheet, felt, left, [line.xy_mm for line in lines])
     in_order = tuple(_in_order(lines))

@@ -97,7 +97,7 @@ def unexplained(
     other = [place for place in found if place.kind != "ink" or place.length_mm > reach_mm]
     bays = list(_beside_ink(sheet.drawing, lines, other, of_limit))
     sure = [place for place in bays if place.is_sure]
-    found = [place for place in found if not _is_about(place, sure, lines)] + bays
+    found = [place for place in found if not is_about(place, sure, lines)] + bays
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
@@ -127,11 +127,11 @@ def _beside_ink(
     """Stretches of lines beside their ink, but for those about what was found otherwise."""
     for place_mm, long_mm, is_sure in beside(drawing, lines, of_limit):
         place = Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
-        if not _is_about(place, found, lines):
+        if not is_about(place, found, lines):
             yield place
 
 
-def _is_about(place: Unexplained, others: Sequence[Unexplained], lines: Sequence[Line]) -> bool:
+def is_about(place: Unexplained, others: Sequence[Unexplained], lines: Sequence[Line]) -> bool:
     """Whether a place is about one of some others, by the broadest of some lines."""
     about_mm = ABOUT_WIDTHS * max(line.width_mm for line in lines)
     return any(math.dist(place.place_mm, other.place_mm) < about_mm for other in others)
