@@ -8,7 +8,7 @@ from morfax.motion.polyline import length_mm
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.outlines import one_stroke
-from morfax.tracer.ink.solved import solved
+from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from tests.tracer.inked import Points, inked, polyline
 

@@ -204,12 +204,15 @@ def _are_stations(ways: Ways, which: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _near_ends(ways: Ways) -> NDArray[np.bool_]:
     """Which places lie within a width of an end of an open way: many pens come to a point there."""
-    at, lines = np.arange(len(ways.line)), np.arange(len(ways.half_px))
-    first = np.searchsorted(ways.line, lines)
-    last = np.searchsorted(ways.line, lines, side="right") - 1
+    # a line that was lost at once has no way
+    lines, first, counts = np.unique(ways.line, return_index=True, return_counts=True)
+    last = first + counts - 1
     apart_px = np.hypot(*(ways.places_px[last] - ways.places_px[first]).T)
-    near = np.where(apart_px > 2 * PLACES_PX, 2 * ways.half_px / PLACES_PX, 0.0)[ways.line]
-    return np.asarray((at - first[ways.line] < near) | (last[ways.line] - at < near))
+    near = np.where(apart_px > 2 * PLACES_PX, 2 * ways.half_px[lines] / PLACES_PX, 0.0)
+    from_first = np.arange(len(ways.line)) - np.repeat(first, counts)
+    to_last = np.repeat(counts, counts) - 1 - from_first
+    near = np.repeat(near, counts)
+    return np.asarray((from_first < near) | (to_last < near))
 
 
 def _pen(drawing: Drawing, ways: Ways, over: float) -> Pen:

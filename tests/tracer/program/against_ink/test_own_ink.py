@@ -181,3 +181,11 @@ def test_a_line_that_comes_to_a_point_at_its_end_is_not_found() -> None:
     drawing = inked(polyline((6, 10), (28.8, 10)), specks=[point], seed=1)
     for end_mm in (29.6, 30.2):
         assert found(drawing, closed(polyline((6, 10), (end_mm, 10)), "ended")) == []
+
+
+def test_a_line_that_was_lost_at_once_is_passed_over() -> None:
+    """It has one place, and no way; where it came last the command ended with an error."""
+    plate, cut = notched(DEEP_MM), closed(notched(0.0))
+    lost = Line(np.full((1, 2), 10.0), "lost", WIDTH_MM, 0.0)
+    alone = found(inked(plate, width_mm=WIDTH_MM, seed=1), cut)
+    assert alone and found(inked(plate, width_mm=WIDTH_MM, seed=1), cut, lost) == alone
