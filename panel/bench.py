@@ -263,7 +263,8 @@ class Bench:
     def _ended(self, message: dict[str, Any]) -> None:
         """The worker ended by itself, or was ended by the operator."""
         if self.busy is not None:
-            is_killed = message["code"] in (-9, 137)
+            # by the system's SIGKILL, 9, itself or behind a shell: Windows has no such name
+            is_killed = message["code"] in (-9, 128 + 9)
             why = "too little memory, maybe" if is_killed else f"code {message['code']}"
             self.tell(
                 "fault",

@@ -69,7 +69,8 @@ class Vouching:
         self._given = 0  # rows that were given out and are still held, to lend their speed
         self._counted = [0.0] * len(fmt.axes)  # the last row at which the count was right
         self._order = FrameOrder(fmt)
-        self.listen, self._heard = check.heard, check.reports()  # of the first blocks
+        self.listen = check.heard
+        self._heard = check.reports()  # of the first blocks
         self._fault: Fault | None = None
         self.notes: tuple[str, ...] = ()
 

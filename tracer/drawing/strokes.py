@@ -75,7 +75,7 @@ class Sheet:
     """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes.
 
     `window`, first row and column and those after the last, is where the head will be: cells see paper
-    elsewhere.
+    elsewhere. `taken` are patches of other lines, onto which the head does not go.
     """
 
     drawing: Drawing
@@ -86,9 +86,7 @@ class Sheet:
     window: Window | None = None
     has_references: bool = True  # small crosses and rings may be reference points
     bare_rings: bool = False  # rings are, whatever the line from them leads to
-    taken: frozenset[int] = (
-        frozenset()
-    )  # patches of other lines, onto which the head does not go
+    taken: frozenset[int] = frozenset()
     weights: dict[int, Weight] = field(default_factory=dict, repr=False, compare=False)
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
@@ -211,7 +209,7 @@ class Sheet:
             )
         )
         column = np.clip(round(place_mm[0] / self.drawing.pitch_mm - 0.5), begin, end - 1)
-        places = self._mm(row, column)
+        places = self.places_mm(row, column)
         distances = np.hypot(*(places - np.asarray(place_mm)).T)
         if among is not None:
             distances[~among[patch]] = np.inf
@@ -231,21 +229,17 @@ class Sheet:
         """Middles of some runs of ink, (n, 2) sheet mm."""
         patches = self.patches
         columns = 0.5 * (patches.begin[runs] + patches.end[runs] - 1)
-        return self._mm(patches.row[runs], columns)
+        return self.places_mm(patches.row[runs], columns)
 
     def run_begins_mm(self, runs: Pixels) -> Array:
         """First pixels of some runs of ink, (n, 2) sheet mm."""
-        return self._mm(self.patches.row[runs], self.patches.begin[runs])
+        return self.places_mm(self.patches.row[runs], self.patches.begin[runs])
 
     def run_ends_mm(self, runs: Pixels) -> Array:
         """Last pixels of some runs of ink, (n, 2) sheet mm."""
-        return self._mm(self.patches.row[runs], self.patches.end[runs] - 1)
+        return self.places_mm(self.patches.row[runs], self.patches.end[runs] - 1)
 
     def places_mm(self, rows: Pixels, columns: Pixels) -> Array:
-        """Centres of some pixels, (n, 2) sheet mm."""
-        return self._mm(rows, columns)
-
-    def _mm(self, rows: Pixels, columns: Pixels) -> Array:
         """Centres of pixels, (n, 2) sheet mm."""
         up = self.drawing.darkness.shape[0] - rows
         return np.column_stack([columns + 0.5, up - 0.5]) * self.drawing.pitch_mm
@@ -279,7 +273,7 @@ class Sheet:
         return Stroke(
             float(self.lengths_mm[patch]),
             float(self.widths_mm[patch]),
-            self._mm(rows, columns),
+            self.places_mm(rows, columns),
             filled.astype(float),
             patch,
         )

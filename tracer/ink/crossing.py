@@ -29,7 +29,7 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.ink.crossing_on_ink import Drawn, told_by_ink
+from morfax.tracer.ink.crossing_on_ink import WaysOn, told_by_ink
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
@@ -72,7 +72,7 @@ class Crossing:
     settings: Settings
     near: list[Array] = field(default_factory=list)
     inked: list[Inner] = field(default_factory=list)
-    drawn: Drawn | None = None  # where it is told by the ink
+    drawn: WaysOn | None = None  # where it is told by the ink
     _covers: dict[int, bool] = field(default_factory=dict)
 
     @property
@@ -96,36 +96,36 @@ class Crossing:
         return list(self.solution.pairs)
 
     @cached_property
-    def solution(self) -> Drawn:
+    def solution(self) -> WaysOn:
         """How its lines go on: as its legs tell, or as its ink does."""
         if self.drawn is not None:
             return self.drawn
         if len(self.legs) == 2:
-            return Drawn(() if self._tips else ((0, 1),), {})
+            return WaysOn(() if self._tips else ((0, 1),), {})
         vertices = self._vertices
         pairs = sorted(vertices) or self._by_turnings
-        return told_by_ink(self, Drawn(tuple(pairs), vertices))
+        return told_by_ink(self, WaysOn(tuple(pairs), vertices))
 
-    def as_drawn(self, drawn: Drawn) -> Crossing:
+    def as_drawn(self, drawn: WaysOn) -> Crossing:
         """The same crossing with its lines going on in another way."""
         return replace(self, drawn=drawn, _covers={})
 
     @cached_property
-    def _turnings(self) -> Array:
-        """By how much a way turns from each leg to each other, rad."""
+    def turnings_rad(self) -> Array:
+        """By how much a way turns from each leg to each other, rad (n, n)."""
         return turnings(self.legs, self.width_mm)
 
     @cached_property
     def _by_turnings(self) -> list[Pair]:
         """The pairs that turn least."""
-        return self._by_rims(partners(self._turnings), self._turnings)
+        return self._by_rims(partners(self.turnings_rad), self.turnings_rad)
 
     @cached_property
     def _vertices(self) -> Mapping[Pair, Array]:
         """Where the ways between the legs of each pair turn, (n, 2) mm, if legs that meet may be told by
         their ink only.
         """
-        pairs, costs = self._by_turnings, self._turnings
+        pairs, costs = self._by_turnings, self.turnings_rad
         if len(self.legs) != LEGS or len(pairs) != LEGS // 2:
             return {}
         reach_mm = float(np.ptp([leg.end_mm for leg in self.legs], axis=0).max())

@@ -36,6 +36,7 @@ from morfax.tracer.head.course import on_ink
 from morfax.tracer.ink.partners import SMOOTHLY, Pair, likeliest, turnings
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.tangles import pen, settling
+from morfax.tracer.tangles.redrawing import VERTEX
 from morfax.tracer.tangles.sketch import ALL, softness_of
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -45,15 +46,14 @@ if TYPE_CHECKING:
 # All limits below were chosen by trial on crowded sheets of lines, circles and rectangles.
 OFF = 0.08  # widths², in a box as wide as a line: of right crossings hardly any comes above
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
-CORNER = 0.03  # what a corner more must explain, widths²: as a vertex of a tangle
 REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
 TRIED = 5  # pairings
 # of a larger crossing each trial takes a second, and hardly any explains its ink
-MOST_LEGS = 16
+MOST_REDRAWN = 16
 PLAIN = math.radians(6)  # lines that turn by less, all of which go on, are plain
 
 
-class Drawn(NamedTuple):
+class WaysOn(NamedTuple):
     """How lines go on through a crossing: pairs of legs, and of some the corners (n, 2) mm between them."""
 
     pairs: tuple[Pair, ...]
@@ -61,7 +61,7 @@ class Drawn(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Redrawing:
+class AsDrawn:
     """A crossing as it would be drawn: what its pen leaves, and draws on paper, of the ink about it."""
 
     crossing: Crossing
@@ -85,22 +85,22 @@ class Redrawing:
     def cost(self) -> float:
         """What is wrong in all, and the price of its corners, widths²."""
         corners = sum(map(len, self.crossing.solution.corners.values()))
-        return self.ink.left(self._wrong) + CORNER * corners
+        return self.ink.left(self._wrong) + VERTEX * corners
 
 
-def told_by_ink(crossing: Crossing, told: Drawn) -> Drawn:
+def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     """How lines go on through a crossing: as the legs tell, or otherwise, if that explains the ink."""
-    if not 3 <= len(crossing.legs) <= MOST_LEGS or _is_plain(crossing, told):
+    if not 3 <= len(crossing.legs) <= MOST_REDRAWN or _is_plain(crossing, told):
         return told
     view = crossing.views[0]
     if view.parted > 1 or view.grainy or not crossing.is_of_one_pen:
         return told  # no pen is told by such ink
     by_legs = crossing.as_drawn(told)
     ink = _Ink.about(crossing, by_legs.ways_mm)
-    now = Redrawing(by_legs, ink)
+    now = AsDrawn(by_legs, ink)
     if ink.is_empty or now.off < OFF:
         return told
-    tried = [Redrawing(crossing.as_drawn(drawn), ink) for drawn in _others(crossing, told, ink)]
+    tried = [AsDrawn(crossing.as_drawn(drawn), ink) for drawn in _others(crossing, told, ink)]
     best = min(tried, key=lambda each: each.cost, default=now)
     gain = 0.0 if best.off < OFF else MUCH
     if best.off < now.off and best.cost < now.cost - gain:
@@ -108,15 +108,15 @@ def told_by_ink(crossing: Crossing, told: Drawn) -> Drawn:
     return told
 
 
-def _is_plain(crossing: Crossing, told: Drawn) -> bool:
+def _is_plain(crossing: Crossing, told: WaysOn) -> bool:
     """Whether all lines of a crossing go straight on."""
-    costs = turnings(crossing.legs, crossing.width_mm)
+    costs = crossing.turnings_rad
     return 2 * len(told.pairs) == len(crossing.legs) and all(
         costs[pair] < PLAIN for pair in told.pairs
     )
 
 
-def _others(crossing: Crossing, told: Drawn, ink: _Ink) -> Iterator[Drawn]:
+def _others(crossing: Crossing, told: WaysOn, ink: _Ink) -> Iterator[WaysOn]:
     """Other ways to go on, with their corners where these explain the ink best."""
     legs, view = crossing.legs, crossing.views[0]
     costs = turnings(legs, crossing.width_mm, view)
@@ -126,7 +126,7 @@ def _others(crossing: Crossing, told: Drawn, ink: _Ink) -> Iterator[Drawn]:
             corner = Corner.of(legs[a], legs[b].turned_round())
             if corner is not None and corner.deflection_rad > SMOOTHLY:
                 corners[a, b] = corner.vertex_mm[None]
-        drawn = Drawn(pairs, corners)
+        drawn = WaysOn(pairs, corners)
         if corners:
             drawn = ink.settled(crossing, drawn)
             ways = [crossing.as_drawn(drawn).way(pair) for pair in corners]
@@ -152,31 +152,25 @@ class _Ink:
         ends = np.array([leg.end_mm for leg in crossing.legs])
         about = np.vstack([ends, *ways, *felt])
         # 1. pixels of a window that are near
-        pitch_mm, reach_mm = view.pitch_mm, REACH * width_mm
-        rows, columns = view.cells.shape
-        low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
-        left, right = max(int(low[0] / pitch_mm), 0), min(int(high[0] / pitch_mm) + 1, columns)
-        top = max(int(rows - high[1] / pitch_mm), 0)
-        bottom = min(int(rows - low[1] / pitch_mm) + 1, rows)
-        seen = view.cells.window(top, bottom, left, right)
-        i, j = np.indices(seen.shape)
-        places = np.column_stack([j.ravel() + left + 0.5, rows - i.ravel() - top - 0.5])
-        places = places * pitch_mm
-        away_mm = np.full(len(places), pen.NOWHERE_MM)
+        reach_mm = REACH * width_mm
+        seen, _, grid = view.seen_about(about, reach_mm)
+        places, away_mm = grid.reshape(-1, 2), np.full(seen.size, pen.NOWHERE_MM)
         for way in (*ways, *felt):
             away_mm = np.minimum(away_mm, pen.away_from(places, _thinned(way)))
         near = np.flatnonzero(away_mm < reach_mm)
         # 2. their ink, and how far the legs are
         dark = np.minimum(seen.ravel()[near] / (2 * view.level), DARKEST).astype(float)
         known_mm = np.full(len(near), pen.NOWHERE_MM)
+        low_mm, high_mm = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         for leg in crossing.near:
             if len(leg) > 1:
-                within = np.all((leg > low) & (leg < high), axis=1)
+                within = np.all((leg > low_mm) & (leg < high_mm), axis=1)
                 if within.sum() > 1:
                     known_mm = np.minimum(known_mm, pen.away_from(places[near], leg[within]))
         softness_mm = softness_of(view, crossing.legs[0])
         ink = pen.Ink(places[near], dark, known_mm, 0.5 * width_mm, softness_mm)
-        return cls(ink, (i.ravel()[near], j.ravel()[near]), seen.shape, pitch_mm)
+        rows, columns = np.unravel_index(near, seen.shape)
+        return cls(ink, (rows, columns), seen.shape, view.pitch_mm)
 
     @property
     def is_empty(self) -> bool:
@@ -213,7 +207,7 @@ class _Ink:
             most = max(most, float(sums.max()))
         return most * (self.pitch_mm / (2 * self.ink.half_mm)) ** 2
 
-    def settled(self, crossing: Crossing, drawn: Drawn) -> Drawn:
+    def settled(self, crossing: Crossing, drawn: WaysOn) -> WaysOn:
         """The same pairs with their corners moved to where they explain the ink best."""
         some = crossing.as_drawn(drawn)
         smooth = [some.way(pair) for pair in drawn.pairs if pair not in drawn.corners]

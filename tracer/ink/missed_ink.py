@@ -30,9 +30,8 @@ from morfax.tracer.ink.left_out import InkLeft
 # In widths of the lines of a patch, by trial on 11 sheets with known truth: each piece was one of a true line
 # that no stroke ran along.
 REACH = 0.8  # from all strokes: half a width is the pen's, and a tenth the scan's blur
-LEAST = (
-    0.8  # of missed line, by its ink; a corner of 30 degrees that comes to a point has a third
-)
+# of missed line, by its ink; a corner of 30 degrees that comes to a point has a third
+LEAST = 0.8
 BROAD = 0.5  # of a piece: so much lies as far on the stroke's other side as well
 # pixels: as near to a solid area ink is its rim's
 RIM_PX = np.array([(i, j) for i in (-2, 0, 2) for j in (-2, 0, 2)])

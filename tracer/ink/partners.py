@@ -74,7 +74,7 @@ def turnings(legs: Sequence[Leg], width_mm: float, view: View | None = None) -> 
 def likeliest(costs: Array, count: int) -> list[tuple[Pair, ...]]:
     """So many ways to pair some legs, those that turn least first; of many legs one."""
     if len(costs) > MOST_LEGS:
-        return [tuple(partners(costs))]
+        return [tuple(_exchanged(_straightest_first(costs), costs))]
     every = _pairings(tuple(range(len(costs))))
     least = nsmallest(count, every, key=lambda pairs: _cost(pairs, costs))
     return [tuple(pair for pair in pairs if _is_joined(pair, costs)) for pairs in least]
@@ -82,11 +82,7 @@ def likeliest(costs: Array, count: int) -> list[tuple[Pair, ...]]:
 
 def partners(costs: Array) -> list[Pair]:
     """The pairs of legs that are one line, by their turnings; of an odd number one is left."""
-    count = len(costs)
-    if count > MOST_LEGS:
-        return _exchanged(_straightest_first(costs), costs)
-    best = min(_pairings(tuple(range(count))), key=lambda pairs: _cost(pairs, costs))
-    return [pair for pair in best if math.isfinite(costs[pair])]
+    return list(likeliest(costs, 1)[0])
 
 
 def meeting_place(legs: Sequence[Leg]) -> Array:
@@ -114,14 +110,14 @@ def way_through(
     onto = outgoing.end_mm, outgoing.heading_rad
     straight = hermite(*planner.stands, *onto)
     smooth, others = [straight], list[Array]()
-    vertices: Array | None = None
     if ink is not None:
         ends = np.vstack([incoming.end_mm, outgoing.end_mm])
         others, vertices = ink.besides(ends), ink.turns_at(ends)
+        if vertices is not None and len(vertices):
+            return stretches_over(planner.stands, incoming, vertices, outgoing)
         smooth = [kept_in_ink(straight, ink, planner.view.width_mm, others)]
-    if vertices is not None:
-        over = stretches_over(planner.stands, incoming, vertices, outgoing)
-        return over if len(vertices) else smooth
+        if vertices is not None:
+            return smooth
     corner = Corner.of(incoming, outgoing)
     ways = list[list[Array]]()
     if between is not None:

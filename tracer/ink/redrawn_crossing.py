@@ -17,22 +17,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.ink.partners import CORNERED, Pair, is_corner
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.between_legs import tangle_between
+from morfax.tracer.tangles.redrawing import CLEAR, NONE, Redrawing, matchings
+from morfax.tracer.tangles.sketch import Sketch, redrawings
 
-if TYPE_CHECKING:
-    from morfax.tracer.tangles.redrawing import Redrawing
-    from morfax.tracer.tangles.sketch import Sketch
-
-# Misfits, in squares of the line's width; by trial on bent strokes with others across their corners.
-CLEAR = 0.25  # up to which a redrawing explains the ink
+# A misfit, in squares of the line's width; by trial on bent strokes with others across their corners:
 AS_WELL = 0.035  # one explains the ink as well as another: a little more than a vertex costs
 LEGS = 4  # there are three ways to join them
 
@@ -41,9 +36,6 @@ def redrawn(view: View, legs: Sequence[Leg], turnings: Array) -> Mapping[Pair, A
     """The vertices (n, 2) mm from the first to the second leg of each pair; none if the ink about the legs
     does not end in them, or no redrawing explains it.
     """
-    from morfax.tracer.tangles.between_legs import tangle_between
-    from morfax.tracer.tangles.sketch import Sketch, redrawings
-
     tangle = tangle_between(view, legs)
     if tangle is None:
         return {}
@@ -71,8 +63,6 @@ def _turned(way: Redrawing, turnings: Array, *, freely: bool = False) -> float:
 
 def _by_legs(sketch: Sketch, legs: Sequence[Leg], turnings: Array) -> Iterator[Redrawing]:
     """For each way to join the legs what these alone tell, smooth or with a vertex where two of them meet."""
-    from morfax.tracer.tangles.redrawing import Redrawing, matchings
-
     for pairs in matchings(len(legs)):
         joints = [_joints(legs, pair, turnings[pair]) for pair in pairs]
         every = [sketch.settled(Redrawing(pairs, joint), 0) for joint in product(*joints)]
@@ -88,5 +78,5 @@ def _joints(legs: Sequence[Leg], pair: Pair, turning: float) -> list[Array]:
     if corner is not None and is_corner(corner, one.width_mm):
         joints.append(corner.vertex_mm[None])
     if turning < CORNERED:
-        joints.append(np.empty((0, 2)))
+        joints.append(NONE)
     return joints

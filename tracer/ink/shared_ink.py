@@ -33,7 +33,7 @@ from morfax.tracer.effort import EVERY_MM, ROUNDS
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing.parabola import FEWEST
 
-NOWHERE = np.empty((0, 4))
+NO_STATIONS = np.empty((0, 4))
 
 # All limits below were chosen by trial on drawings of nets.
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
@@ -67,7 +67,7 @@ class SharedInk:
             np.column_stack([run.places_mm, run.headings_rad, run.widths_mm])
             for run in self.runs
         ]
-        every = np.vstack([NOWHERE, *felt])
+        every = np.vstack([NO_STATIONS, *felt])
         return np.asarray(every[np.isfinite(every[:, 3])])
 
     @cached_property

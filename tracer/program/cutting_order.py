@@ -15,7 +15,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.program.arrows import turned_round
 from morfax.tracer.program.lines import order, selection
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.taken import beside, patches_of, taken_by
+from morfax.tracer.program.taken import kept_off, patches_of, taken_by
 
 
 def in_cutting_order(setup: Setup, lines: list[Line]) -> list[Line]:
@@ -36,7 +36,7 @@ def in_cutting_order(setup: Setup, lines: list[Line]) -> list[Line]:
 
 def _turned(setup: Setup, line: Line, taken: set[int]) -> Line:
     """A line followed from its other end, along none of the patches of others."""
-    return turned_round(beside(setup, taken - patches_of(setup.sheet, line)), line)
+    return turned_round(kept_off(setup, taken - patches_of(setup.sheet, line)), line)
 
 
 def _as_told(

@@ -36,7 +36,7 @@ from morfax.tracer.program.nets.net_lines import lines_of_ring, net_of, or_outli
 from morfax.tracer.program.nets.net_outline import ABOUT_WIDTHS, goes_round, may_solve
 from morfax.tracer.program.nets.open_ink import can_stand, is_open, strokes_of, strokes_told
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.taken import beside, taken_by
+from morfax.tracer.program.taken import kept_off, taken_by
 from morfax.tracer.program.trace import followed, followed_from_an_end
 
 # from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of
@@ -82,7 +82,7 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
         is_letter = contour.stroke.patch in letters
         reads_marks = setup.operator.reads_marks(lines)
         here = setup.after(come_mm, total_mm)
-        here = beside(here, taken - {contour.stroke.patch})
+        here = kept_off(here, taken - {contour.stroke.patch})
         found = _found(here, loops, contour, is_letter, reads_marks)
         line = found.line
         if line is not None:

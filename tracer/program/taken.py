@@ -24,7 +24,7 @@ from morfax.tracer.program.nets.net_outline import may_solve
 from morfax.tracer.program.setup import Setup
 
 
-def beside(setup: Setup, taken: Iterable[int]) -> Setup:
+def kept_off(setup: Setup, taken: Iterable[int]) -> Setup:
     """The set-up for a line that goes onto none of some patches."""
     patches = frozenset(taken)
     if patches == setup.sheet.taken:

@@ -48,7 +48,7 @@ from morfax.tracer.program.one_of_each import (
 )
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress, Setup
-from morfax.tracer.program.taken import beside, taken_by
+from morfax.tracer.program.taken import kept_off, taken_by
 from morfax.tracer.program.trace import followed
 
 
@@ -222,7 +222,7 @@ def _joined(
     for contour in asked:
         line = own.get(contour.number)
         if line is not None and len(line.xy_mm) > 1:  # not one that was never begun
-            here = beside(setup, taken - {contour.stroke.patch})
+            here = kept_off(setup, taken - {contour.stroke.patch})
             others, more_mm = joined_to(line, contour, here, strokes.get(contour.number))
             joined += [(other, contour.number) for other in others]
             left_mm += more_mm

@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.median import median
 from morfax.motion.polyline import lengths_mm
+from morfax.tracer.drawing.drawing import Darkness
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, FOLLOWS
 from morfax.tracer.sensing import edge_scout, photocell, ray
 from morfax.tracer.sensing.gauge import gauge
@@ -100,6 +101,22 @@ class View:
     def dark(self, place: Array) -> bool:
         """Whether there is ink at a place."""
         return self.darkness_at(place) > self.level
+
+    def seen_about(
+        self, places: Array, reach_mm: float
+    ) -> tuple[Darkness, tuple[int, int], Array]:
+        """The darkness of a window that reaches so far about some places (n, 2) mm; the row and the column of
+        the sheet at which it begins; and where its pixels are, (rows, columns, 2) mm.
+        """
+        (rows, columns), pitch = self.cells.shape, self.pitch_mm
+        low, high = bounds(places)
+        left, lowest = np.floor((low - reach_mm) / pitch).astype(int).tolist()
+        right, highest = np.ceil((high + reach_mm) / pitch).astype(int).tolist()
+        top, left = max(0, rows - highest), max(0, left)
+        seen = self.cells.window(top, min(rows, rows - lowest), left, min(columns, right))
+        i, j = np.indices(seen.shape)
+        x, y = (j + left + 0.5) * pitch, (rows - i - top - 0.5) * pitch
+        return seen, (top, left), np.stack([x, y], axis=-1)
 
     def is_others(self, place: Array) -> bool:
         """Whether the ink at a place is that of another line, onto which the head does not go."""

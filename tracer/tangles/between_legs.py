@@ -17,7 +17,6 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from morfax.motion.arrays import bounds
 from morfax.motion.plane import direction, left_of
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
@@ -34,18 +33,10 @@ def tangle_between(view: View, legs: Sequence[Leg]) -> Tangle | None:
     """
     pitch, width_mm = view.pitch_mm, view.width_mm
     # 1. the ink about the legs' ends
-    low, high = bounds(np.array([leg.end_mm for leg in legs]))
-    (left, low_row), (right, high_row) = (
-        np.floor((low - MARGIN * width_mm) / pitch).astype(int).tolist(),
-        np.ceil((high + MARGIN * width_mm) / pitch).astype(int).tolist(),
-    )
-    sheet_rows = view.cells.shape[0]
-    top, left = max(0, sheet_rows - high_row), max(0, left)
-    seen = view.cells.window(top, sheet_rows - low_row, left, right)
+    ends = np.array([leg.end_mm for leg in legs])
+    seen, (top, left), places = view.seen_about(ends, MARGIN * width_mm)
     ink = seen > view.level
     # 2. cut off across the legs
-    i, j = np.indices(ink.shape)
-    places = np.stack([(j + left + 0.5) * pitch, (sheet_rows - i - top - 0.5) * pitch], axis=-1)
     for leg in legs:
         come = places - leg.end_mm
         t = direction(leg.heading_rad)
@@ -55,7 +46,7 @@ def tangle_between(view: View, legs: Sequence[Leg]) -> Tangle | None:
         )
     # 3. what hangs together with each of them
     _, label = cv2.connectedComponents(ink.view(np.uint8), connectivity=4)
-    ahead = [leg.at(pitch) for leg in legs]
+    ahead, sheet_rows = [leg.at(pitch) for leg in legs], view.cells.shape[0]
     found = {
         int(label[math.floor(sheet_rows - y / pitch) - top, math.floor(x / pitch) - left])
         for x, y in ahead

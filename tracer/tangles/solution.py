@@ -27,12 +27,11 @@ from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import TURNS_BACK, TURNS_OFF, Leg, goes_straight, turn
 from morfax.tracer.tangles.likeness import Patch, Pen
-from morfax.tracer.tangles.redrawing import NONE, VERTEX, Redrawing
+from morfax.tracer.tangles.redrawing import CLEAR, NONE, VERTEX, Redrawing
 from morfax.tracer.tangles.sketch import Sketch, redrawings
 from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretches_over
 
 # Misfits, unless said otherwise; chosen by trial on the test drawings.
-CLEAR = 0.25  # up to which a redrawing explains the ink
 # a way between two legs far apart may leave this, if it is better than the plan by such a share
 LEAST_CLEAR, BETTER = 1.0, 0.25
 FEW = 2.5  # vertices: no more for that, if the plan leads there too

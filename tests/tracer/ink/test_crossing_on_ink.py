@@ -9,9 +9,8 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import UM, Points, inked, polyline
 
-OFF_MM = (
-    60 * UM
-)  # a stroke from its line, at most: corners in others' ink are three times as far off as alone
+# a stroke from its line, at most: corners in others' ink are three times as far off as alone
+OFF_MM = 60 * UM
 
 
 def each_by_a_stroke(lines: list[Points], seed: int) -> list[float]:

@@ -48,10 +48,8 @@ OF_WIDTH = (0.8, 0.9, 1.0, 1.1, 1.25)  # of the line's: pens that are tried
 STATION_WIDTHS = 0.25  # between the places at which a way is judged
 # between the places that stand for a way: near its edge they are 0.04 px off it
 PLACES_PX = 1.0
-JUDGED = (
-    "closed",
-    "ended",
-)  # lines that ran into others, or were lost, may have turned off their ink
+# endings of lines; those that ran into others, or were lost, may have turned off their ink
+JUDGED = "closed", "ended"
 TILE_PX = 128  # of what is judged in one
 QUICK_PX = 256  # of what is looked through first
 
