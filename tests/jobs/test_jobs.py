@@ -134,6 +134,18 @@ def test_a_printed_sheet_has_a_margin_about_its_frame(here: Path) -> None:
     assert 0.8 * 297 < high_mm < 297 - 2 * 3
 
 
+def test_a_drawing_from_cad_is_played_by_way_of_a_tape(here: Path, path_file: Path) -> None:
+    """The machine draws the circle, and the tape is gone afterwards."""
+    PlayJob(
+        RecordJob(path_file, here / "circle.wav").run().program, (here / "circle.dxf",)
+    ).run()
+    result, _ = worked(PlayJob(here / "circle.dxf", (here / "again.csv",)))
+    drawn, again = read_path(path_file).runs()[0], read_path(here / "again.csv").runs()[0]
+    assert result.fault is None
+    assert area_mm2(again) == pytest.approx(area_mm2(drawn), rel=1e-3)
+    assert {file.suffix for file in here.iterdir()} == {".wav", ".dxf", ".csv"}
+
+
 def test_compare(path_file: Path, tape_file: Path) -> None:
     result, _ = worked(CompareJob(DrawingFile(tape_file), path_file, tolerance_mm=3 * UM))
     assert result.within is True and result.figures["within_tolerance"] is True
@@ -179,6 +191,9 @@ def test_straight_plunges_are_no_cut_length(here: Path) -> None:
 def test_age_and_mend(here: Path, tape_file: Path) -> None:
     aged, listener = worked(AgeJob(tape_file, here / "worn.wav", parts=(("noise_db", 40.0),)))
     assert aged.tape.exists() and listener.done[f"wearing {tape_file.name}"][-1] == 1
+    # its noise is that of seed 0, whenever it is made again
+    again = AgeJob(tape_file, here / "again.wav", parts=(("noise_db", 40.0),), seed=0).run()
+    assert again.tape.read_bytes() == aged.tape.read_bytes()
     mended, _ = worked(MendJob(here / "worn.wav", here / "mended.wav"))
     assert mended.tape.exists() and mended.mends == ()
 
