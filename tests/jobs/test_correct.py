@@ -53,6 +53,15 @@ def test_the_file_is_made_added_to_undone(bracket: DrawingFile) -> None:
         CorrectJob(bracket, undo=2).run()
 
 
+@pytest.mark.parametrize(("places", "goes_on"), [(3, False), (4, True)])
+def test_of_a_long_stroke_its_first_three_places_are_listed(
+    bracket: DrawingFile, places: int, goes_on: bool
+) -> None:
+    at = tuple(Place(300 + 10 * k, 200) for k in range(places))
+    (row,) = CorrectJob(bracket, (Correction("rub", at),)).run().figures["each"]
+    assert row["at"] == " ".join(map(str, at[:3])) + (" …" if goes_on else "")
+
+
 def test_whoever_opens_the_drawing_has_its_corrections(bracket: DrawingFile) -> None:
     plain = bracket.open()
     CorrectJob(bracket, (RUB,)).run()

@@ -20,14 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import FRINGE_PX, INK, Patches, runs_of, strips
+from morfax.tracer.drawing.contrast import LEAST_STROKE_PX
 from morfax.tracer.drawing.tiles import Tiles, paper_like
 
 # All limits below were chosen by trial on framed and badly cropped pictures.
-# so near to an edge ink is at it: the larger; a share of the shorter side
-AT_EDGE_PX, AT_EDGE = 3, 0.005
+AT_EDGE = 0.005  # of the shorter side: ink as near to an edge, or as its own fringe is broad, is at it
 ALONG = 0.6  # of an edge along which there is ink: it is a border's
 MARGIN = 0.05  # of the shorter side: a border reaches no further into the picture
-OTHER_PX = 40  # a longer patch is other ink
 
 Picture = NDArray[np.float32] | Tiles
 
@@ -67,7 +66,7 @@ def without_border(darkness: Picture, ink: float = INK) -> tuple[str, ...]:
         borders[patch] = bool(along)
         edges |= along
     # 2. made paper, unless they are all that is drawn
-    if not edges or not (longer_px[~borders] > OTHER_PX).any():
+    if not edges or not (longer_px[~borders] > LEAST_STROKE_PX).any():
         return ()
     _make_paper(darkness, patches, borders)
     return tuple(band.edge for band in bands if band.edge in edges)
@@ -85,7 +84,7 @@ def border_note(edges: tuple[str, ...]) -> str:
 def _bands(shape: tuple[int, ...]) -> list[_Band]:
     """The pixels at the four edges of a picture."""
     height, width = shape
-    at = max(AT_EDGE_PX, round(AT_EDGE * min(height, width)))
+    at = max(FRINGE_PX, round(AT_EDGE * min(height, width)))
     return [
         _Band("upper", 0, at, 0, width, 0),
         _Band("lower", height - at, height, 0, width, 0),

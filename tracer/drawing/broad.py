@@ -25,14 +25,13 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import at_lengths
-from morfax.tracer.drawing.hollow import FEWEST_PIECES, Seen, rows_of
+from morfax.tracer.drawing.hollow import FEWEST_PIECES, STEP, Seen, rows_of
 from morfax.tracer.effort import SOME_PLACES
-from morfax.tracer.limits import WIDER
+from morfax.tracer.limits import PAPER, WIDER
 
 # All limits below were chosen by trial on pairs of lines, and on line art.
-ACROSS = np.arange(-24, 25) / 16  # of the line's width, to the left
+ACROSS = np.arange(-1.5, 1.5 + STEP, STEP)  # of the line's width, to the left
 INK = 0.5  # of the darkest: a place on the path that is paler is not on its ink
-PAPER = 0.2  # of the darkest: there ink has ended, and what is darker again is another line's
 TWO = (1.8, 2.15)  # widths of the pen
 # of the ink: a path with so much more on one side than on the other does not run between two lines, of which
 # the one that it follows leaves 0.45 more on the other's side
@@ -80,9 +79,8 @@ def inks(profiles: Array) -> Array:
     """
     middle = len(ACROSS) // 2
     left, right = _beside(profiles[:, middle:]), _beside(profiles[:, middle::-1])
-    step = ACROSS[1] - ACROSS[0]
     inked = left + right - profiles[:, middle]
-    return step * np.where(np.abs(left - right) < ASIDE * inked, inked, np.nan)
+    return STEP * np.where(np.abs(left - right) < ASIDE * inked, inked, np.nan)
 
 
 def _beside(outward: Array) -> Array:

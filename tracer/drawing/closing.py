@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import pairs_within
 from morfax.motion.plane import unit
-from morfax.tracer.drawing.components import grouped
+from morfax.tracer.drawing.components import draw_way, grouped
 from morfax.tracer.drawing.spacing import CLEAR, Pairs
 from morfax.tracer.limits import DETAIL_PX
 
@@ -41,7 +41,6 @@ NARROWS = 0.5  # of the usual distance: a slit that is nearer somewhere narrows 
 # darkness of a streak, its depth in the shape (standard deviations of the lens), its least length; by trial
 STREAK, STREAK_DEEP, STREAK_MM = 0.8, 4.0, 1.5
 STREAK_GAP_MM = 0.3  # half of what noise breaks of it
-SIXTEENTHS = 16  # of a pixel
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,6 +164,6 @@ def _strokes(places: Array, shape: tuple[int, ...], beyond_px: float) -> Grey:
     stops = places[:, 1] + beyond_px * ways
     ends = np.stack([begins, stops], axis=1)
     cover = np.zeros(shape, np.uint8)
-    for stroke in np.round(SIXTEENTHS * ends[:, :, ::-1]).astype(np.int32):
-        cv2.polylines(cover, [stroke], False, 1, STROKE_PX, cv2.LINE_8, shift=4)
+    for stroke in ends[:, :, ::-1]:
+        draw_way(cover, stroke, STROKE_PX)
     return cover.astype(np.float32)

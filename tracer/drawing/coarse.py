@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.contrast import DARKER
-from morfax.tracer.limits import DETAIL_PX
+from morfax.tracer.limits import DETAIL_PX, PAPER
 
 Darkness = NDArray[np.float32]
 
@@ -39,12 +39,10 @@ FEWEST_PX = 2.9
 TIMES = 2  # three times finer is no better: the same details, 1 um more RMS
 # of a pixel: standard deviation of the aperture; at 0.35 the gaps of small engravings stay open; by trial
 APERTURE_PX = 0.6
-# darkness; share of pixels that are neither paper nor ink, on a hard picture
-FULL, BETWEEN = 0.75, 0.03
+BETWEEN = 0.03  # share of pixels that are neither paper nor ink, on a hard picture
 MOST_PX = 1 << 22  # of a sheet, before: large sheets are no coarse scans, and need the memory
 # pixels, as `noise.Within` says: a line of 1.5 looks 1.8 to 2.12 wide, one of 2 looks 2.16 or more; by trial
 SEEN_PX = 2.14
-WANTED_TIMES = 3.0  # a line of one pixel then has three
 DPI_STEP = 50  # of the resolutions that are advised
 
 
@@ -69,7 +67,7 @@ def finer(darkness: Darkness, times: int, seen_px: float = math.inf) -> Darkness
 
 def wanted_dpi(pitch_mm: float) -> int:
     """The resolution that is enough where lines are a pixel wide."""
-    return finer_dpi(pitch_mm, WANTED_TIMES)
+    return finer_dpi(pitch_mm, math.ceil(FEWEST_PX))
 
 
 def finer_dpi(pitch_mm: float, times: float) -> int:
@@ -88,8 +86,8 @@ def note(seen_px: float, pitch_mm: float) -> str:
 
 def is_hard(darkness: Darkness) -> bool:
     """Whether pixels are paper or ink, and hardly any lies between: no lens has softened the lines."""
-    not_paper = darkness[darkness > 1 - FULL]
-    return bool(not_paper.size and np.mean(not_paper < FULL) < BETWEEN)
+    not_paper = darkness[darkness > PAPER]
+    return bool(not_paper.size and np.mean(not_paper < 1 - PAPER) < BETWEEN)
 
 
 def _left_of(darkness: Darkness, soft: Darkness) -> np.float32:

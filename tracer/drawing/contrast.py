@@ -47,8 +47,8 @@ from morfax.tracer.drawing.scan import Grey
 Darkness = NDArray[np.float32]
 
 LEAST_CONTRAST = 10.0  # grey levels of 255 between paper and ink
-# grey levels darker than the paper: where more is asked, no other scan helps
-MOST_ASKED = 128.0
+# grey levels darker than the paper, half of all: where more is asked, no other scan helps
+MOST_ASKED = 256 / 2
 ABOVE_NOISE = 6.0  # standard deviations of the paper: what is darker is no noise
 DARKER = 80.0  # percentile of the strokes' pixels: those that no edge makes lighter
 LEAST_STROKE_MM, LEAST_STROKE_PX = 2.0, 12  # shorter strokes are specks

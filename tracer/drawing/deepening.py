@@ -37,7 +37,7 @@ from morfax.tracer.drawing.spots import (
     of_pixels,
     times_as_noisy,
 )
-from morfax.tracer.effort import FEW_PX
+from morfax.tracer.effort import FEW_PX, ROUNDS
 
 SURELY = 0.6  # of ink's darkness: paler ink is that of a pale line in noise
 # of ink's darkness behind that spot. Paler are what shines through a sheet and a JPEG's rims; chosen
@@ -54,7 +54,6 @@ TOUCHED = 0.7  # of a pale line's darkness: within the rim of ink it goes on whe
 LETTER_MM, TWICE = 1.0, 2.0
 BROAD, BROAD_PX = 2.0, 2.0  # usual widths and pixels: a broader patch is shade
 FULL = 0.9  # a thin line may be as dark as ink and be seen pale behind the spot: it stays
-ROUNDS = 3  # each reaches what is half as dark: three reach an eighth
 
 
 class _Lines(NamedTuple):

@@ -36,12 +36,15 @@ from morfax.tracer.drawing.components import (
     Mask,
     Numbers,
     Patches,
+    draw_way,
     runs_of,
     strips,
 )
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.pen_edges import PenEdges
-from morfax.tracer.effort import LOOKED_MM
+from morfax.tracer.drawing.profiles import MOST_PROFILES
+from morfax.tracer.effort import FINE_PX, LOOKED_MM
+from morfax.tracer.limits import PAPER
 
 # of APART_MM: where the cutter's edge moves less it stands, as at a corner; where it moves more it leaps from
 # one leg to the other: there the edge is not on the line
@@ -180,7 +183,7 @@ def darkness_across(drawing: Drawing, points: Array, headings: Array, across: Ar
 def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:
     """Usual width of the ink under a path, mm."""
     points, headings = (np.concatenate(part) for part in zip(*places, strict=True))
-    some = slice(None, None, max(1, len(points) // 2000))
+    some = slice(None, None, max(1, len(points) // MOST_PROFILES))
     reach = 1.0
     while True:
         right, left = _edges(drawing, points[some], headings[some], reach)
@@ -201,7 +204,7 @@ def _edges(
     drawing: Drawing, points: Array, headings: Array, reach_mm: float
 ) -> tuple[Array, Array]:
     """Edges of the ink nearest to a path, mm to its left; NaN without ink under it or an edge in reach."""
-    step = 0.25 * drawing.pitch_mm
+    step = FINE_PX * drawing.pitch_mm
     count = int(np.ceil(reach_mm / step))
     across = np.arange(-count, count + 1, dtype=float) * step
     seen = darkness_across(drawing, points, headings, across)
@@ -213,7 +216,7 @@ def _edges(
     rows = np.arange(len(points))
     right = np.where(light & (index < peak_at[:, None]), index, -1).max(axis=1)
     left = np.where(light & (index > peak_at[:, None]), index, len(across)).min(axis=1)
-    ok = (right >= 0) & (left < len(across)) & (level[:, 0] > 0.2)
+    ok = (right >= 0) & (left < len(across)) & (level[:, 0] > PAPER)
     right, left = np.where(ok, right, 0), np.where(ok, left, len(across) - 1)
 
     def crossing(outside: NDArray[np.intp], inside: NDArray[np.intp]) -> Array:
@@ -271,6 +274,5 @@ def _covered(drawing: Drawing, runs: Sequence[Array], width_mm: float) -> Mask:
     thickness = max(1, round(COVERS * width_mm / drawing.pitch_mm))
     for run in runs:
         x, y = run[:, :2].T / drawing.pitch_mm
-        sixteenths = np.round(16 * np.column_stack([x - 0.5, rows - y - 0.5])).astype(np.int32)
-        cv2.polylines(covered, [sixteenths], False, 1, thickness, cv2.LINE_8, shift=4)
+        draw_way(covered, np.column_stack([x - 0.5, rows - y - 0.5]), thickness)
     return covered

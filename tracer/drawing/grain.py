@@ -32,6 +32,8 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing.coarse import FEWEST_PX, finer_dpi
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
+from morfax.tracer.effort import FEW_PX
+from morfax.tracer.limits import PAPER
 
 Darkness = NDArray[np.float32]
 
@@ -48,8 +50,7 @@ SMOOTH_WIDTHS = 0.3  # over which a fit is averaged
 REACH_WIDTHS = 0.6  # so far around a place the best fit counts: just over the line's edge
 DIRECTIONS = 16
 SPREADS = 2.5  # standard deviations of the slit: its weight beyond that is 1 %
-EMPTY = 0.3  # of the ink's darkness: where nothing is darker, behind a spot of one pixel, is no line
-TILE_PX = 512
+TILE_PX = math.isqrt(FEW_PX)
 # a slit that is as wide on a picture reduced by one of these, standard deviation, looks at that
 REDUCED, NARROWEST_PX = (8, 4, 2), 1.0
 # px²: variance of means of pixels, 1/12, and of interpolation between them, 1/6
@@ -121,7 +122,7 @@ def behind(slit: Slit, darkness: Darkness) -> Darkness:
         for left in range(0, columns, TILE_PX):
             first = max(0, top - halo), max(0, left - halo)
             around = darkness[first[0] : top + TILE_PX + halo, first[1] : left + TILE_PX + halo]
-            if cv2.GaussianBlur(around, (0, 0), 1.0).max() > EMPTY:
+            if cv2.GaussianBlur(around, (0, 0), 1.0).max() > PAPER:
                 own = np.s_[top - first[0] :, left - first[1] :]
                 part = seen[top : top + TILE_PX, left : left + TILE_PX]
                 part[:] = _reduced_tile(slit, around, by)[own][: part.shape[0], : part.shape[1]]

@@ -36,8 +36,9 @@ PIECE_PX = 24.0
 AT_ONCE = 256  # pieces that are looked at in one go
 FEWEST_PIECES = 2  # in a row: one alone is where a line crosses, or a wall's end
 APART_PX = 2.0  # stations: pixels so far apart have noise of their own
-OFFSETS = np.arange(-8, 9) / 16  # of the line's width, to the left
-BESIDE = 2 / 16  # of the width: the dark rows are further from the path
+STEP = 1 / 16  # of the line's width: finer than a pixel on lines of up to 16
+OFFSETS = np.arange(-0.5, 0.5 + STEP, STEP)  # of the line's width, to the left
+BESIDE = 2 * STEP  # of the width: the dark rows are further from the path
 PALER = 0.05  # of the ink's darkness; the middle of a line of one pen is paler by 0.02 at most
 CERTAIN = 4.0  # standard deviations of a piece's mean
 

@@ -33,7 +33,6 @@ from morfax.tracer.effort import FEW_PX
 Picture = NDArray[np.uint8]  # rows from the top, columns, channels
 Colour = tuple[int, int, int]
 
-MOST_INKS = 6
 LEAST = 40.0  # levels from the paper's colour: less is paper
 NEAR = math.radians(18)  # inks whose colours lie in directions as near as this are one
 LIKE = math.radians(35)  # the ink asked for is the nearest within this
@@ -142,7 +141,7 @@ def _found(picture: Picture) -> tuple[Array, list[Array]]:
     # 2. the inks, by the directions of their colours from the paper's
     units, left, inks = ways / far[:, None], np.ones(len(far), bool), list[Array]()
     total = far.sum()
-    while left.any() and len(inks) < MOST_INKS:
+    while left.any():
         own = left & (units @ _densest(units[left], far[left]) > math.cos(NEAR))
         if far[own].sum() < LEAST_SHARE * total:
             break

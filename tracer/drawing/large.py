@@ -43,7 +43,6 @@ from morfax.tracer.effort import FEW_PX
 LARGE_PX = 1 << 26
 SOFTENED = 1 / (2 * math.sqrt(math.pi) * SOFT_PX)  # of white noise, behind that spot
 HALO_PX = 8  # rows about a band that a spot sees
-FEWEST_INKED = 1 << 21  # pixels of strokes that tell the ink
 
 Shapes = NDArray[np.bool_]
 Bytes = NDArray[np.uint8]
@@ -186,7 +185,7 @@ def _ink_contrast(tiles: Tiles, least: float, pitch_mm: float) -> float:
     """Contrast of the strokes against the paper, grey levels: that of the longer strokes' darker part."""
     patches = Patches.of(runs_darker(tiles, SOFT_PX, least))
     strokes = strokes_of(patches, least, pitch_mm)
-    every = max(1, int(patches.areas[strokes].sum()) // FEWEST_INKED)
+    every = max(1, int(patches.areas[strokes].sum()) // FEW_PX)
     inked = []
     for top, bottom, _, columns in tiles.bands():
         mask = patches.painted(strokes, top, bottom, columns.start, columns.stop).view(bool)

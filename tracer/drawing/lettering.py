@@ -31,7 +31,7 @@ UNLIKE = 0.15  # the lengths of letters differ by more than this share of their 
 # as wide as high, but for this share or so many pixels: where all of a row are so, they are holes
 ROUND, ROUND_PX = 0.08, 1.5
 # of two: each is so much narrower than high (a hole is round), and as high, by this share, as a letter
-NARROW, AS_HIGH = 0.85, 0.06
+NARROW = 0.85
 
 
 def lettering(sheet: Sheet) -> set[int]:
@@ -57,7 +57,7 @@ def lettering(sheet: Sheet) -> set[int]:
     high_mm = heights_mm[sorted(letters)]
     for own in rows:
         is_narrow = wide_mm[own] < NARROW * heights_mm[own]
-        as_high = np.abs(heights_mm[own][:, None] / high_mm - 1) < AS_HIGH
+        as_high = np.abs(heights_mm[own][:, None] / high_mm - 1) < ROUND
         if len(own) == FEWEST - 1 and is_narrow.all() and as_high.any(axis=1).all():
             letters |= set(own.tolist())
     return letters

@@ -22,6 +22,7 @@ from morfax.tracer.drawing.components import Patches, strips
 from morfax.tracer.drawing.contrast import (
     ABOVE_NOISE,
     DARKER,
+    EVERY_COLUMN,
     LEAST_CONTRAST,
     MOST_ASKED,
     SOFT_PX,
@@ -36,8 +37,6 @@ from morfax.tracer.effort import FEW_PX
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 # of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen
 STEP = 0.1
-EVERY = 4  # pixels of a noisy sheet that tell its noise
-FEWEST_SAMPLES = 1 << 22  # pixels that tell the darkness of the ink
 
 Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
@@ -114,14 +113,14 @@ def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness 
     else:
         seen = contrast.everywhere()
         soft = np.asarray(cv2.GaussianBlur(seen, (0, 0), SOFT_PX), np.float32)
-        some = soft[::EVERY, ::EVERY]
+        some = soft[::EVERY_COLUMN, ::EVERY_COLUMN]
         least = max(least, _above_noise(some.ravel()))
         if least > MOST_ASKED:  # where ink takes much of the picture its levels are no noise
             least = max(LEAST_CONTRAST, _above_neighbours(some))
         runs = runs_in(soft, least)
     patches = Patches.of([runs])
     strokes = strokes_of(patches, least, pitch_mm)
-    every = max(1, int(patches.areas[strokes].sum()) // (4 * FEWEST_SAMPLES))
+    every = max(1, int(patches.areas[strokes].sum()) // FEW_PX)
     ink = percentile(patches.pixels_of(strokes, seen)[::every], DARKER)
     return ink, None if is_quiet else seen
 

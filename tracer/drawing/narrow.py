@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.tracer.drawing.components import INK
+from morfax.tracer.limits import NEAR
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.drawing import Drawing
@@ -34,8 +35,6 @@ NARROW_PX = 2  # so wide a strip is bridged by noise; one of three pixels is not
 # widths of the usual line: shorter ones are where letters crowd, and two lines meet; on 53 real sheets paths
 # run over longer ones on eight, and most of these paths are astray there
 LONG_WIDTHS = 20.0
-# of a line's width from the strip: the middle of a line of two pixels is half a width off
-OVER = 0.25
 PARTED = 2.0  # times the resolution: a strip of two pixels has four, and is bridged nowhere
 
 
@@ -125,7 +124,7 @@ def narrow_gaps(
     found = list[NarrowGap | None]()
     for places, width_mm in lines:
         row, column = _pixels(drawing, places)
-        over_mm = OVER * min(width_mm, usual_mm)
+        over_mm = NEAR * min(width_mm, usual_mm)
         there = np.flatnonzero(away_px[row, column] * drawing.pitch_mm < over_mm)
         if not len(there):
             found.append(None)

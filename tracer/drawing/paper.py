@@ -22,9 +22,6 @@ from morfax.tracer.drawing.lighting import Lighting, from_beside
 
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
 SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shadow
-# light falls off over a sheet, by ink's whole contrast beneath a lamp; behind a shape's edge, blurred by a
-# stroke's width, the paper is bright again within three of these
-BESIDE_SHAPE_MM = 18.0
 SHARP_MM = 1.5  # a shape's edge is no broader, most shadows' are; by trial
 DARK = 0.5  # of the ink's contrast: what is darker than the paper by more is ink
 BLACK = 0.8  # of the ink's contrast: a paler area is a panel, or in shadow; by trial
@@ -90,7 +87,9 @@ class Paper:
         level = -self.reduced if self.is_light else self.reduced
         if float(level.max() - level.min()) <= SHAPE * contrast:
             return np.zeros(level.shape, bool)
-        beside = 2 * round(BESIDE_SHAPE_MM / self.pitch_mm) + 1
+        # light falls off over a sheet, by ink's whole contrast beneath a lamp; behind a shape's edge, blurred
+        # by a stroke's width, the paper is bright again within three of these
+        beside = 2 * round(3 * WIDEST_STROKE_MM / self.pitch_mm) + 1
         brightest = cv2.erode(level, np.ones((beside, beside), np.uint8))
         dark = (level - brightest > SHAPE * contrast).view(np.uint8)
         grown = cv2.dilate(dark, _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))

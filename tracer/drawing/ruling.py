@@ -20,7 +20,6 @@ over that length; the head goes over such gaps as it does over others.
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import cv2
@@ -31,16 +30,16 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.plane import left_of
 from morfax.tracer.drawing.between import between
-from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.contrast import DARKER
 from morfax.tracer.drawing.tiles import Kept, Tiles
+from morfax.tracer.effort import FEW_PX
 
 Darkness = NDArray[np.float32]
 PaperKind = Literal["auto", "plain", "squared", "ruled"]
 
 # Chosen by trial on drawings on printed paper.
 TILT_DEG, TILT_STEP_DEG = 4.0, 0.1  # of the paper on the scanner's glass
-SEARCHED_PX = 1 << 21  # pixels of the picture on which families are looked for
+SEARCHED_PX = 2 * FEW_PX  # pixels of the picture on which families are looked for
 INKED = 0.15  # darker is ink, drawn or printed
 # of printed lines: 4, 5 mm squares; 6 to 11 mm ruled
 LEAST_PERIOD_MM, LARGEST_PERIOD_MM = 2.0, 15.0
@@ -52,8 +51,6 @@ SOFT_PX = 1.5  # beside a printed line: its soft edges
 SPANNED = 0.6  # of a line's length on the sheet is inked
 EDGE = 0.03  # of the sheet's length: printed lines are there at both ends
 EDGE_LOST = 0.25  # of them may leave the sheet at a side, or lie under a shadow
-# printed paper has ink in so many of 8 x 8 tiles, 1 % of the pixels
-TILES, INK_OVER, INK_IN = 8, 0.9, 0.01
 EXCESS = 0.35  # of ink's darkness: noise is no ink on a printed line
 SAMPLES = 50_000  # pixels of ink that tell the tilt
 # of strokes, from square to the printed line
@@ -85,13 +82,9 @@ def families(darkness: Kept, pitch_mm: float) -> list[Family]:
     by = max(1, math.isqrt(max(1, darkness.size // SEARCHED_PX)))
     small = darkness.shrunk(by) if isinstance(darkness, Tiles) else darkness
     if by > 1 and not isinstance(darkness, Tiles):
-        if not _may_be_all_over(darkness, by):
-            return []
         size = darkness.shape[1] // by, darkness.shape[0] // by
         small = np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32)
     ways = [is_upright for is_upright in (True, False) if _may_reach_edges(small, is_upright)]
-    if not ways or not _is_all_over(small):
-        return []
     found = [_family(small, pitch_mm * by, is_upright) for is_upright in ways]
     return [one.enlarged(by) for one in found if one is not None]
 
@@ -124,35 +117,6 @@ def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> tuple[Kept, s
 
 
 # finding
-
-
-def _is_all_over(darkness: Darkness) -> bool:
-    """Whether there is ink nearly everywhere on a sheet: on a drawing on plain paper there is not."""
-    down, along = ([side * k // TILES for k in range(TILES + 1)] for side in darkness.shape)
-    tiles = [
-        darkness[top:bottom, left:right]
-        for top, bottom in pairwise(down)
-        for left, right in pairwise(along)
-    ]
-    inked = [np.count_nonzero(tile > INKED) > INK_IN * tile.size for tile in tiles]
-    return bool(np.mean(inked) >= INK_OVER)
-
-
-def _may_be_all_over(darkness: Darkness, by: int) -> bool:
-    """Whether there may be ink nearly everywhere on the sheet reduced so much, by its darkest pixels alone.
-
-    To ask them takes a fifth of the time of reducing the sheet. A reduced pixel is ink only if one of those
-    that it is made of is.
-    """
-    inked = np.asarray(darkest(darkness) > INKED, np.uint8)
-    # blocks: the edges of reduced pixels and of tiles fall within blocks
-    about = 2 * (3 + by // BLOCK_PX) + 1
-    inked = np.asarray(cv2.dilate(inked, np.ones((about, about), np.uint8)), np.uint8)
-    places = [np.arange(TILES) * side // TILES for side in inked.shape]
-    tiles = np.maximum.reduceat(
-        np.maximum.reduceat(inked, places[0], axis=0), places[1], axis=1
-    )
-    return bool(np.mean(tiles) >= INK_OVER)
 
 
 def _may_reach_edges(darkness: Darkness, is_upright: bool) -> bool:

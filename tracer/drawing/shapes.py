@@ -31,14 +31,12 @@ from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing import tips
 from morfax.tracer.drawing.closing import Closed, covers, note, places_of, streaks_of
-from morfax.tracer.drawing.components import FRINGE_PX
-from morfax.tracer.drawing.sharpening import APART_PX, Edge, sharpened
-from morfax.tracer.drawing.spacing import finer, too_near
-from morfax.tracer.effort import ROUNDS
+from morfax.tracer.drawing.components import FRINGE_PX, SOFTENED_PX
+from morfax.tracer.drawing.sharpening import Edge, sharpened
+from morfax.tracer.drawing.spacing import EDGE_MM, finer, too_near
+from morfax.tracer.effort import FINE_PX, ROUNDS
 
 EDGE_PX = 2.0  # of a pen that leaves one line at any angle
-EDGE_MM = 0.4  # at 300 dpi less than five pixels; with 0.3 mm a gear of 24 teeth did not close
-SOFT_PX = 0.7  # standard deviation: against the noise of the paper
 LEAST_MM = 2.0  # a shorter outline is a speck's
 LEAST_CONTRAST = 20.0  # levels
 LEAST_SHAPE_MM = 1.0  # across at its widest; what is thinner everywhere is lines
@@ -162,7 +160,7 @@ def _none() -> NoShape:
 # place, and three are held at most beside what is handed out.
 def _shares(grey: NDArray[Any], pitch_mm: float) -> tuple[Grey, Grey]:
     """How much of each pixel is the darker of paper and shape, 0..1: of the soft scan, and of the scan."""
-    blurred = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFT_PX)
+    blurred = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), SOFTENED_PX)
     soft = np.asarray(blurred, np.float32)
     low, high = _levels(soft, pitch_mm)
     span = np.maximum(np.subtract(high, low, out=low), LEAST_CONTRAST, out=low)
@@ -252,7 +250,7 @@ def _softness_px(share: Grey, edges: list[Array]) -> float:
     steep = np.hypot(*(cv2.Sobel(share, cv2.CV_32F, *way, scale=1 / 8) for way in ways))
     steepness = float(np.percentile(steep[rows, columns], 60))
     # the Sobel cells are themselves as soft as (1, 2, 1)/4 along and across, and the pixel as a twelfth
-    return float(np.sqrt(max(1 / (2 * np.pi * steepness**2) - 0.4, SOFT_PX**2)))
+    return float(np.sqrt(max(1 / (2 * np.pi * steepness**2) - 0.4, SOFTENED_PX**2)))
 
 
 def _refined(edges: list[Array], share: Grey) -> list[Array]:
@@ -270,7 +268,7 @@ def _refined(edges: list[Array], share: Grey) -> list[Array]:
 
     refined, nearby = list[Array](), SLOPE_PX * np.eye(2)
     for edge in edges:
-        places = with_places(edge, APART_PX)
+        places = with_places(edge, FINE_PX)
         for _ in range(2):  # steps of Newton's
             steps = [height(places + way) - height(places - way) for way in nearby]
             slope = np.column_stack(steps) / (2 * SLOPE_PX)

@@ -21,18 +21,18 @@ import cv2
 import numpy as np
 
 from morfax.tracer.drawing.border import border_note, without_border
-from morfax.tracer.drawing.components import FRINGE_PX, INK, Mask
+from morfax.tracer.drawing.components import FRINGE_PX, INK, SOFTENED_PX, Mask
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.inks import Colour, covered
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
-from morfax.tracer.drawing.shapes import SOFT_PX, outlined, shade_of
+from morfax.tracer.drawing.shapes import outlined, shade_of
 from morfax.tracer.drawing.solids import usual_width_px
+from morfax.tracer.drawing.strokes import ONE_PEN
 
 BLACK = 255.0  # grey levels between paper and shape
 BROADEST_MM = 2.0  # of a line: the broadest of ISO 128-2
-ALIKE = 0.4  # share of the usual width by which a pen's lines differ; by trial
 MOST = 0.6  # of the middle line, which is in lines; by trial
 MOSTLY_SHAPES = (
     "most of the ink is filled shapes, broader than lines, and their insides are left out: --edge follows "
@@ -88,7 +88,7 @@ def has_lines(drawing: Drawing) -> bool:
     if not ridge.any():
         return False
     widths_px = 2 * depth[ridge] - 1
-    return bool(np.mean(np.abs(widths_px - usual_px) < ALIKE * usual_px + 1) > MOST)
+    return bool(np.mean(np.abs(widths_px - usual_px) < ONE_PEN * usual_px + 1) > MOST)
 
 
 def edges_of(drawing: Drawing, solid: Mask | None = None) -> Drawing:
@@ -116,4 +116,4 @@ def _only(darkness: Darkness, solid: Mask) -> Darkness:
     lines = (darkness > INK).view(np.uint8) & about & (1 - solid)
     lines = np.asarray(cv2.dilate(lines, np.ones((3, 3), np.uint8)), np.uint8)
     kept = (about & (1 - lines)) | solid
-    return np.asarray(cv2.GaussianBlur(kept.astype(np.float32), (0, 0), SOFT_PX) * darkness)
+    return np.asarray(cv2.GaussianBlur(kept.astype(np.float32), (0, 0), SOFTENED_PX) * darkness)

@@ -27,9 +27,9 @@ from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing.edge_leg import EdgeLeg
 from morfax.tracer.drawing.lens import radius_of, way_inside
+from morfax.tracer.effort import FINE_PX
 from morfax.tracer.limits import FADES
 
-APART_PX = 0.25  # between the places of an outline
 LEG = 20.0  # standard deviations: length of a leg that is felt, at most
 SHORTEST_LEG = 2.5
 LEAST_TURN = math.radians(15)
@@ -65,7 +65,7 @@ def sharpened(outline: Array, softness_px: float) -> Edge:
 def corners_of(
     places: Array, softness_px: float, *, is_closed: bool = True, step_px: float = 0.0
 ) -> list[PutBack]:
-    """The corners that the lens has rounded on an outline, or a piece of one, a place every `APART_PX`.
+    """The corners that the lens has rounded on an outline, or a piece of one, a place every `FINE_PX`.
 
     An outline that was felt step by step may go on beyond a tip by a step.
     """
@@ -83,7 +83,7 @@ def corners_of(
 def _evenly(outline: Array) -> Array:
     """Places at equal distances, the first not repeated, begun where the outline turns least."""
     s = lengths_px(outline)
-    at = np.linspace(0, s[-1], max(8, round(s[-1] / APART_PX)), endpoint=False)
+    at = np.linspace(0, s[-1], max(8, round(s[-1] / FINE_PX)), endpoint=False)
     places = np.column_stack([np.interp(at, s, column) for column in outline.T])
     reach = min(len(places) // 4, 40)
     return np.roll(places, -int(np.argmin(turned_at(places, reach))), axis=0)
@@ -100,7 +100,7 @@ def _corners(places: Array, softness_px: float, is_closed: bool) -> list[int]:
     """Places about which the outline turns most, in order."""
     from scipy.ndimage import uniform_filter1d
 
-    reach = max(2, min(round(FADES * softness_px / APART_PX), len(places) // 4))
+    reach = max(2, min(round(FADES * softness_px / FINE_PX), len(places) // 4))
     turned = uniform_filter1d(turned_at(places, reach), reach, mode="wrap")
     if not is_closed:  # about the ends it turns from one to the other
         turned[: 2 * reach] = turned[-2 * reach :] = 0.0
@@ -145,7 +145,7 @@ def _room(places: Array, turns: list[int], k: int, blur_px: float, is_closed: bo
     at, count = turns[k], len(places)
     before = (at - turns[k - 1] - 1) % count + 1.0
     after = (turns[(k + 1) % len(turns)] - at - 1) % count + 1.0
-    clear = FADES * blur_px / APART_PX
+    clear = FADES * blur_px / FINE_PX
     if not is_closed:
         before = at + clear if k == 0 else before
         after = count - 1 - at + clear if k == len(turns) - 1 else after
@@ -192,7 +192,7 @@ def _corner(
 
     The outline was felt by steps of so many standard deviations.
     """
-    at, dense = room.at, softness_px / APART_PX
+    at, dense = room.at, softness_px / FINE_PX
     # 1. feel the legs, from further away where the corner that they make is narrow or round
     fit, angle, touch = None, math.pi / 2, 0.0
     for _ in range(TRIES):
@@ -242,7 +242,7 @@ def _off(places: Array, found: PutBack) -> float:
     from scipy.spatial import cKDTree
 
     first, last, corner = found.first, found.last, found.places
-    instead = with_places(np.vstack([places[first], corner, places[last]]), APART_PX)
+    instead = with_places(np.vstack([places[first], corner, places[last]]), FINE_PX)
     return float(cKDTree(instead).query(places[first : last + 1])[0].max())
 
 
@@ -254,7 +254,7 @@ def _touch(angle: float, radius: float) -> float:
 def _rounded(fit: _Fit, softness_px: float) -> Array:
     """A corner with its round as places (n, 2), from leg to leg; the vertex alone without a round."""
     radius_px = fit.radius * softness_px
-    if radius_px < APART_PX:
+    if radius_px < FINE_PX:
         return fit.vertex[None]
     t, w = fit.t, fit.w
     between = t + w

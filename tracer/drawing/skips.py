@@ -22,7 +22,7 @@ from morfax.motion.plane import unit
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet, Stroke
-from morfax.tracer.effort import MANY
+from morfax.tracer.effort import FINE_PX, MANY
 from morfax.tracer.limits import AHEAD_RAD, LONGER_WIDTHS, PIECE_MM
 
 # All limits below were chosen by trial on `python -m benchmarks rough`.
@@ -30,7 +30,6 @@ WIDEST_MM = 1.0  # over a wider gap a leg's own bend does not lead any more
 FEWEST = 3  # fewer may be meant
 FACING_COS = math.cos(AHEAD_RAD)
 MOST_ENDS = 3  # of a piece, one of them a burr; a piece with more is a net
-STEP_PX = 0.25  # in which the end of the ink is looked for
 SPARE_MM = 0.2  # the head's own uncertainty about both ends
 
 
@@ -78,7 +77,7 @@ def _ends(stroke: Stroke, drawing: Drawing) -> list[End]:
 
 def _tip_mm(place_mm: Array, outward: Array, width_mm: float, drawing: Drawing) -> Array:
     """Where the ink ends from a place within a width of its end on, (x, y) mm."""
-    on_mm = np.arange(0.0, width_mm, STEP_PX * drawing.pitch_mm)
+    on_mm = np.arange(0.0, width_mm, FINE_PX * drawing.pitch_mm)
     places = place_mm + on_mm[:, None] * outward
     rows, columns = drawing.darkness.shape
     row = np.clip(rows - 1 - np.floor(places[:, 1] / drawing.pitch_mm), 0, rows - 1)

@@ -26,7 +26,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import Mask, strips
+from morfax.tracer.drawing.middles import SHALLOWER
 from morfax.tracer.effort import FEW_PX
+from morfax.tracer.limits import LONGER_WIDTHS, ROUND
 
 # All limits below were chosen by trial on own and fetched drawings, in usual widths of a line.
 BROAD, BROAD_PX = 2.2, 1.5  # a disc as broad goes into a solid area
@@ -35,13 +37,12 @@ CROSSING = 1.6  # of a broader pen's own width: where two of its lines cross, 1.
 SHAPE = 0.33  # of some ink is broader than that: it is no line
 LONG = 3.0  # times its breadth: a longer area is a wall or a line of a broad pen
 SWELLING = 4.0  # a narrower one through which a line goes on is that line
-CORNER = 4.0  # ink no larger that hangs on a solid area is its corner
-SPECK = 0.785  # square widths: paper in ink that is no larger than a round of a width ...
-ABOUT, MANY = 4.0, 4  # ... crowds with so many within so far of it, across and along
+# paper in ink that is no larger than a round of a width crowds with so many within so far of it, across and
+# along
+ABOUT, MANY = 4.0, 4
 OPEN = 0.5  # of its rim is paper at least: round a place where lines meet it is lines
 LEAST_PX = 7.0  # a narrower one is a line: few pixels tell no breadth
 FINEST_PX = 2.0  # a line that is finer counts as so broad, for the same reason
-RIDGE_PX = 0.3  # pixels no less deep than those about them are in the middle of ink
 
 
 class Solid(NamedTuple):
@@ -65,7 +66,7 @@ class Solids(NamedTuple):
         solid = _solid(whole, _depth(whole), usual_px)
         if not solid.any():
             return cls(solid)
-        solid |= _corners(solid, whole, CORNER * usual_px + 2)
+        solid |= _corners(solid, whole, LONGER_WIDTHS * usual_px + 2)
         return cls(solid, _each(solid))
 
 
@@ -84,7 +85,7 @@ def usual_width_px(depth: NDArray[np.float32]) -> float:
         inner = slice(top - rows.start, bottom - rows.start)
         deepest = cv2.dilate(depth[rows], np.ones((3, 3), np.uint8))[inner]
         own = depth[top:bottom]
-        ridges.append(own[(own > 0) & (own >= deepest - RIDGE_PX)])
+        ridges.append(own[(own > 0) & (own >= deepest - SHALLOWER)])
     ridge = np.concatenate(ridges)
     return max(FINEST_PX, 2 * float(np.median(ridge)) - 1) if len(ridge) else FINEST_PX
 
@@ -102,7 +103,7 @@ def _without_specks(ink: Mask, usual_px: float) -> Mask:
         left, above, wide, high, pixels = boxes.T
         are_specks = (left > 0) & (left + wide < ink.shape[1])
         are_specks &= (above > 0) & (above + high < len(labels))
-        are_specks &= pixels <= SPECK * usual_px**2
+        are_specks &= pixels <= ROUND * usual_px**2
         at = tuple(np.round(middles[are_specks]).astype(int).T[::-1])
         dots = np.zeros(labels.shape, np.float32)
         dots[at] = 1

@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 
 from morfax.motion.median import MIDDLE, ONE_BELOW, TWO_BELOW, percentile
 from morfax.tracer.drawing.components import INK, Mask
+from morfax.tracer.drawing.contrast import EVERY_COLUMN
 
 Darkness = NDArray[np.float32]
 
 SPOT_PX = 1.0  # standard deviation of the spot behind which lines are told from noise
-STRIPS, STRIP_PX, SPARSE = 64, 48, 5  # of the sheet, and pixels of these, that tell its noise
+STRIPS = 32  # of the sheet, that tell its noise
 ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its noise is told
 # percentiles half a standard deviation apart: rims of ink are on one side, and pale lines, which may be a
 # fifth of the paper that is near ink, beyond the other
@@ -42,13 +43,13 @@ def noise_of_spots(darkness: Darkness) -> float:
     Grain, and what a camera has made of noise, is broader than pixels: a spot averages little of it. Shade
     that is even, such as a tinted room of a plan, is none.
     """
-    every = max(1, darkness.shape[0] // (STRIPS * STRIP_PX))
+    every = max(1, darkness.shape[0] // (STRIPS * PART_PX))
     seen = list[Darkness]()
-    for top in range(0, darkness.shape[0], every * STRIP_PX):
-        strip = darkness[top : top + STRIP_PX]
+    for top in range(0, darkness.shape[0], every * PART_PX):
+        strip = darkness[top : top + PART_PX]
         soft = np.asarray(cv2.GaussianBlur(strip, (0, 0), SPOT_PX), np.float32)
         differs = soft - cv2.GaussianBlur(soft, (0, 0), ABOUT_PX)
-        seen.append(differs[_is_paper(strip, soft)][::SPARSE])
+        seen.append(differs[_is_paper(strip, soft)][::EVERY_COLUMN])
     paper = np.concatenate(seen)
     if not len(paper):
         return 0.0

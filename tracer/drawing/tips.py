@@ -20,7 +20,8 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import meeting
 from morfax.motion.polyline import evenly
-from morfax.tracer.drawing.sharpening import APART_PX, Edge, most_turned, turned_at
+from morfax.tracer.drawing.sharpening import Edge, most_turned, turned_at
+from morfax.tracer.effort import FINE_PX
 from morfax.tracer.limits import FADES
 
 SHARPEST, BLUNTEST = math.radians(3), math.radians(45)  # between the legs of a tip
@@ -40,9 +41,9 @@ class Tip(NamedTuple):
 
 def tips_of(edge: Edge, softness_px: float) -> list[Tip]:
     """The tips of a closed outline that end short, the worst first."""
-    places = evenly(edge.outline, APART_PX)
-    reach = max(2, round(FADES * softness_px / APART_PX))
-    if len(places) < 2 * round(FAR * softness_px / APART_PX):
+    places = evenly(edge.outline, FINE_PX)
+    reach = max(2, round(FADES * softness_px / FINE_PX))
+    if len(places) < 2 * round(FAR * softness_px / FINE_PX):
         return []
     found = most_turned(turned_at(places, reach), TURNED, 2 * reach)
     tips = [tip for k in found if (tip := _tip(places, k, softness_px)) is not None]
@@ -62,7 +63,7 @@ def note(tips: list[tuple[Tip, tuple[float, float]]], pitch_mm: float) -> str:
 
 def _tip(places: Array, at: int, softness_px: float) -> Tip | None:
     """The tip about a place; None if its legs are not straight, or do not meet far enough beyond it."""
-    near, far = (round(share * softness_px / APART_PX) for share in (NEAR, FAR))
+    near, far = (round(share * softness_px / FINE_PX) for share in (NEAR, FAR))
     legs = [_leg(places, at, side * near, side * far) for side in (-1, 1)]
     if any(off > STRAIGHT * softness_px for _, _, off in legs):
         return None

@@ -14,7 +14,6 @@ Source: our own. Questions: the ink of a net's junctions counts once, as in the 
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import cv2
@@ -26,13 +25,13 @@ from morfax.motion.median import median
 from morfax.tracer.drawing.components import FRINGE_PX
 from morfax.tracer.drawing.holes import holes
 from morfax.tracer.effort import MANY
+from morfax.tracer.limits import ROUND
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.strokes import Sheet
 
 # share by which lengths by area may be off against each other, and as much again
 NEAR = 0.1
-CAPS = math.pi / 4  # widths of ink in the two round ends of an open line
 
 
 class Weight(NamedTuple):
@@ -55,7 +54,7 @@ def weighed_mm(sheet: Sheet, patches: NDArray[np.int64], lengths_mm: Array) -> A
     inks = [_ink_of(sheet, int(patch)) for patch in patches[near]]
     weights_mm2 = np.array([ink.weight_mm2 for ink in inks])
     is_open = np.array([ink.is_open for ink in inks])
-    by_weight_mm = weights_mm2 / pens_mm - np.where(is_open, CAPS * pens_mm, 0.0)
+    by_weight_mm = weights_mm2 / pens_mm - np.where(is_open, ROUND * pens_mm, 0.0)
     # 2. the scan's own levels make all of them longer or shorter alike
     weighed = lengths_mm.copy()
     weighed[near] = by_weight_mm * median(lengths_mm[near] / by_weight_mm)

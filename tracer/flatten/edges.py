@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.tracer.effort import FINE_PX
 
 Picture = NDArray[np.uint8]  # rows from the top, columns, red green blue
 
-STEP_PX = 0.25  # between the samples across an edge
 # of the usual difference in light: where an edge has less, something lies on it
 LEAST_SHARE = 0.3
 LEAST_LIGHT = 0.015  # of white: between both sides of an edge that can be placed
@@ -48,7 +48,7 @@ def crossings(
 
     Each profile is averaged with its neighbours, so that a rough edge or a noisy picture has one edge.
     """
-    count = max(8, math.ceil(reach_px / STEP_PX))
+    count = max(8, math.ceil(reach_px / FINE_PX))
     across = np.arange(-count, count + 1) * (reach_px / count)
     at = places_px[:, None, :] + across[None, :, None] * outward[:, None, :]
     seen = light_at(picture, at)

@@ -68,7 +68,7 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
 
 def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:
     """The filled shapes of a sheet through cells for their edges."""
-    from morfax.tracer.drawing.shapes import EDGE_MM
+    from morfax.tracer.drawing.spacing import EDGE_MM
 
     assert drawing.shade is not None
     pitch_mm = drawing.pitch_mm * drawing.enlarged

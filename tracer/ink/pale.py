@@ -23,17 +23,16 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import MIDDLE, ONE_BELOW
 from morfax.tracer.drawing.components import INK, Mask, grouped, strips
-from morfax.tracer.drawing.contrast import ABOVE_NOISE
+from morfax.tracer.drawing.contrast import ABOVE_NOISE, EVERY_COLUMN
 from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
 from morfax.tracer.drawing.deepening import LEAST, shaded
 from morfax.tracer.drawing.drawing import Darkness, Drawing
-from morfax.tracer.drawing.spots import SPARSE, SPOT_PX, STRIPS, of_pixels, times_as_noisy
+from morfax.tracer.drawing.spots import PART_PX, SPOT_PX, STRIPS, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 from morfax.tracer.effort import FEW_PX
 
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
 # of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
-STRIP_PX = 24  # high: strips of the sheet that tell its noise
 # percentiles one standard deviation apart; ink and its rims are above the middle
 # pixels, and spots of the picture's softness: so near to ink is its own rim
 RIM_PX, SPOTS = 3, 3.0
@@ -98,12 +97,12 @@ def _noise_of_spots(drawing: Drawing) -> float:
 
     Grain, stains and what a camera has made of noise are broader than pixels: a spot averages little of it.
     """
-    every = max(1, drawing.darkness.shape[0] // (STRIPS * STRIP_PX))
+    every = max(1, drawing.darkness.shape[0] // (STRIPS * PART_PX))
     seen = list[Darkness]()
-    for top in range(0, drawing.darkness.shape[0], every * STRIP_PX):
-        strip = drawing.darkness[top : top + STRIP_PX]
+    for top in range(0, drawing.darkness.shape[0], every * PART_PX):
+        strip = drawing.darkness[top : top + PART_PX]
         soft = cv2.GaussianBlur(strip, (0, 0), SPOT_PX)
-        seen.append(soft[(strip != 0) & (soft < INK)][::SPARSE])  # bare paper is made 0
+        seen.append(soft[(strip != 0) & (soft < INK)][::EVERY_COLUMN])  # bare paper is made 0
     paper = np.concatenate(seen)
     if not len(paper):
         return 0.0

@@ -28,7 +28,8 @@ from morfax.motion.curves import hermite
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
-from morfax.tracer.drawing.sharpening import APART_PX, PutBack, corners_of
+from morfax.tracer.drawing.sharpening import PutBack, corners_of
+from morfax.tracer.effort import FINE_PX
 from morfax.tracer.head.course import FELT_LEGS, NODES
 from morfax.tracer.head.leaders import MEMORY, STATIONS
 from morfax.tracer.head.plan import Plan
@@ -78,7 +79,7 @@ class EdgeAhead:
         pitch_mm = self.view.pitch_mm
         places = self.felt[:, :2]
         along_px = lengths_mm(places) / pitch_mm
-        at_px = np.arange(0.0, along_px[-1], APART_PX)
+        at_px = np.arange(0.0, along_px[-1], FINE_PX)
         evenly = np.column_stack([np.interp(at_px, along_px, c) for c in places.T / pitch_mm])
         found = corners_of(
             evenly,

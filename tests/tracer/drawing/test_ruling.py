@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 
@@ -24,6 +23,7 @@ from morfax.tracer.program.trace import trace
 from tests.tracer.inked import DPI, UM, Points, arc, inked, polyline
 
 PITCH_MM = MM_PER_INCH / DPI
+TO_PX = 1 / PITCH_MM
 PRINTED_MM, SIDE_MM = 0.2, 66.0
 LINE = arc((32.0, 31.0), 20.0)
 SLANTED = polyline((12, 14), (50, 9.3), (56, 44), (20, 52), (12, 14))
@@ -102,27 +102,20 @@ def test_printed_lines_that_are_not_there_are_refused() -> None:
         opened(on_paper(LINE, (), 0.0), "squared")
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_the_darkest_pixels_never_rule_out_ink_all_over(seed: int) -> None:
-    """Spots of ink at random, as many as are nearly, or just, all over the sheet when it is reduced."""
-    rng = np.random.default_rng(seed)
-    rows, columns = (int(side) for side in rng.integers(1500, 2600, 2))
-    darkness = np.zeros((rows, columns), np.float32)
-    by = int(rng.integers(2, 5))
-    for _ in range(int(rng.integers(150, 500))):
-        row, column = int(rng.integers(rows)), int(rng.integers(columns))
-        darkness[row : row + 40, column : column + 40] = rng.uniform(0.1, 0.4)
-    size = columns // by, rows // by
-    small = np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32)
-    all_over = ruling._is_all_over(small)
-    assert ruling._may_be_all_over(darkness, by) or not all_over
+def lined(bare_mm: float) -> Darkness:
+    """Six lines of 0.25 mm, as few as there may be, 10 mm apart on 62 mm of paper, bare at the upper end."""
+    paper = np.zeros((round(62 * TO_PX),) * 2, np.float32)
+    for k in range(6):
+        middle = round((6 + 10 * k) * TO_PX)
+        paper[round(bare_mm * TO_PX) :, middle : middle + 3] = 1.0
+    return paper
 
 
-def test_a_line_on_plain_paper_is_not_reduced(monkeypatch: pytest.MonkeyPatch) -> None:
-    darkness = np.zeros((3200, 3200), np.float32)
-    cv2.circle(darkness, (1200, 1200), 400, 1.0, 12)
-    monkeypatch.setattr(ruling.cv2, "resize", None)  # whoever reduced it would fail
-    assert ruling.families(darkness, 0.04) == []
+def test_as_few_lines_as_there_may_be_are_found() -> None:
+    """The middle of a line of three pixels is half a pixel before its second edge: within a hundredth."""
+    (family,) = families(lined(0.0), PITCH_MM)
+    assert family.period_px / TO_PX == pytest.approx(10, abs=0.01)
+    assert families(lined(4.0), PITCH_MM) == []
 
 
 @pytest.mark.parametrize("bare_mm", [0.0, 1.0, 4.0])
@@ -130,17 +123,12 @@ def test_a_line_on_plain_paper_is_not_reduced(monkeypatch: pytest.MonkeyPatch) -
 def test_lines_that_do_not_come_to_both_ends_of_the_sheet_are_not_looked_for(
     monkeypatch: pytest.MonkeyPatch, bare_mm: float, is_upright: bool
 ) -> None:
-    """Six lines of 0.25 mm, as few as there may be, 10 mm apart on 62 mm of paper; its ends are 3 % of 62 mm.
+    """The ends of 62 mm of paper are 3 % of it.
 
     With paper of 1 mm at one end there is still ink for more than half of these lines there.
     """
     asked = list[bool]()
-    monkeypatch.setattr(ruling, "_is_all_over", lambda _: True)
     monkeypatch.setattr(ruling, "_family", lambda _, __, way: asked.append(way))
-    to_px = DPI / MM_PER_INCH
-    paper = np.zeros((round(62 * to_px),) * 2, np.float32)
-    for k in range(6):
-        middle = round((6 + 10 * k) * to_px)
-        paper[round(bare_mm * to_px) :, middle : middle + 3] = 1.0
-    families(paper if is_upright else np.ascontiguousarray(paper.T), 1 / to_px)
+    paper = lined(bare_mm)
+    families(paper if is_upright else np.ascontiguousarray(paper.T), PITCH_MM)
     assert (is_upright in asked) is (bare_mm < 2.0)
