@@ -8,11 +8,16 @@ import numpy as np
 import pytest
 import shapely
 
+from morfax.motion.polyline import length_mm, lengths_mm
+from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.laid import touches
+from morfax.tracer.program.laid.laid_way import LaidWay
+from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace_lines import trace_lines
-from tests.tracer.inked import Points, inked, polyline
-from tests.tracer.program.laid.ways import run_along
+from tests.tracer.inked import Points, arc, inked, polyline
+from tests.tracer.program.laid.ways import STEP_MM, run_along, steps_mm
 
 WIDTH_MM = 0.5
 UM = 1e-3
@@ -154,3 +159,65 @@ def test_how_steeply_ways_cross_is_their_steepest_crossing() -> None:
         for ways in (touches._Ways(level, other), touches._Ways(other, level)):
             assert math.degrees(touches._steepest_rad(ways)) == pytest.approx(degrees, abs=0.1)
     assert touches._steepest_rad(touches._Ways(level, level + np.array((0, 0.3)))) == 0
+
+
+def along_mm(line: Line, place: tuple[float, float], nth: int = 0) -> float:
+    """How far along a line it comes by a place, mm, the first time or a later one."""
+    away = np.hypot(*(line.loop_mm - place).T)
+    near = np.flatnonzero(away < 2 * STEP_MM * THINNED)
+    times = np.split(near, np.flatnonzero(np.diff(near) > 1) + 1)
+    at = times[nth][np.argmin(away[times[nth]])]
+    return float(lengths_mm(line.loop_mm)[at])
+
+
+def side(*places: tuple[float, float]) -> LaidWay:
+    """A way within a rim."""
+    return LaidWay((polyline(*places),), 0.5 * WIDTH_MM)
+
+
+def assert_run(line: Line, truth: Points, side_mm: float) -> None:
+    """A line lies on a true one within 20 um, and only its sides are run from memory.
+
+    A part of a line ends at one of its thinned places, so a step there is up to 50 um long.
+    """
+    assert off_mm(line, truth) < 20 * UM
+    assert line.length_mm == pytest.approx(length_mm(truth), rel=2e-3)
+    assert steps_mm(line).max() < THINNED * STEP_MM
+    assert line.led.lengths_mm(line.xy_mm)[REDRAWN] == pytest.approx(side_mm, rel=0.03)
+
+
+def test_a_line_that_went_over_to_its_other_side_is_run_round_one_lobe_the_other_way() -> None:
+    """Two rounds with a bar of 0.6 mm between them, as a figure of eight: its sides are straight again."""
+    high = math.asin(0.3 / 5)
+    left = arc((10, 15), 5, math.degrees(high), 360 - math.degrees(high))
+    right = arc((30, 15), 5, 180 + math.degrees(high), 540 - math.degrees(high))
+    truth = np.vstack([left, right, left[:1]])
+    over = polyline((19.5, 14.7), (20.5, 15.3))
+    line = run_along(
+        np.vstack([left, over, right[::-1], [[20.5, 14.7], [19.5, 15.3]], left[:1]])
+    )
+    ends = [along_mm(line, place) for place in ((18, 14.7), (22, 15.3), (22, 14.7), (18, 15.3))]
+    touch = touches._Touch((0, 0), (ends[0], ends[2]), (ends[1], ends[3]), False)
+    rims = touches._Rims(side((18, 14.7), (22, 14.7)), side((18, 15.3), (22, 15.3)), True, 0.0)
+    (found,) = touches._exchanged(Setup(inked(truth).sheet), line, touch, rims)
+    assert_run(found, truth, 8.0)
+
+
+def test_a_line_that_went_over_to_the_one_beside_it_and_back_is_two_lines() -> None:
+    """A round of 8 mm and one of 7.6 mm within it, run as one line of two turns."""
+    angles = np.linspace(0.5, 0.5 + 2 * math.tau, 1441)
+    radius_mm = np.interp(angles, [6.18, 6.38, 12.47, 12.67], [8.0, 7.6, 7.6, 8.0])
+    line = run_along(
+        np.column_stack([20 + radius_mm * np.cos(angles), 15 + radius_mm * np.sin(angles)])
+    )
+    rounds = [circle(20, 15, each) for each in (8.0, 7.6)]
+    sides = [arc((20, 15), each, -20, 20) for each in (8.0, 7.6)]
+    outer, inner = ([tuple(way[0]), tuple(way[-1])] for way in sides)
+    firsts = along_mm(line, outer[0]), along_mm(line, inner[0])
+    lasts = along_mm(line, inner[1]), along_mm(line, outer[1])
+    touch = touches._Touch((0, 0), firsts, lasts, True)
+    rims = touches._Rims(*(LaidWay((way,), 0.5 * WIDTH_MM) for way in sides), True, 0.0)
+    found = touches._exchanged(Setup(inked(*rounds).sheet), line, touch, rims)
+    assert len(found) == 2
+    for each, truth in zip(sorted(found, key=lambda one: -one.length_mm), rounds, strict=True):
+        assert_run(each, truth, length_mm(truth) * 40 / 360)
