@@ -10,10 +10,14 @@ import pytest
 import shapely
 
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.polyline import with_places
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
+from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.laid import narrow_bays
+from morfax.tracer.program.laid.laid_way import LaidWay
+from morfax.tracer.program.laid.line_parts import REACH
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed, trace
@@ -22,6 +26,7 @@ from morfax.tracer.program.trace_lines import trace_lines
 from morfax.tracer.tangles import folding_rule
 from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import Points, inked, polyline
+from tests.tracer.program.laid.ways import run_along
 
 WIDTH_MM, DEEP_MM = 0.5, 3.0
 UM = 1e-3
@@ -126,3 +131,33 @@ def test_the_same_rules_are_fitted_to_the_same_ink_once(
     other = Setup(inked(with_bay(1.1 * WIDTH_MM, 2.5), width_mm=WIDTH_MM, seed=1).sheet)
     narrow_bays.explained(replace(other, rules=setup.rules), [followed(other, None)])
     assert len(fitted) > first
+
+
+@pytest.mark.parametrize(
+    ("gains", "best"),
+    [
+        ((0.2, 0.5), 0.5),
+        ((0.5, 0.2), 0.5),
+        ((None, 0.1), 0.1),
+        ((0.1, None), 0.1),
+        ((None,), None),
+    ],
+)
+def test_of_the_ways_within_the_rims_the_one_counts_that_explains_the_ink_best(
+    monkeypatch: pytest.MonkeyPatch, gains: tuple[float | None, ...], best: float | None
+) -> None:
+    """A way that does not explain it better than the head's, or badly, has no gain, and is no bay."""
+    truth = with_bay(1.1 * WIDTH_MM, DEEP_MM)
+    drawing = inked(truth, width_mm=WIDTH_MM, seed=1)
+    line = run_along(polyline((4, 4), (34, 4), (34, 20), (4, 20), (4, 4)))
+    own = with_places(polyline((20, 20), (17, 20)), 0.05)
+    ink = ink_about(drawing, own, WIDTH_MM, REACH)
+    told = iter(gains)
+    rims = [LaidWay((own,), 0.5 * WIDTH_MM) for _ in gains]
+    monkeypatch.setattr(narrow_bays, "rim_bays", lambda *_: rims)
+    monkeypatch.setattr(narrow_bays, "is_a_pen", lambda *_: False)
+    monkeypatch.setattr(narrow_bays._Bays, "_gain", lambda *_: next(told))
+    bays = narrow_bays._Bays(Setup(drawing.sheet), line, [line], ())
+    suspect = narrow_bays.Suspect(0, len(own) - 1, np.empty((0, 2)), True)
+    bay = bays._rim_bay(narrow_bays.Stretch(0, len(own) - 1, own, ink), 0.05, suspect)
+    assert (None if bay is None else bay.gain) == best
