@@ -6,7 +6,8 @@
 All lines that one pen may have drawn have one width: a scan measures a width of three pixels a little
 differently at each angle. The depth of pixels, by which patches have their widths, makes a slanting line up
 to half a pixel too narrow, and so up to a tenth too long. That is near enough to put lines in order; whoever
-reads of a length is told it by the width that profiles across the lines show.
+reads of a length is told it by the width that profiles across the lines show, and of an edge of a filled
+shape by its own places.
 
 Signals: a sheet's patches of ink in; their lengths, mm, out.
 
@@ -21,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.profiles import FEWEST_PROFILES, STEP_PX, profiles_of
 from morfax.tracer.drawing.weighing import CAPS
@@ -40,12 +42,22 @@ def one_pen_mm(sheet: Sheet) -> Array:
 
 def told_mm(sheet: Sheet) -> Array:
     """Lengths of the patches, mm, as a reader is told them: true to 2 %, or 3 % of lines of three pixels."""
+    if sheet.drawing.edges_mm:
+        return _of_edges_mm(sheet)
     pens_mm = _pens_mm(sheet) * _seen_share(sheet)
     # areas less wide than the line are flaws of its ink
     widths_px = sheet.widths_mm / sheet.drawing.pitch_mm
     is_open = sheet.patches.enclosure.loops(widths_px**2) == 0
     lengths_mm = sheet.lengths_mm * sheet.widths_mm / pens_mm - is_open * CAPS * pens_mm
     return np.maximum(lengths_mm, pens_mm)  # a dot is as long as it is wide
+
+
+def _of_edges_mm(sheet: Sheet) -> Array:
+    """Lengths of the patches along edges of filled shapes, mm: the picture shows the edges themselves."""
+    edges = sheet.drawing.edges_mm
+    patches = [sheet.patch_at(edge[0]) for edge in edges]
+    lengths_mm = [length_mm(edge) for edge in edges]
+    return np.asarray(np.bincount(patches, lengths_mm, sheet.patches.count), float)
 
 
 def _usual_mm(sheet: Sheet) -> float:

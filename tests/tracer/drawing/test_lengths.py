@@ -5,14 +5,20 @@ Broken on purpose, with the width by depths, or without the round ends of open l
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 
 from morfax.motion.polyline import length_mm
 from morfax.motion.units import MM_PER_INCH
-from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.drawing import Drawing, Reading
 from morfax.tracer.drawing.lengths import told_mm
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.strokes import Sheet
 from tests.tracer.inked import Points, arc, inked, polyline, together
 
@@ -61,3 +67,15 @@ def test_a_dot_is_as_long_as_it_is_wide() -> None:
     dot = polyline((70, 5), (70.1, 5))
     *_, seen_mm = told(*((line, 0.5) for line in LINES), (dot, 0.5))
     assert seen_mm == pytest.approx(0.5, abs=0.1)  # a pixel is 0.085 mm
+
+
+def test_the_edges_of_filled_shapes_are_as_long_as_they_are() -> None:
+    """A disc with a square hole, whose sides lie along the pixels."""
+    grey = np.full((700, 700), 240, np.uint8)
+    cv2.circle(grey, (350, 350), 280, 40, -1, cv2.LINE_AA)
+    cv2.rectangle(grey, (250, 250), (450, 450), 240, -1)
+    scan = Scan(Path("made.png"), grey, Stated((300.0, 300.0)))
+    sheet = Sheet.of(Drawing.of(scan, Scale(), reading=Reading(edge=True)))
+    px_mm = MM_PER_INCH / 300
+    true_mm = [math.tau * 280.5 * px_mm, 4 * 201 * px_mm]  # to the middles of the pixels' edges
+    assert sorted(told_mm(sheet), reverse=True) == pytest.approx(true_mm, rel=0.005)
