@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
 # of the ink that is joined to a line: if the line is less, the rest is worth a remark
 FEW_SHARE = 0.7
+AS_LONG = 0.03  # of a line's length: lengths by the ink of a patch are true to that
 # an edge that strays further is rough: clean outlines of seven parts stray by 0 to 8 um, at 150 to
 # 600 dpi, quiet or noisy
 ROUGH_MM = 0.015
@@ -242,7 +243,8 @@ def _of_others(trace: Trace) -> Iterator[str]:
     if others.lines:
         one = others.lines == 1
         lines = "1 other line" if one else f"{others.lines} other lines, the longest"
-        longer = ", longer than this one" if others.longest_mm > trace.length_mm else ""
+        is_longer = others.longest_mm > (1 + AS_LONG) * trace.length_mm
+        longer = ", longer than this one" if is_longer else ""
         are = "inside it" if one else f"{others.inside} of them inside it"
         inside = f", {are}" if others.inside else ""
         yield (

@@ -115,6 +115,7 @@ def test_a_line_without_one_of_its_corners_is_told() -> None:
     ("others", "said"),
     [
         (Others(1, 0, 30.4), "the sheet has 1 other line of about 30 mm: --lines"),
+        (Others(1, 0, 50.4), "1 other line of about 50 mm: --lines"),
         (Others(1, 0, 277.0), "1 other line of about 277 mm, longer than this one: --lines"),
         (
             Others(3, 2, 277.0),

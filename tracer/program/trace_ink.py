@@ -95,7 +95,7 @@ def _of_strokes(
     lines, broad = as_contours(setup, lines)
     lines, beside = beside_mended(setup, bent(setup, lines))
     broad += _slots_left(setup, lines)
-    off = strokes_off_ink(left.drawing, lines)
+    off = strokes_off_ink(left.drawing, lines, settings.gap_mm)
     broad += [place for place in off if not is_about(place, beside, lines)]
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
     ink = balance(sheet, felt, left, [line.xy_mm for line in lines])
