@@ -25,6 +25,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import InkLeft, ink_left
+from morfax.tracer.ink.put_down_again import put_down_again
 from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.struck_off import struck_off
@@ -79,6 +80,7 @@ def _of_strokes(
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt, _told_of(progress)), settings, progress)
     strokes = struck_off(sheet.drawing, _long_enough(_kept(_mended(loops, run))))
+    strokes += put_down_again(sheet, felt, left, strokes, settings)
     felt = felt.without_cells()
     give_back()
     if not strokes:
