@@ -25,7 +25,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.profiles import FEWEST_PROFILES, STEP_PX, profiles_of
-from morfax.tracer.drawing.weighing import CAPS
+from morfax.tracer.limits import ROUND
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.strokes import Sheet
@@ -48,7 +48,7 @@ def told_mm(sheet: Sheet) -> Array:
     # areas less wide than the line are flaws of its ink
     widths_px = sheet.widths_mm / sheet.drawing.pitch_mm
     is_open = sheet.patches.enclosure.loops(widths_px**2) == 0
-    lengths_mm = sheet.lengths_mm * sheet.widths_mm / pens_mm - is_open * CAPS * pens_mm
+    lengths_mm = sheet.lengths_mm * sheet.widths_mm / pens_mm - is_open * ROUND * pens_mm
     return np.maximum(lengths_mm, pens_mm)  # a dot is as long as it is wide
 
 

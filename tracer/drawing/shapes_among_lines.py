@@ -24,12 +24,12 @@ from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import FRINGE_PX, INK, SOFTENED_PX, Mask
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.inks import Colour, covered
+from morfax.tracer.drawing.lengths import ONE_PEN
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
 from morfax.tracer.drawing.shapes import outlined, shade_of
 from morfax.tracer.drawing.solids import usual_width_px
-from morfax.tracer.drawing.strokes import ONE_PEN
 
 BLACK = 255.0  # grey levels between paper and shape
 BROADEST_MM = 2.0  # of a line: the broadest of ISO 128-2
