@@ -1,6 +1,6 @@
 """Weighing: lines nearly of one length keep their order at any size, angle and resolution.
 
-Broken on purpose, with `CAPS` 0, or lengths by area, tests here fail.
+Broken on purpose, with `ROUND` 0, or lengths by area, tests here fail.
 """
 
 from __future__ import annotations
@@ -82,3 +82,16 @@ def test_weights_are_the_lengths_of_round_lines_within_1_percent() -> None:
     )
     # of the star, pens overlap in ten corners
     assert lengths[1:] / lengths[2] * 21.2 == pytest.approx([22.2, 21.2, 20.3], rel=0.01)
+
+
+@pytest.mark.parametrize(("second_mm", "count"), [(20.6, 2), (18.0, 0)])
+def test_two_lines_are_weighed_where_they_are_nearly_of_one_length(
+    second_mm: float, count: int
+) -> None:
+    rounds = [
+        middle + arc((0.0, 0.0), long_mm / math.tau)
+        for middle, long_mm in (((12.0, 12.0), 21.2), ((24.0, 12.0), second_mm))
+    ]
+    sheet = Sheet.of(inked(*rounds, seed=1))
+    selection.lines_of(sheet)
+    assert len(sheet.weights) == count
