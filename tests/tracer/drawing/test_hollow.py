@@ -54,6 +54,19 @@ def test_a_path_between_two_lines_is_told_with_their_distance(
     )
 
 
+def test_the_place_that_is_told_is_the_middle_of_the_longest_stretch() -> None:
+    """Along X, on pixels of 0.05 mm and so in pieces of 3 mm: hollow from 3 to 9 mm, and from 15 to 27 mm."""
+
+    def seen(places: Points, _headings: Points, across_mm: Points) -> Points:
+        x = places[:, :1]
+        is_hollow = ((x > 3) & (x < 9)) | ((x > 15) & (x < 27))
+        return np.where(is_hollow & (np.abs(across_mm) < 0.3), 0.8, 1.0)
+
+    found = hollow_lines.hollow(seen, polyline((0, 0), (45, 0)), 1.25, 0.05)
+    assert found is not None and found.length_mm == 18.0
+    assert found.place_mm == pytest.approx((21, 0))
+
+
 def test_the_resolution_that_the_remark_advises_parts_the_lines() -> None:
     told = rings(0.75, 120.0)
     remarks = HollowLines.along(told, trace(told))
