@@ -153,7 +153,7 @@ def _two_lines(sheet: FeltSheet, number: int) -> list[Run]:
     is_known = number in sheet.together or number in sheet.doubled.stations
     if not sheet.is_shared(number) or not (is_known or measured.width_mm > APART * width_mm):
         return []
-    two = strands(sheet.taken(number).stations, width_mm)
+    two = strands(sheet.taken(number).stations, width_mm, sheet.ends[number])
     least_mm = 0.0 if is_known else STILL_SHARE * measured.length_mm
     return two if two and two[0].length_mm > least_mm else []
 

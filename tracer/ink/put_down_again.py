@@ -37,16 +37,14 @@ from morfax.tracer.sensing.probe import end_of
 # All limits below were chosen by trial on fetched sheets, and are widths of the line where none is said.
 LONG = 1.5  # a shorter part is a corner or a tip
 KNOWN = 0.5  # of the stations tell a width
-ACROSS = np.array(
-    [-0.35, 0.0, 0.35]
-)  # where the ink across a station is looked at, of its width
+# where the ink across a station is looked at, of its width
+ACROSS = np.array([-0.35, 0.0, 0.35])
 OWN = 0.6  # from the strokes: ink further off is not theirs
 MOST = 0.8  # of the ink looked at is not theirs
 AHEAD = np.arange(0.0, 3.0, 0.1)  # from the end of what was felt: there a line is looked for
 ON = 0.2  # from the middle of a line: it has come to that line
-BESIDE = (
-    1.5  # from the end of what was felt: so far off lies the middle of a line beside it ...
-)
+# from the end of what was felt: so far off lies the middle of a line beside it ...
+BESIDE = 1.5
 BESIDE_COS = 0.5  # ... and there it turns by no more than 60 degrees
 
 

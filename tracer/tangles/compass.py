@@ -25,7 +25,7 @@ import cv2
 import numpy as np
 
 from morfax.motion import arrays
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM2, left_of, unit
 from morfax.motion.polyline import area_mm2
@@ -154,8 +154,14 @@ def _settled(ink: SeenInk, start: Core) -> Core | None:
         _ink(ink.places_mm, *core_of(figures)[:3], ink.softness_mm, False, drawn)
         return drawn - ink.darkness
 
+    def changes(figures: Array) -> Array:
+        out = np.empty((len(drawn), len(figures)))
+        _changes(ink.places_mm, *core_of(figures)[:3], ink.softness_mm, out)
+        out[:, 2 * count : -1] *= np.sign(figures[2 * count : -1])  # of a radius below 0
+        return out
+
     figures = np.r_[start.points_mm.ravel(), [] if is_sharp else start.radius_mm, start.half_mm]
-    core = core_of(fitted(wrong, figures, STEPS * len(figures)))
+    core = core_of(fitted(wrong, figures, STEPS * len(figures), changes))
     is_pen = 0.5 * ink.half_mm < core.half_mm < 2 * ink.half_mm
     is_loop = is_pen and core.is_convex and ink.holds(np.vstack(core.stretches()))
     return with_misfit(ink, core) if is_loop else None
@@ -220,9 +226,38 @@ def _ink(places, points, radius_mm, half_mm, softness_mm, is_filled, out):  # ty
     """
     sides = _sides(points)
     for k in range(len(places)):
-        away_mm = _from_core(places[k, 0], places[k, 1], points, sides) - radius_mm
+        from_core_mm, _, _ = _from_core(places[k, 0], places[k, 1], points, sides)
+        away_mm = from_core_mm - radius_mm
         away_mm = away_mm if is_filled else abs(away_mm)
         out[k] = pen.ink_at(away_mm, half_mm, softness_mm)
+
+
+@njit(cache=True)
+def _changes(places, points, radius_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, f) with by how much each coordinate of the points, the radius, if there is a column for
+    it, and half the pen's width darken the places, per mm (see `moved_way`).
+    """
+    sides, last = _sides(points), out.shape[1] - 1
+    for k in range(len(places)):
+        x, y = places[k, 0], places[k, 1]
+        from_core_mm, i, share = _from_core(x, y, points, sides)
+        away_mm = from_core_mm - radius_mm
+        fades = pen.fades_at(abs(away_mm), half_mm, softness_mm)
+        out[k, :] = 0.0
+        out[k, last] = fades
+        # the way comes nearer as the radius grows, or the core comes nearer, to a place outside of it
+        by = math.copysign(fades, away_mm)
+        if last > 2 * len(points):
+            out[k, last - 1] = by
+        if fades == 0.0 or abs(from_core_mm) < NOT_ZERO:
+            continue
+        j = (i + 1) % len(points)
+        dx = by * (x - points[i, 0] - share * sides[i, 0]) / from_core_mm
+        dy = by * (y - points[i, 1] - share * sides[i, 1]) / from_core_mm
+        out[k, 2 * i] += (1 - share) * dx
+        out[k, 2 * i + 1] += (1 - share) * dy
+        out[k, 2 * j] += share * dx
+        out[k, 2 * j + 1] += share * dy
 
 
 @njit(cache=True)
@@ -238,12 +273,12 @@ def _sides(points):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _from_core(x, y, points, sides):  # type: ignore[no-untyped-def]
-    """Distance of a place from a point, a stretch or a polygon (m, 2) with its sides; within a polygon it is
-    negative.
+    """Distance of a place from a point, a stretch or a polygon (m, 2) with its sides, negative within a
+    polygon; the nearest side, and at which share of it.
 
     The root is taken only of squares that are, but for rounding, the least so far: it takes longest.
     """
-    inside, best, best2 = False, math.inf, math.inf
+    inside, best, best2, side, share = False, math.inf, math.inf, 0, 0.0
     for i in range(len(points)):
         vx, vy = sides[i, 0], sides[i, 1]
         wx, wy = x - points[i, 0], y - points[i, 1]
@@ -251,8 +286,11 @@ def _from_core(x, y, points, sides):  # type: ignore[no-untyped-def]
         ax, ay = wx - t * vx, wy - t * vy
         square = ax * ax + ay * ay
         if square <= best2:
-            best, best2 = min(best, math.hypot(ax, ay)), square * (1 + arrays.ROUNDED)
+            away_mm = math.hypot(ax, ay)
+            if away_mm < best:
+                best, side, share = away_mm, i, t
+            best2 = square * (1 + arrays.ROUNDED)
         j = (i + 1) % len(points)
         if (points[i, 1] > y) != (points[j, 1] > y) and x < points[i, 0] + wy * vx / vy:
             inside = not inside
-    return -best if inside else best
+    return -best if inside else best, side, share

@@ -104,7 +104,8 @@ class Rule(NamedTuple):
         out = np.empty((bent_rule.most_places(len(self.rounded)), 3))
         ends = np.array([self.first_mm, self.last_mm])
         corners, radius_mm = np.ascontiguousarray(self.corners_mm), float(self.radius_mm)
-        return out[: bent_rule.bent(ends, corners, self.rounded, radius_mm, out)]
+        rule, counts = (ends, self.rounded), np.zeros(len(corners), np.int64)
+        return out[: bent_rule.bent(rule, corners, radius_mm, counts, out)]
 
 
 def along(way: Array, half_mm: float) -> Iterator[Rule]:
@@ -198,7 +199,9 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
         return drawn.copy()
 
     def changes(figures: Array) -> Array:
-        return np.asarray(bent_rule.changes(seen, ends_and_rounded, figures.copy()))
+        out = np.empty((len(ink.darkness), len(figures)))
+        bent_rule.changes(seen, ends_and_rounded, figures.copy(), out)
+        return out
 
     radius = [start.radius_mm] if is_rounded else []
     figures = np.r_[start.corners_mm.ravel(), radius, start.half_mm]

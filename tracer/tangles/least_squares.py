@@ -22,7 +22,9 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.extension import extension
 
-TOLERANCE = 1e-8  # of the sum, of the figures and of the slope, as scipy has it
+# of the sum: over some thousand places, figures are then within a thirtieth of how far the noise moves them
+ENOUGH = 1e-6
+TOLERANCE = 1e-8  # of the figures and of the slope, as scipy has it
 FIRST_STEP = 100.0  # times the figures' length, at the most: MINPACK's own
 NUDGE = 1e-4  # of a figure, by which it is moved to see what that changes
 
@@ -35,7 +37,7 @@ def fitted(wrong: Of, figures: Array, most: int, changes: Of | None = None) -> A
     `changes` gives what each figure changes, (n, k) per unit of it; without it each is moved in turn.
     """
     changes = changes or (lambda now: _changes(wrong, now))
-    limits = TOLERANCE, TOLERANCE, TOLERANCE, most, FIRST_STEP, None
+    limits = ENOUGH, TOLERANCE, TOLERANCE, most, FIRST_STEP, None
     found = _lmder()(wrong, changes, figures.copy(), (), True, False, *limits)
     return np.asarray(found[0])
 

@@ -254,6 +254,13 @@ def ink_at(distance_mm, half_mm, softness_mm):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def fades_at(distance_mm, half_mm, softness_mm):  # type: ignore[no-untyped-def]
+    """How much darker a place at a distance becomes for each mm that the pen's way comes nearer."""
+    u = (distance_mm - half_mm) / (math.sqrt(2.0) * softness_mm)
+    return math.exp(-u * u) / (math.sqrt(math.tau) * softness_mm) if abs(u) < FADES else 0.0
+
+
+@njit(cache=True)
 def ink(distance_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
     """Darkness that a pen of half a width leaves at distances from its way."""
     for k in range(len(distance_mm)):

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import left_of, unit
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import moved_way, pen
 from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import SeenInk
 
@@ -40,7 +40,6 @@ ENDS = 3  # places from an end, and as many on, show its heading
 MOST_STEPS = (
     12  # times that the ink is drawn: weights that lie 0.3 widths off settle within six
 )
-STEEP = 5.0  # softnesses from its edge, ink fades no more
 
 
 class Weights(NamedTuple):
@@ -121,7 +120,7 @@ class Strip(NamedTuple):
 
         def changes(figures: Array) -> Array:
             out = np.empty((len(seen.places_mm), self.figures))
-            _changes(seen, self.moved(figures), self.sharp, self.moves, out)
+            moved_way.changes(seen, self.moved(figures), self.sharp, self.moves, out)
             return out
 
         if not self.figures:
@@ -184,27 +183,13 @@ def _cubics(weights_mm: Array, places_mm: Array, clamped: tuple[bool, bool]) -> 
     return share
 
 
-@njit(cache=True)
-def _nearest(way, x, y):  # type: ignore[no-untyped-def]
-    """Where a way (m, 2) is nearest to a place: its piece, the share of that, and the distance, mm."""
-    best, piece, share = math.inf, 0, 0.0
-    for i in range(len(way) - 1):
-        vx, vy = way[i + 1, 0] - way[i, 0], way[i + 1, 1] - way[i, 1]
-        wx, wy = x - way[i, 0], y - way[i, 1]
-        t = min(max((wx * vx + wy * vy) / max(vx * vx + vy * vy, NOT_ZERO), 0.0), 1.0)
-        dx, dy = wx - t * vx, wy - t * vy
-        if dx * dx + dy * dy < best:
-            best, piece, share = dx * dx + dy * dy, i, t
-    return piece, share, math.sqrt(best)
-
-
 @njit(cache=True, _nrt=False)
 def nearest_pieces(places, way, out):  # type: ignore[no-untyped-def]
     """Fill `out` (n, 2) with how far places (n, 2) mm are from a way (m, 2) mm, and at which of its places,
     fractions included.
     """
     for k in range(len(places)):
-        piece, share, away_mm = _nearest(way, places[k, 0], places[k, 1])
+        piece, share, away_mm = moved_way.nearest(way, places[k, 0], places[k, 1])
         out[k, 0], out[k, 1] = away_mm, piece + share
 
 
@@ -223,45 +208,14 @@ def wrong_at(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
     return out
 
 
-@njit(cache=True)
-def _at_corner(piece, share, sharp):  # type: ignore[no-untyped-def]
-    """Whether a place on a piece of a way is one of its corners."""
-    if sharp[piece] and (share <= 0 or sharp[piece + 1]):
-        return True
-    return sharp[piece + 1] and share >= 1
-
-
 @njit(cache=True, _nrt=False)
 def _wrong(ink, way, sharp, out):  # type: ignore[no-untyped-def]
     """Fill `out` (2, n) with what a pen along a way (m, 2) mm draws too dark at each place of the ink, and at
     which place of the way, fractions included, that is.
     """
     for k in range(len(ink.places_mm)):
-        i, t, away_mm = _nearest(way, ink.places_mm[k, 0], ink.places_mm[k, 1])
+        i, t, away_mm = moved_way.nearest(way, ink.places_mm[k, 0], ink.places_mm[k, 1])
         drawn = pen.ink_at(min(away_mm, ink.known_mm[k]), ink.half_mm, ink.softness_mm)
         out[0, k], out[1, k] = drawn - ink.darkness[k], i + t
-        if out[0, k] < 0 and _at_corner(i, t, sharp):
+        if out[0, k] < 0 and moved_way.at_corner(i, t, sharp):
             out[0, k] = 0.0
-
-
-@njit(cache=True, _nrt=False)
-def _changes(ink, way, sharp, moves, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n, f) with by how much each figure of a strip darkens each place of the ink, per mm."""
-    for k in range(len(ink.places_mm)):
-        x, y = ink.places_mm[k, 0], ink.places_mm[k, 1]
-        i, t, away_mm = _nearest(way, x, y)
-        out[k, :] = 0.0
-        u = (away_mm - ink.half_mm) / ink.softness_mm
-        if away_mm > ink.known_mm[k] or abs(u) > STEEP or away_mm < NOT_ZERO:
-            continue
-        is_less = pen.ink_at(away_mm, ink.half_mm, ink.softness_mm) < ink.darkness[k]
-        if is_less and _at_corner(i, t, sharp):
-            continue
-        # the ink fades along the line from the way's nearest place
-        fades = math.exp(-0.5 * u * u) / (math.sqrt(math.tau) * ink.softness_mm) / away_mm
-        dx = fades * (x - way[i, 0] - t * (way[i + 1, 0] - way[i, 0]))
-        dy = fades * (y - way[i, 1] - t * (way[i + 1, 1] - way[i, 1]))
-        for f in range(moves.shape[1]):
-            before, after = moves[i, f], moves[i + 1, f]
-            along_x = (1 - t) * before[0] + t * after[0]
-            out[k, f] = dx * along_x + dy * ((1 - t) * before[1] + t * after[1])

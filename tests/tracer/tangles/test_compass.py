@@ -13,6 +13,7 @@ from morfax.motion.plane import cross
 from morfax.motion.polyline import area_mm2, length_mm, with_places
 from morfax.tracer.tangles import compass
 from morfax.tracer.tangles.compass import Core, explained
+from morfax.tracer.tangles.least_squares import Of
 from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import UM, arc
 from tests.tracer.tangles.pen_ink import HALF_MM, apart_mm, ink_along
@@ -138,7 +139,10 @@ def test_the_way_of_a_core_is_closed_and_as_long_as_its_sides_and_arcs(
 def from_core(x: float, y: float, points: NDArray[np.float64]) -> float:
     """The distance of a place from the core of some points, by the kernels' plain Python."""
     sides = compass._sides.py_func(points)
-    return float(compass._from_core.py_func(x, y, points, sides))
+    from_core_mm, side, share = compass._from_core.py_func(x, y, points, sides)
+    foot = points[side] + share * sides[side, :2]
+    assert math.dist(foot, (x, y)) == pytest.approx(abs(from_core_mm))
+    return float(from_core_mm)
 
 
 def test_the_distance_from_a_polygon_is_negative_within() -> None:
@@ -225,3 +229,54 @@ def test_a_ring_is_told_from_the_same_shape_filled(radius_mm: float) -> None:
     assert compass.filled_misfit(ink, core) == pytest.approx(
         ink.misfit(ink.darkness + missing), rel=0.02
     )
+
+
+@pytest.mark.parametrize(
+    ("points", "radius_mm"),
+    [(CIRCLE[:1], 0.6), (OBLONG[:2], 0.5), (OBLONG, 0.2), (OBLONG, 0.0)],
+)
+def test_what_each_figure_of_a_core_changes_is_the_slope_of_its_ink(
+    points: Array, radius_mm: float
+) -> None:
+    """Against steps of 10 nm; where two sides are as near, ink has no slope: one place in a hundred."""
+    places, size = ink_of(OBLONG).places_mm, points.size
+    figures = np.r_[points.ravel(), [radius_mm] if radius_mm else [], HALF_MM]
+
+    def drawn(figures: Array) -> Array:
+        out = np.empty(len(places))
+        now_mm = float(figures[size]) if radius_mm else 0.0
+        core = figures[:size].reshape(-1, 2), now_mm, float(figures[-1])
+        compass._ink(places, *core, 0.06, False, out)
+        return out
+
+    slopes, plain = (np.empty((len(places), len(figures))) for _ in range(2))
+    core = np.ascontiguousarray(points), radius_mm, HALF_MM
+    compass._changes(places, *core, 0.06, slopes)
+    compass._changes.py_func(places, *core, 0.06, plain)
+    assert np.allclose(slopes, plain, atol=1e-9)
+    for k, step in enumerate(1e-5 * np.eye(len(figures))):
+        off = np.abs((drawn(figures + step) - drawn(figures - step)) / 2e-5 - slopes[:, k])
+        assert np.quantile(off, 0.99) < 1e-4 * np.abs(slopes).max()
+
+
+@pytest.mark.parametrize("way", [CIRCLE, SLOT, TRIANGLE, OBLONG])
+def test_a_loop_at_the_far_corner_of_a_sheet_is_laid_in_a_few_steps(
+    way: Array, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A figure that was moved by a share of itself was moved by half of what ink fades over there."""
+    here, far = ink_of(way, noise=0.04), np.array([210.0, 297.0])
+    asked, fitted = list[int](), compass.fitted
+
+    def counted(wrong: Of, figures: Array, most: int, changes: Of | None = None) -> Array:
+        def one_more(now: Array) -> Array:
+            asked[-1] += 1
+            return wrong(now)
+
+        asked.append(0)
+        return fitted(one_more, figures, most, changes)
+
+    monkeypatch.setattr(compass, "fitted", counted)
+    core, there = explained(here), explained(here._replace(places_mm=here.places_mm + far))
+    assert core is not None and there is not None
+    assert np.abs(there.points_mm - far - core.points_mm).max() < 1e-3 * UM
+    assert np.median(asked) < 30

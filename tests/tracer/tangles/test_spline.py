@@ -7,7 +7,7 @@ import pytest
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
-from morfax.tracer.tangles import spline
+from morfax.tracer.tangles import moved_way
 from morfax.tracer.tangles.seen_ink import SeenInk
 from morfax.tracer.tangles.spline import Strip, Weights, nearest_pieces, wrong_along
 from tests.tracer.inked import UM, arc
@@ -107,8 +107,8 @@ def test_what_each_figure_changes_is_the_slope_of_what_is_wrong() -> None:
     figures = np.random.default_rng(3).normal(0, 0.02, strip.figures)
     seen, way = ink.for_kernel(), strip.moved(figures)
     slopes, plain = (np.empty((len(seen.places_mm), strip.figures)) for _ in range(2))
-    spline._changes(seen, way, strip.sharp, strip.moves, slopes)
-    spline._changes.py_func(seen, way, strip.sharp, strip.moves, plain)
+    moved_way.changes(seen, way, strip.sharp, strip.moves, slopes)
+    moved_way.changes.py_func(seen, way, strip.sharp, strip.moves, plain)
     assert np.allclose(slopes, plain, atol=1e-9)
     by = 1e-4
     for k in range(strip.figures):
