@@ -134,7 +134,9 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
     paper, width_px = found.paper, found.width_px
     middle = np.maximum(middle_of(profiles), PAPER)
     looks_px = STEP_PX * profiles.seen.sum(axis=1) / middle
-    seen_px = percentile(looks_px, RIGHT_ON_IT)
+    # beside a filled shape in colour it is lighter than paper: there is no line
+    looks_px = looks_px[looks_px > 0]
+    seen_px = percentile(looks_px, RIGHT_ON_IT) if len(looks_px) else math.nan
     along = profiles.across[:, ::-1] * [1, -1]
     here = seen_at(darkness, profiles.middles.T)
     there = seen_at(darkness, (profiles.middles + width_px * along).T)

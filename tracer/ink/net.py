@@ -35,6 +35,8 @@ INNER_WIDTHS = 40.0  # a stretch between forks that is no longer may lie within 
 CLEAN_SHARE = 0.5  # of its length: more of it is clean line of its own
 # of a stretch: two lines run together along more of it (0.24 and more, of a letter's 0.15 and less); by trial
 STILL_SHARE = 0.2
+# of a line's width: two lines in narrower ink run within 0.3 widths of each other, and are one
+APART = 1.3
 MET_WIDTHS = 0.5  # at the ends of a line that is clean nowhere: the ink of what it meets
 OWN_WIDTHS = 1.2  # a shorter one has no ink that is not the junction's
 COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
@@ -144,14 +146,15 @@ def _is_inner(sheet: FeltSheet, number: int, fewest: int) -> bool:
 def _two_lines(sheet: FeltSheet, number: int) -> list[Run]:
     """The two lines that share a stretch of its own; none if it is one line's.
 
-    Of ink that is not known to be that of two lines less lies still where a single line swells.
+    Of ink that is not known to be that of two lines less lies still where a single line swells, and two lines
+    would run nearly on each other where it is hardly broader than one.
     """
-    if not sheet.is_shared(number):
-        return []
-    taken, ends = sheet.taken(number), sheet.ends[number]
-    two = strands(taken.stations, sheet.widths_mm[number], ends)
+    measured, width_mm = sheet.measured[number], sheet.widths_mm[number]
     is_known = number in sheet.together or number in sheet.doubled.stations
-    least_mm = 0.0 if is_known else STILL_SHARE * sheet.measured[number].length_mm
+    if not sheet.is_shared(number) or not (is_known or measured.width_mm > APART * width_mm):
+        return []
+    two = strands(sheet.taken(number).stations, width_mm, sheet.ends[number])
+    least_mm = 0.0 if is_known else STILL_SHARE * measured.length_mm
     return two if two and two[0].length_mm > least_mm else []
 
 

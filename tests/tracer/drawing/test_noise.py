@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,7 +15,7 @@ from PIL import Image
 from scipy.special import erf
 
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.noise import measured
+from morfax.tracer.drawing.noise import measured, within
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from tests.tracer.inked import DPI, NOISE, SOFTNESS_MM, UM, WIDTH_MM, arc, inked, polyline
@@ -148,3 +149,15 @@ def test_the_noise_of_an_opened_drawing_is_that_of_its_own_darkness(
     drawing = Drawing.open(tmp_path / "sheet.png")
     assert (drawing.finer > 1) == (by > 1)
     assert drawing.noise == measured(drawing.darkness, drawing.pitch_mm, drawing.paper_noise)
+
+
+@pytest.mark.parametrize("lighter", [0.4, 0.6])
+def test_ink_beside_what_is_lighter_than_paper_tells_no_width(lighter: float) -> None:
+    """As beside filled shapes in colour; lines looked -25.7 pixels wide there, a note said."""
+    rows = np.zeros((400, 600), np.float32)
+    for k, row in enumerate(range(40, 380, 40)):
+        rows[row - 14 : row + 15, 40:560] = -lighter * (k % 2)
+        rows[row - 2 : row + 2, 40:560] = 1.0
+    noise = np.random.default_rng(1).normal(0, 0.01, rows.shape)
+    darkness = np.asarray(cv2.GaussianBlur(rows, (0, 0), 0.7) + noise, np.float32)
+    assert within(darkness).seen_px == pytest.approx(4.0, abs=0.2)

@@ -8,8 +8,9 @@ All the ink is some stroke's: what a pen leaves there is no other line's, as it 
 
     off = max(ink left, ink drawn on paper), in widths of the pen squared, in a box as wide as the pen
 
-of the pen's widths that explain the box best. Ends that are alone are left out, and so are gaps that the head
-may cross: a pen is lifted as it likes.
+of the pen's widths that explain the box best: the stroke's own, which is that of its longest run, or that of
+most strokes. Ends that are alone are left out, and so are gaps that the head may cross: a pen is lifted as it
+likes.
 
 Signals: the drawing and its strokes in; places out, the worst first.
 
@@ -162,8 +163,11 @@ def _off(part: Part) -> Array:
     clear(part.seen, band, part.room)
     spread = part.room.spread[: part.seen.size].reshape(shape)
     least, worst = np.full(shape, np.inf), np.zeros(shape)
-    for share in pen.of_width:
-        paper, left = _sums(band, pen, share, spread)
+    own_px, usual_px = band.half_px, np.minimum(band.half_px, pen.half_px)
+    # ink that two lines share is broad, and a stroke that goes on from there is not
+    pens_px = [own_px] if (own_px == usual_px).all() else [own_px, usual_px]
+    for half_px in (share * one_px for one_px in pens_px for share in pen.of_width):
+        paper, left = _sums(band, pen, half_px, spread)
         is_less = paper + left < least
         least = np.where(is_less, paper + left, least)
         worst = np.where(is_less, np.maximum(paper, left), worst)
@@ -177,10 +181,10 @@ def _side(pen: Pen) -> int:
     return 2 * round(pen.half_px) + 1
 
 
-def _sums(band: Band, pen: Pen, share: float, spread: Array) -> tuple[Array, Array]:
-    """What pens of a share of the lines' widths draw on paper in the box about each pixel, and leave."""
+def _sums(band: Band, pen: Pen, half_px: Array, spread: Array) -> tuple[Array, Array]:
+    """What pens, half as wide as given for each pixel, draw on paper in the box about it, and leave."""
     drawn, sums = np.empty(len(band.dark)), (np.empty(spread.shape), np.empty(spread.shape))
-    ink(band.away_px - share * band.half_px + pen.half_px, pen.half_px, pen.softness_px, drawn)
+    ink(band.away_px - half_px + pen.half_px, pen.half_px, pen.softness_px, drawn)
     wrong = drawn - band.dark
     for signed, into in zip((wrong, -wrong), sums, strict=True):
         in_boxes(band, np.maximum(signed, 0.0) ** 2 - pen.noise, _side(pen), spread, into)

@@ -23,12 +23,12 @@ CUT = polyline((12, 8), (19.4, 19.6), (20.6, 19.6), (28, 8))
 ENDED = polyline((12, 8), (19.3, 19.5)), polyline((20.7, 19.5), (28, 8))
 
 
-def stroke(places_mm: Points, leader: int = STATIONS) -> Line:
+def stroke(places_mm: Points, leader: int = STATIONS, width_mm: float = WIDTH_MM) -> Line:
     """A stroke along some places, led so all along."""
     whole_mm = length_mm(places_mm)
     way_mm = at_lengths(places_mm, np.arange(0.0, whole_mm, STEP_MM))
     led = Led.along(np.full(len(way_mm), leader, np.int8))
-    return Line(way_mm, "ended", WIDTH_MM, whole_mm, led=led)
+    return Line(way_mm, "ended", width_mm, whole_mm, led=led)
 
 
 @pytest.mark.parametrize("wrong", [(CUT,), ENDED], ids=["cut", "ended"])
@@ -48,6 +48,20 @@ def test_a_corner_that_is_missing_in_another_line_is_told(
 @pytest.mark.parametrize("seed", [None, 3, 4])
 def test_strokes_that_are_what_is_drawn_are_not_told(seed: int | None) -> None:
     assert strokes_off_ink(inked(ACROSS, TIP, seed=seed), [stroke(ACROSS), stroke(TIP)]) == []
+
+
+@pytest.mark.parametrize("seed", [None, 3])
+def test_a_stroke_that_goes_on_from_ink_of_two_lines_is_not_told(seed: int | None) -> None:
+    """Its width is that of its longest run, in the ink that two lines share."""
+    shared = [polyline((4, y), (24, y)) for y in (19.85, 20.15)]
+    on, lone = polyline((24, 20), (36, 20), (36, 30)), polyline((4, 6), (36, 6))
+    strokes = [stroke(polyline((4, 20), (36, 20), (36, 30)), width_mm=0.8)]
+    strokes += [stroke(lone) for _ in range(2)]
+    drawing = inked(*shared, on, lone, seed=seed)
+    assert strokes_off_ink(drawing, strokes) == []
+    strokes[0] = stroke(polyline((4, 20), (35.6, 20), (35.6, 30)), width_mm=0.8)
+    told = strokes_off_ink(drawing, strokes)
+    assert told and all(place.place_mm[0] > 35 for place in told)  # along all of it
 
 
 def test_an_end_that_is_alone_is_not_told() -> None:
@@ -84,4 +98,5 @@ def test_strokes_of_all_the_ink_are_held_against_it(monkeypatch: pytest.MonkeyPa
     whole = trace_ink(inked(*lines, seed=1))
     assert not whole.unexplained
     monkeypatch.setattr(module, "_long_enough", lambda strokes: strokes[:2])
+    monkeypatch.setattr(module, "put_down_again", lambda *_: ())
     assert {place.kind for place in trace_ink(inked(*lines, seed=1)).unexplained} == {"off"}
