@@ -12,7 +12,8 @@ blots and arrowheads were run to and fro.
 
 Signals: a crossing in; its pairs, and the corners between them, out.
 
-Four legs of one pen that turn are redrawn first, over as many vertices as it takes (see `redrawn_crossing`).
+Four legs of one pen that turn are redrawn over as many vertices as it takes instead, if that explains their
+ink (see `redrawn_crossing`).
 
 Source: our own; the pen and how corners move are those of `tangles`, whose lines have no legs of their own.
 """
