@@ -102,9 +102,9 @@ class Crossing:
             return self.drawn
         if len(self.legs) == 2:
             return WaysOn(() if self._tips else ((0, 1),), {})
-        vertices = self._vertices
-        pairs = sorted(vertices) or self._by_turnings
-        return told_by_ink(self, WaysOn(tuple(pairs), vertices))
+        if vertices := self._vertices:
+            return WaysOn(tuple(sorted(vertices)), vertices)
+        return told_by_ink(self, WaysOn(tuple(self._by_turnings), {}))
 
     def as_drawn(self, drawn: WaysOn) -> Crossing:
         """The same crossing with its lines going on in another way."""

@@ -12,7 +12,8 @@ blots and arrowheads were run to and fro.
 
 Signals: a crossing in; its pairs, and the corners between them, out.
 
-Four legs of one pen that turn are redrawn first, over as many vertices as it takes (see `redrawn_crossing`).
+Four legs of one pen that turn are redrawn over as many vertices as it takes instead, if that explains their
+ink (see `redrawn_crossing`).
 
 Source: our own; the pen and how corners move are those of `tangles`, whose lines have no legs of their own.
 """
@@ -48,8 +49,8 @@ OFF = 0.08  # widths², in a box as wide as a line: of right crossings hardly an
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
 REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
 TRIED = 5  # pairings
-# of a larger crossing each trial takes a second, and hardly any explains its ink
-MOST_REDRAWN = 16
+# legs: of a larger crossing each trial takes seconds, and hardly any explains its ink
+MOST_REDRAWN = 20
 PLAIN = math.radians(6)  # lines that turn by less, all of which go on, are plain
 
 

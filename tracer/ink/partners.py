@@ -18,7 +18,8 @@ Source: our own; a cubic's energy of bending over a chord c is 4/c · (a² - a·
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from functools import cache
 from heapq import nsmallest
 from itertools import combinations
 
@@ -47,8 +48,8 @@ STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning 
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
 NEARER = 0.05  # widths: a way that is so much nearer to its rims, in the mean, is the line's
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
-# 945 pairings; of more legs the straightest are paired first, and partners exchanged
-MOST_LEGS = 10
+# of more legs the straightest are paired first, and partners exchanged: all ways would take seconds
+MOST_LEGS = 20
 INKED, ON_IT = 12, 0.8  # places of a leg on to a corner, and the share of them that is ink
 NOBODY = -1
 
@@ -72,12 +73,26 @@ def turnings(legs: Sequence[Leg], width_mm: float, view: View | None = None) -> 
 
 
 def likeliest(costs: Array, count: int) -> list[tuple[Pair, ...]]:
-    """So many ways to pair some legs, those that turn least first; of many legs one."""
-    if len(costs) > MOST_LEGS:
+    """So many ways to pair some legs, those that turn least first; of very many legs one."""
+    legs = len(costs)
+    if legs > MOST_LEGS:
         return [tuple(_exchanged(_straightest_first(costs), costs))]
-    every = _pairings(tuple(range(len(costs))))
-    least = nsmallest(count, every, key=lambda pairs: _cost(pairs, costs))
-    return [tuple(pair for pair in pairs if _is_joined(pair, costs)) for pairs in least]
+
+    @cache
+    def of(left: int) -> list[tuple[float, tuple[Pair, ...]]]:
+        """The cheapest ways to pair those legs whose bits are set, with what each costs."""
+        if not left:
+            return [(0.0, ())]
+        first = (left & -left).bit_length() - 1
+        rest = left ^ 1 << first
+        ways = [(cost + 0.5 * NOT_JOINED, pairs) for cost, pairs in of(rest)]
+        for other in range(first + 1, legs):
+            pair, own = (first, other), float(costs[first, other]) ** 2
+            if rest >> other & 1 and own < NOT_JOINED:
+                ways += [(cost + own, (pair, *pairs)) for cost, pairs in of(rest ^ 1 << other)]
+        return nsmallest(count, ways)
+
+    return [pairs for _, pairs in of((1 << legs) - 1)]
 
 
 def partners(costs: Array) -> list[Pair]:
@@ -205,19 +220,6 @@ def _bending(a: float, b: float) -> float:
     turn, and a - b tells by how far the legs miss each other.
     """
     return math.sqrt(max(a * a + b * b - a * b, 0.0))
-
-
-def _pairings(left: tuple[int, ...]) -> Iterator[tuple[Pair, ...]]:
-    """All ways to make pairs of some, one left over if they are odd."""
-    if len(left) < 2:
-        yield ()
-        return
-    first, rest = left[0], left[1:]
-    for k, other in enumerate(rest):
-        for pairs in _pairings(rest[:k] + rest[k + 1 :]):
-            yield ((first, other), *pairs)
-    if len(left) % 2:
-        yield from _pairings(rest)
 
 
 def _straightest_first(costs: Array) -> list[Pair]:

@@ -7,7 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from morfax.tracer.ink.partners import is_corner, meeting_place, partners, turnings
+from morfax.motion.arrays import Array
+from morfax.tracer.ink.partners import (
+    is_corner,
+    likeliest,
+    meeting_place,
+    partners,
+    turnings,
+)
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.sensing.leg import Leg
 
@@ -115,3 +122,20 @@ def test_a_vertex_far_within_shared_ink_is_told_by_no_leg(
     corner = Corner.of(leg(180, away_mm), leg(24, away_mm).turned_round())
     assert corner is not None
     assert is_corner(corner, WIDTH_MM, is_felt=bool(is_felt)) == bool(is_vertex)
+
+
+def _costs(legs: int, turned_deg: dict[tuple[int, int], float]) -> Array:
+    """By how much each leg turns onto each other, rad; all that is not given are no line."""
+    costs = np.full((legs, legs), math.inf)
+    for (a, b), deg in turned_deg.items():
+        costs[a, b] = costs[b, a] = math.radians(deg)
+    return costs
+
+
+def test_of_many_legs_all_ways_to_pair_them_are_held_against_each_other() -> None:
+    """The straightest pair leaves three legs alone, and no exchange of two partners helps: all three turn."""
+    through = {(k, k + 4): 3.0 for k in range(4)}
+    costs = _costs(13, through | {(8, 9): 19.0, (8, 10): 122.0, (9, 11): 24.0})
+    first, second = likeliest(costs, 2)
+    assert set(first) == {*through, (8, 10), (9, 11)}
+    assert set(second) == {*through, (8, 9)}

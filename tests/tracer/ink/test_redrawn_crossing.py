@@ -10,6 +10,9 @@ import pytest
 
 from morfax.motion.plane import direction, left_of
 from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.ink import crossing
+from morfax.tracer.ink.crossing import Crossing
+from morfax.tracer.ink.crossing_on_ink import WaysOn
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import Points, inked
 
@@ -54,3 +57,20 @@ def test_a_stroke_that_turns_within_another_is_told_from_it_by_the_ink(seed: int
         true = evenly(stroke, 0.05)
         off_mm = min(float(nearest_mm(true, line.places_mm).max()) for line in found)
         assert off_mm < NEAR_MM
+
+
+def test_a_crossing_that_is_redrawn_is_held_against_its_ink_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its ways explain the ink: other pairs of its legs were tried once more."""
+    again = list[WaysOn]()
+
+    def heard(_: Crossing, told: WaysOn) -> WaysOn:
+        again.append(told)
+        return told
+
+    monkeypatch.setattr(crossing, "told_by_ink", heard)
+    random = np.random.default_rng(1)
+    pairs = [_pair(n, random) for n in range(MANY)]
+    trace_ink(inked(*chain(*pairs), width_mm=WIDTH_MM, seed=1))
+    assert not any(told.corners for told in again)
