@@ -88,6 +88,7 @@ def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:
         for k in like:
             way = ways.pop(k)
             lines[k] = way.line if felt is None else way.bent(felt)
+            setup.come(len(lines) - len(ways), len(lines))
     return lines
 
 

@@ -127,12 +127,14 @@ def _once_mended(
     """The lines, beside some others, with their narrow bays mended: all of them, or those near to news; those
     of a drawn program as they are.
     """
+    mended, every = list(lines), BoxedLines.of([*lines, *others])
     if setup.operator.reads_marks(lines):
-        return list(lines)
-    every = BoxedLines.of([*lines, *others])
-    is_asked = [news is None or news.concerns(line, left) for line in lines]
-    asked = (_Bays(setup, line, every, left) for line in lines)
-    return [it.mended() if ask else it.line for it, ask in zip(asked, is_asked, strict=True)]
+        return mended
+    for k, line in enumerate(lines):
+        if news is None or news.concerns(line, left):
+            mended[k] = _Bays(setup, line, every, left).mended()
+        setup.come(k + 1, len(lines))
+    return mended
 
 
 class Stretch(NamedTuple):

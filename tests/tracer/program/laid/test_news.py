@@ -30,10 +30,14 @@ def test_a_line_far_from_a_mended_bay_is_looked_at_once(
         narrow_bays._Bays, "mended", lambda it: asked.append(it.line.number) or mended(it)
     )
     lines = [run_along(PLATE), replace(run_along(FAR), number=2)]
-    setup = Setup(inked(NOTCHED, FAR, seed=1).sheet)
+    told = list[tuple[float, float]]()
+    setup = Setup(
+        inked(NOTCHED, FAR, seed=1).sheet, progress=lambda come, of: told.append((come, of))
+    )
     (notched, far), left = narrow_bays.explained(setup, lines)
     assert notched is not lines[0] and far is lines[1] and not left
     assert asked.count(1) > 1 and asked.count(2) == 1
+    assert told[:2] == [(1, 2), (2, 2)]  # the bar moves with each line
 
 
 def test_what_is_new_concerns_lines_near_to_it() -> None:
