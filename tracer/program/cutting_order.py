@@ -31,7 +31,11 @@ def in_cutting_order(setup: Setup, lines: list[Line]) -> list[Line]:
     before = _as_told(inner, [line.number for line in lines], setup.operator.order)
     sequence, turned = order.in_order_and_turned(begins, ends, before, may_turn)
     taken = taken_by(setup, lines)
-    return [_turned(setup, lines[i], taken) if turned[i] else lines[i] for i in sequence]
+    ordered = list[Line]()
+    for i in sequence:
+        ordered.append(_turned(setup, lines[i], taken) if turned[i] else lines[i])
+        setup.come(len(ordered), len(lines))
+    return ordered
 
 
 def _turned(setup: Setup, line: Line, taken: set[int]) -> Line:

@@ -54,6 +54,22 @@ class Setup:
 
         return replace(self, progress=counted_on)
 
+    def part(self, first: float, last: float) -> Setup:
+        """The set-up for a part of the work: its progress goes from the first to the last share of that."""
+        progress = self.progress
+        if progress is None:
+            return self
+
+        def of_whole(come: float, of: float) -> None:
+            progress(first + (last - first) * come / of, 1.0)
+
+        return replace(self, progress=of_whole)
+
+    def come(self, done: int, of: int) -> None:
+        """Say how many of some lines have been looked at."""
+        if self.progress is not None and of:
+            self.progress(done, of)
+
     def without_turns(self) -> Setup:
         """The set-up with a card that asks for no turns at junctions."""
         if not self.operator.card.turns:

@@ -51,6 +51,15 @@ from morfax.tracer.program.setup import HeadProgress, Setup
 from morfax.tracer.program.taken import kept_off, taken_by
 from morfax.tracer.program.trace import followed
 
+# shares of the work that are done, as the bar has them; by the times of a form and a page of handwriting:
+# when one line of each patch is found, when bays that show as bars are laid, of what it takes to find all ...
+ONE_OF_EACH, WITH_BARS = 0.7, 0.85
+FOUND, BENT, EXPLAINED = (
+    0.7,
+    0.8,
+    0.95,
+)  # ... lines; when all are found, bent, and held against their ink
+
 
 @dataclass(frozen=True, slots=True)
 class FoundLines:
@@ -84,14 +93,15 @@ def trace_lines(
     """
     operator = operator or Operator()
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
-    found = found_lines(setup, which)
+    found = found_lines(setup.part(0.0, FOUND), which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines, found.unclear)
-    lines, left = explained(setup, bent(setup, lines))
+    lines = bent(setup.part(FOUND, BENT), lines)
+    lines, left = explained(setup.part(BENT, EXPLAINED), lines)
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
     return Trace(
-        tuple(in_cutting_order(setup, lines)),
+        tuple(in_cutting_order(setup.part(EXPLAINED, 1.0), lines)),
         operator,
         left_out=found.left_out,
         left_out_mm=found.left_out_mm,
@@ -146,6 +156,7 @@ def trace_places(
         lines.append(line)
         if progress is not None and not alone:
             progress(float(number), float(len(starts_mm)))
+    setup = replace(setup, progress=None)  # all that is told has come to its end
     _refuse_none_begun(lines)
     lines, unread = with_marks_read(with_arrows(setup, lines), operator)
     lines, left = explained(setup, bent(setup, lines))
@@ -170,10 +181,11 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     numbered = tuple(n for n in numbers if n <= patches) if numbers else which
     asked, left_out = selection.plan(setup.sheet, "contours" if beyond else numbered)
     asked, letters_out = _high_enough(setup, asked) if not numbers else (asked, ())
-    lines, unclear, strokes = one_of_each(setup, asked, which)
+    lines, unclear, strokes = one_of_each(setup.part(0.0, ONE_OF_EACH), asked, which)
     # 2. the other lines of those patches
-    lines = with_bars(setup, lines, [line for some in strokes.values() for line in some])
-    joined, left_mm = _joined(setup, asked, lines, strokes)
+    others = [line for some in strokes.values() for line in some]
+    lines = with_bars(setup.part(ONE_OF_EACH, WITH_BARS), lines, others)
+    joined, left_mm = _joined(setup.part(WITH_BARS, 1.0), asked, lines, strokes)
     patch_of = dict[int, int]()
     if beyond or not numbers:
         further = _numbered_on(joined, patches + len(holes))
@@ -219,7 +231,8 @@ def _joined(
     """
     joined, left_mm = list[tuple[Line, int]](), 0.0
     own, taken = {line.number: line for line in lines}, taken_by(setup, lines)
-    for contour in asked:
+    for k, contour in enumerate(asked):
+        setup.come(k, len(asked))
         line = own.get(contour.number)
         if line is not None and len(line.xy_mm) > 1:  # not one that was never begun
             here = kept_off(setup, taken - {contour.stroke.patch})

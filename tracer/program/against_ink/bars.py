@@ -15,12 +15,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array, bounds
+from morfax.motion.arrays import Array
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.line import Line
 from morfax.tracer.limits import ABOUT_WIDTHS
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.tangles.seen_ink import middles_mm
@@ -35,9 +35,7 @@ THICK_BESIDE = 1.5
 NOTHING = np.empty((0, 2))
 
 
-def bar_at(
-    drawing: Drawing, lines: Sequence[Line], place: Unexplained, width_mm: float
-) -> Array:
+def bar_at(drawing: Drawing, lines: BoxedLines, place: Unexplained, width_mm: float) -> Array:
     """The places of the bar of ink at a place beside the lines; none of a single line's, or of one that
     goes on further away.
     """
@@ -50,10 +48,9 @@ def bar_at(
     wide_px = max(1, round(OF_WIDTH * width_mm / drawing.pitch_mm))
     reach_mm = about_mm + (wide_px + 3) * drawing.pitch_mm
     low_mm, high_mm = place_mm[0] - reach_mm, place_mm[0] + reach_mm
-    for line in lines:
-        if reaches(line.places_mm, low_mm, high_mm):
-            way_px = window.pixels(line.places_mm).reshape(-1, 1, 2)
-            cv2.polylines(bare, [way_px], line.comes_round, 0, wide_px)
+    for line in lines.reaching(low_mm, high_mm):
+        way_px = window.pixels(line.places_mm).reshape(-1, 1, 2)
+        cv2.polylines(bare, [way_px], line.comes_round, 0, wide_px)
     # 3. what is joined to the place
     _, label = cv2.connectedComponents(bare, connectivity=4)
     i, j = np.nonzero(label)
@@ -67,12 +64,6 @@ def bar_at(
         return NOTHING
     bar = middles_mm(drawing, i + window.top, j + window.left)
     return bar if _is_thick(bar, drawing.pitch_mm, width_mm) else NOTHING
-
-
-def reaches(places_mm: Array, low_mm: Array, high_mm: Array) -> bool:
-    """Whether the box about some places (n, 2) mm reaches into another."""
-    first_mm, last_mm = bounds(places_mm)
-    return bool(np.all(first_mm < high_mm) and np.all(last_mm > low_mm))
 
 
 def _is_thick(bar: Array, pitch_mm: float, width_mm: float) -> bool:

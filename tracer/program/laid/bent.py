@@ -19,17 +19,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array, bounds
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm, lengths_mm, nearest_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import (
     OFF,
     REACH,
@@ -76,7 +76,7 @@ def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:
     lines = list(lines)
     if not is_clear(setup.sheet.drawing) or setup.operator.reads_marks(lines):
         return lines
-    beside = _Lines.of(lines)
+    beside = BoxedLines.of(lines)
     ways = {k: _Way(setup, line, beside) for k, line in enumerate(lines)}
     ways = {k: way for k, way in ways.items() if way.may_be_off}
     while ways:
@@ -88,28 +88,8 @@ def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:
         for k in like:
             way = ways.pop(k)
             lines[k] = way.line if felt is None else way.bent(felt)
+            setup.come(len(lines) - len(ways), len(lines))
     return lines
-
-
-class _Lines(NamedTuple):
-    """Some lines, and the boxes about them: their least and greatest x and y, (n, 2) mm."""
-
-    lines: list[Line]
-    low: Array
-    high: Array
-
-    @classmethod
-    def of(cls, lines: Sequence[Line]) -> _Lines:
-        """Some lines."""
-        boxes = np.array([bounds(line.places_mm) for line in lines]).reshape(-1, 2, 2)
-        return cls(list(lines), boxes[:, 0], boxes[:, 1])
-
-    def within(self, low: Array, high: Array, but: Line) -> Iterator[Array]:
-        """The parts of the ways (m, 2) mm of all lines but one within a box."""
-        reach = np.all((self.low < high) & (self.high > low), axis=1)
-        for k in np.flatnonzero(reach).tolist():
-            if self.lines[k] is not but:
-                yield from _within(self.lines[k].places_mm, low, high)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +98,7 @@ class _Way:
 
     setup: Setup
     line: Line
-    beside: _Lines
+    beside: BoxedLines
 
     @cached_property
     def step_mm(self) -> float:
@@ -203,9 +183,9 @@ class _Way:
         own = way[np.arange(first, last + 1) % len(way)]
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
-        near = list(self.beside.within(low, high, self.line))
-        for rest in rest_of(way, first, last, self.is_closed):
-            near += _within(rest, low, high)
+        others = (line.places_mm for line in self.beside.reaching(low, high, self.line))
+        ways = [*others, *rest_of(way, first, last, self.is_closed)]
+        near = [part for way in ways for part in _within(way, low, high)]
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_lone_pixels(ink, own, drawing.pitch_mm), own
 

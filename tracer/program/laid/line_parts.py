@@ -18,7 +18,7 @@ from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import Led
-from morfax.tracer.program.against_ink.bars import reaches
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.setup import Setup
@@ -66,14 +66,12 @@ def rest_of(way: Array, first: int, last: int, is_closed: bool) -> tuple[Array, 
     return way[: first + 1], way[last:]
 
 
-def is_beside(own: Array, line: Line, lines: Sequence[Line]) -> bool:
+def is_beside(own: Array, line: Line, lines: BoxedLines) -> bool:
     """Whether another of some lines comes so near to a stretch (n, 2) mm of one that they share ink."""
     near_mm = BESIDE * line.width_mm
     low, high = own.min(axis=0) - near_mm, own.max(axis=0) + near_mm
-    others = (other.places_mm for other in lines if other is not line)
-    return any(
-        reaches(way, low, high) and nearest_mm(own, way).min() < near_mm for way in others
-    )
+    others = lines.reaching(low, high, line)
+    return any(nearest_mm(own, other.places_mm).min() < near_mm for other in others)
 
 
 def part_of(line: Line, first: int, last: int) -> Line:

@@ -23,12 +23,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.polyline import broad_mm, evenly, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
-from morfax.tracer.program.against_ink.bars import bar_at, reaches
+from morfax.tracer.program.against_ink.bars import bar_at
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
@@ -49,6 +50,7 @@ from morfax.tracer.program.laid.line_parts import (
     is_whole,
     rest_of,
 )
+from morfax.tracer.program.laid.news import News, near_box
 from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -104,11 +106,14 @@ def _mended(
 ) -> tuple[list[Line], tuple[Unexplained, ...]]:
     """The lines with their narrow bays mended, until no more is found, and what is left of what was told."""
     lines, left = list(lines), left_by(setup, lines, DOUBTFUL)
+    news = None
     for _ in range(ROUNDS):
-        mended = _once_mended(setup, lines, left)
+        mended = _once_mended(setup, lines, left, news=news)
         if all(new is line for new, line in zip(mended, lines, strict=True)):
             break
+        before = lines, left
         lines, left = mended, left_by(setup, mended, DOUBTFUL)
+        news = News.between(before, (lines, left))
     return lines, tuple(place for place in left if place.is_sure)
 
 
@@ -117,12 +122,19 @@ def _once_mended(
     lines: Sequence[Line],
     left: Sequence[Unexplained],
     others: Sequence[Line] = (),
+    news: News | None = None,
 ) -> list[Line]:
-    """The lines, beside some others, with their narrow bays mended; those of a drawn program as they are."""
+    """The lines, beside some others, with their narrow bays mended: all of them, or those near to news; those
+    of a drawn program as they are.
+    """
+    mended, every = list(lines), BoxedLines.of([*lines, *others])
     if setup.operator.reads_marks(lines):
-        return list(lines)
-    every = [*lines, *others]
-    return [_Bays(setup, line, every, left).mended() for line in lines]
+        return mended
+    for k, line in enumerate(lines):
+        if news is None or news.concerns(line, left):
+            mended[k] = _Bays(setup, line, every, left).mended()
+        setup.come(k + 1, len(lines))
+    return mended
 
 
 class Stretch(NamedTuple):
@@ -140,7 +152,7 @@ class _Bays:
 
     setup: Setup
     line: Line
-    lines: Sequence[Line]
+    lines: BoxedLines
     left: Sequence[Unexplained]
 
     def mended(self) -> Line:
@@ -169,12 +181,9 @@ class _Bays:
         beside = beside_itself.stretches(way, step_mm, width_mm)
         for first, last in beside:
             yield Suspect(first, last, nothing, True)
-        for place in self.left:
+        for place in near_box(self.left, *bounds(way), width_mm):
             if not (self._is_closed or place.is_sure):
                 continue  # on ragged lines of a map each third bend is in doubt, and is none
-            reach_mm, middle = place.length_mm + width_mm, np.array(place.place_mm)
-            if not reaches(way, middle - reach_mm, middle + reach_mm):
-                continue
             away_mm = np.hypot(*(way - place.place_mm).T)
             at = int(np.argmin(away_mm))
             if place.kind == "beside" and away_mm[at] < width_mm:
@@ -286,7 +295,6 @@ class _Bays:
         reach_mm = REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = np.min([pen.away_from(ink.places_mm, part) for part in rest], axis=0)
-        for line in self.lines:
-            if line is not self.line and reaches(line.places_mm, low, high):
-                known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, line.places_mm))
+        for line in self.lines.reaching(low, high, self.line):
+            known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, line.places_mm))
         return ink._replace(known_mm=known_mm)

@@ -197,6 +197,8 @@ def test_progress_is_told_over_all_lines() -> None:
     come = [come_mm for come_mm, _ in told]
     assert all(0 <= come_mm <= length_mm for come_mm, length_mm in told)
     assert len({length_mm for _, length_mm in told}) == 1 and max(come) > 0.9 * told[0][1]
+    # bays, the lines joined to others and their order count, too, and nothing comes back
+    assert come == sorted(come) and max(np.diff(come)) < 0.5 * told[0][1]
 
 
 # a line lost

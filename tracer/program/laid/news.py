@@ -1,0 +1,85 @@
+"""News: about which places lines have changed since each was last looked at for narrow bays.
+
+    ─╮ ╭──    a bay that was mended may show another beside it, on its own line or on one near by; lines
+     ╰─╯      further off are as they were, and what was found of them still holds
+
+Signals: lines, and the places that they leave unexplained, before and after some were mended in; whether a
+line has to be looked at again out.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array, bounds
+from morfax.motion.polyline import nearest_mm
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.against_ink.bars import ABOUT
+from morfax.tracer.program.against_ink.unexplained import Unexplained
+from morfax.tracer.program.laid.line_parts import REACH
+from morfax.tracer.sensing.view import STEP_WIDTHS
+
+
+class News(NamedTuple):
+    """The boxes (n, 2) mm in which something is new."""
+
+    low_mm: Array
+    high_mm: Array
+
+    @classmethod
+    def between(
+        cls,
+        before: tuple[Sequence[Line], Sequence[Unexplained]],
+        now: tuple[Sequence[Line], Sequence[Unexplained]],
+    ) -> News:
+        """What is new of some lines and of what they leave unexplained."""
+        left = set(before[1]).symmetric_difference(now[1])
+        places = np.array([place.place_mm for place in left]).reshape(-1, 2)
+        reach_mm = np.array([place.length_mm for place in left]).reshape(-1, 1)
+        moved = [_moved(old, new) for old, new in zip(before[0], now[0], strict=True)]
+        return cls(
+            np.vstack([places - reach_mm, *moved]), np.vstack([places + reach_mm, *moved])
+        )
+
+    def concerns(self, line: Line, left: Sequence[Unexplained]) -> bool:
+        """Whether anything is new where bays of a line, or bars of the ink left beside it, may be."""
+        low_mm, high_mm = bounds(line.places_mm)
+        longest_mm = max(
+            (place.length_mm for place in near_box(left, low_mm, high_mm, line.width_mm)),
+            default=0.0,
+        )
+        # bars are looked for as far beyond the place left, and each place as far beyond the line
+        reach_mm = (1 + ABOUT) * longest_mm + 2 * REACH * line.width_mm
+        is_near = (self.low_mm < high_mm + reach_mm) & (self.high_mm > low_mm - reach_mm)
+        return bool(is_near.all(axis=1).any())
+
+
+def near_box(
+    left: Sequence[Unexplained], low_mm: Array, high_mm: Array, width_mm: float
+) -> list[Unexplained]:
+    """Those of some places left unexplained that lie as near to a box as they are long, or a width nearer."""
+    (left_mm, low), (right_mm, high) = low_mm.tolist(), high_mm.tolist()
+    found = list[Unexplained]()
+    for place in left:
+        (x, y), reach_mm = place.place_mm, place.length_mm + width_mm
+        if (
+            left_mm - reach_mm < x < right_mm + reach_mm
+            and low - reach_mm < y < high + reach_mm
+        ):
+            found.append(place)
+    return found
+
+
+def _moved(old: Line, new: Line) -> Array:
+    """The places (n, 2) mm of two states of a line off the other's way."""
+    if new is old:
+        return np.empty((0, 2))
+    off_mm = STEP_WIDTHS * new.width_mm
+    old_mm, new_mm = old.places_mm, new.places_mm
+    gone = old_mm[nearest_mm(old_mm, new_mm) > off_mm]
+    return np.vstack([gone, new_mm[nearest_mm(new_mm, old_mm) > off_mm]])
