@@ -73,14 +73,16 @@ def _of_strokes(
 ) -> Trace:
     """Follow every stretch of the ink that is left for strokes."""
     # 1. the lines and their junctions, and the head along each
-    letters = _letters(sheet, left)
-    felt = FeltSheet.of(left.drawing, settings, left.ink, letters, are_strokes=True)
+    felt = FeltSheet.of(
+        left.drawing, settings, left.ink, _letters(sheet, left), are_strokes=True
+    )
     give_back()
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt, _told_of(progress)), settings, progress)
-    strokes = struck_off(sheet.drawing, _long_enough(_kept(_mended(loops, run))))
+    strokes = _kept(_mended(loops, run))
     felt = felt.without_cells()
     give_back()
+    strokes = struck_off(sheet.drawing, _long_enough(strokes))
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
@@ -93,6 +95,8 @@ def _of_strokes(
     lines, broad = as_contours(setup, lines)
     lines, beside = beside_mended(setup, bent(setup, lines))
     broad += _slots_left(setup, lines)
+    setup.sheet.seen.clear()
+    give_back()
     off = strokes_off_ink(left.drawing, lines)
     broad += [place for place in off if not is_about(place, beside, lines)]
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
