@@ -78,11 +78,7 @@ class CompareJob:
             ink = comparison.measured_on(drawing)
             found = comparison.from_drawing(ink, paths[0], radius_mm=radius_mm)
         if found.is_elsewhere:
-            listener.warning(
-                f"only {100 * found.measured_share:.0f} % of the path lies along the drawing's ink: the"
-                " path has another zero, or belongs to another drawing; give the place of its zero with"
-                " --zero X,Y"
-            )
+            listener.warning(_elsewhere(found.measured_share, self.zero, zero))
         within = None if self.tolerance_mm is None else found.is_within(self.tolerance_mm)
         figures: dict[str, Any] = {
             "a": str(self.a.file),
@@ -135,6 +131,21 @@ class CompareJob:
         x_mm, y_mm = said_mm
         listener.note(f"{file.name} says that its zero is at {x_mm:g},{y_mm:g} mm of the sheet")
         return said_mm
+
+
+def _elsewhere(share: float, given: Zero | None, taken: Zero | None) -> str:
+    """What may be wrong with a path of which so small a share lies along the drawing's ink; `taken` is its
+    zero, as it was given, or else as the path's own head says it.
+    """
+    lies = f"only {100 * share:.0f} % of the path lies along the drawing's ink"
+    wrong = "the path leaves the ink, or belongs to another drawing"
+    if taken is None:
+        wrong += (
+            ", or has another zero than the sheet's lower left corner, which --zero X,Y gives"
+        )
+    elif given is not None and given not in OF_PART:
+        wrong += ", or has another zero than the --zero that was given"
+    return f"{lies}: {wrong}; --picture shows where"
 
 
 def _on_sheet(drawing: Drawing, path: Path, zero: Zero | None) -> Path:

@@ -15,7 +15,7 @@ from morfax.motion.by_number import numbered
 
 if TYPE_CHECKING:
     from morfax.tracer.following.line import Line
-    from morfax.tracer.ink.ledger import Balance
+    from morfax.tracer.ink.ledger import Balance, Patch
     from morfax.tracer.program.lines.small_rings import SmallPatch
     from morfax.tracer.program.program import Trace
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
 # of the ink that is joined to a line: if the line is less, the rest is worth a remark
 FEW_SHARE = 0.7
+AS_LONG = 0.03  # of a line's length: lengths by the ink of a patch are true to that
 # an edge that strays further is rough: clean outlines of seven parts stray by 0 to 8 um, at 150 to
 # 600 dpi, quiet or noisy
 ROUGH_MM = 0.015
@@ -54,9 +55,9 @@ def _of_all(trace: Trace) -> Iterator[str]:
     left = trace.ink.left_mm / trace.ink.all_mm
     if left > LEFT_SHARE:
         yield (
-            f"{trace.ink.left_mm:.0f} mm of ink ({100 * left:.0f} %) could not be followed: stretches that "
-            "are too short or too unclear to put the head down; the figures list their places, and "
-            "--picture marks them; scan at a higher resolution"
+            f"{trace.ink.left_mm:.0f} mm of ink ({100 * left:.0f} %) could not be followed"
+            f"{_places(trace.ink.lost)}: stretches that are too short or too unclear to put the head down; "
+            "scan at a higher resolution"
         )
     single = trace.ink.single_mm / trace.ink.all_mm
     if single > LEFT_SHARE:
@@ -82,6 +83,17 @@ def _of_all(trace: Trace) -> Iterator[str]:
             f"{trace.ink.solid_mm:.0f} mm of ink are the rims of filled shapes, and left out; --edge follows "
             "the outlines of filled shapes"
         )
+
+
+def _places(lost: Sequence[Patch]) -> str:
+    """Where the stretches are that were left, and where to find them."""
+    if not lost:
+        return ", in stretches too short to list"
+    x, y, long_mm = lost[0]
+    return (
+        f" (the longest stretch, {long_mm:.1f} mm, at {x:.1f},{y:.1f} mm; the figures list it and the other "
+        "long ones, and --picture marks them)"
+    )
 
 
 def _of_areas(ink: Balance) -> Iterator[str]:
@@ -231,7 +243,8 @@ def _of_others(trace: Trace) -> Iterator[str]:
     if others.lines:
         one = others.lines == 1
         lines = "1 other line" if one else f"{others.lines} other lines, the longest"
-        longer = ", longer than this one" if others.longest_mm > trace.length_mm else ""
+        is_longer = others.longest_mm > (1 + AS_LONG) * trace.length_mm
+        longer = ", longer than this one" if is_longer else ""
         are = "inside it" if one else f"{others.inside} of them inside it"
         inside = f", {are}" if others.inside else ""
         yield (

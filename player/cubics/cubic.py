@@ -132,23 +132,19 @@ class CubicPlayback(Supervised):
         rate_hz = self.base.step_hz
         state = np.zeros((len(AXES), 2))
         state[:, 0] = self.start_mm
-        monitor, self.end_error_mm = self.supervise(AXES, rate_hz), None
+        self.supervise(AXES, rate_hz)
+        self.end_error_mm = None
         noise = np.random.default_rng(self.servo.seed)
         yield Motion(self.start_mm[None], rate_hz, 0.0)
         done = 0
         for predicted in self._predicted(start):
             moved, present = self._follow(predicted, state, noise)
-            rows = monitor.watch(
-                predicted[: len(moved)] / fmt.counts_per_mm, present / fmt.counts_per_mm
-            )
-            if rows:
-                self.end_mm = moved[rows - 1].copy()
-                yield Motion(moved[:rows], rate_hz, (done + 1) / rate_hz)
-            done += rows
-            if rows < len(moved):
-                raise monitor.warnings[-1]
-            if rows < len(predicted):
-                raise self._out_of_range(predicted[rows], done)
+            demand_mm = predicted[: len(moved)] / fmt.counts_per_mm
+            actual_mm = present / fmt.counts_per_mm
+            yield from self.followed(demand_mm, actual_mm, moved, (done + 1) / rate_hz)
+            done += len(moved)
+            if len(moved) < len(predicted):
+                raise self._out_of_range(predicted[len(moved)], done)
         self.end_error_mm = (
             self.end_mm
             - np.array(self.program.checks[len(self.program.words)]) / fmt.counts_per_mm

@@ -110,15 +110,11 @@ class PositionPlayback(Supervised):
         """Play; raises FollowingFault after the last good sample."""
         self.servos = PositionServos(self.start_mm, settings=self.settings.servo)
         self.servos.conditions = self.conditions
-        monitor, self.end_error_mm, samples = self.supervise(AXES, MOTION_RATE_HZ), None, 0
+        self.supervise(AXES, MOTION_RATE_HZ)
+        self.end_error_mm, samples = None, 0
         for told, places in self._run():
-            rows = monitor.watch(told, places)
-            if rows:
-                self.end_mm = places[rows - 1].copy()
-                yield Motion(places[:rows], MOTION_RATE_HZ, samples / MOTION_RATE_HZ)
-            samples += rows
-            if rows < len(places):
-                raise monitor.warnings[-1]
+            yield from self.followed(told, places, places, samples / MOTION_RATE_HZ)
+            samples += len(places)
         self.end_error_mm = self.end_mm - np.array(self.program.end_mm)
 
     def _run(self) -> Iterator[tuple[Array, Array]]:

@@ -165,16 +165,12 @@ class PulsePlayback(Supervised):
         interpolator = ResidueInterpolator(start, control.servo_constant)
         servos = PulseServos(start, control.recirculations_hz, control.servo, self._sampled)
         servos.conditions = self.conditions
-        monitor, self.end_error_mm, samples = self.supervise(AXES, MOTION_RATE_HZ), None, 0
+        self.supervise(AXES, MOTION_RATE_HZ)
+        self.end_error_mm, samples = None, 0
         for pulses in self._all_pulses(interpolator):
             commands, places, done = servos.follow(pulses)
-            rows = monitor.watch(commands, places)
-            if rows:
-                self.end_mm = places[rows - 1].copy()
-                yield Motion(places[:rows], MOTION_RATE_HZ, samples / MOTION_RATE_HZ)
-            samples += rows
-            if rows < len(places):
-                raise monitor.warnings[-1]
+            yield from self.followed(commands, places, places, samples / MOTION_RATE_HZ)
+            samples += len(places)
             if done < len(pulses):
                 raise self._lag_fault(servos, samples / MOTION_RATE_HZ)
         self.end_error_mm = self.end_mm - np.array(self.program.end_mm)

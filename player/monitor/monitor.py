@@ -20,7 +20,7 @@ warning is given once, and again after the error was inside the limit.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +28,7 @@ import numpy as np
 from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import FollowingFault
+from morfax.motion.motion import Motion
 from morfax.player.monitor.chart import Chart
 from morfax.player.monitor.following_limit import FollowingLimit, allowed_mm, part_at
 
@@ -159,10 +160,11 @@ class Monitor:
 
 
 class Supervised:
-    """The monitor of a playback: its limit, the monitor of the last run, and a chart if one is put in."""
+    """The monitor of a playback: its limit, monitor and end of the last run, and a chart if one is put in."""
 
     limit: FollowingLimit
     monitor: Monitor
+    end_mm: Array  # the last good place
     chart: Chart | None = None
     notes: tuple[str, ...] = ()  # on the program, for the operator
 
@@ -170,6 +172,17 @@ class Supervised:
         """Begin to watch a run."""
         self.monitor = Monitor(axes, rate_hz, self.limit, chart=self.chart)
         return self.monitor
+
+    def followed(
+        self, demand_mm: Array, actual_mm: Array, places_mm: Array, begin_s: float
+    ) -> Iterator[Motion]:
+        """The motion (n, axes) of a block as far as the drives followed; raises FollowingFault after it."""
+        rows = self.monitor.watch(demand_mm, actual_mm)
+        if rows:
+            self.end_mm = places_mm[rows - 1].copy()
+            yield Motion(places_mm[:rows], self.monitor.rate_hz, begin_s)
+        if rows < len(places_mm):
+            raise self.monitor.warnings[-1]
 
     @property
     def following_error_mm(self) -> Array:

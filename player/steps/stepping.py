@@ -149,7 +149,8 @@ class StepPlayback(Supervised):
         rate_hz = SAMPLES_PER_INTERVAL * fmt.rate_hz
         motors = Motors(len(AXES), fmt.interval_s, self._motor)
         motors.conditions = self.conditions
-        monitor, self.end_error_mm = self.supervise(AXES, rate_hz), None
+        monitor = self.supervise(AXES, rate_hz)
+        self.end_error_mm = None
         yield Motion(self.start_mm[None], rate_hz, 0.0)
         for first in range(0, len(self.pulses), _BLOCK_INTERVALS):
             told, made = motors.run(
@@ -159,16 +160,9 @@ class StepPlayback(Supervised):
             )
             places_mm = self.start_mm + made * fmt.step_mm
             monitor.rows_seen = first * SAMPLES_PER_INTERVAL + 1
-            rows = monitor.watch(self.start_mm + told * fmt.step_mm, places_mm)
-            if rows:
-                self.end_mm = places_mm[rows - 1]
-                yield Motion(
-                    places_mm[:rows],
-                    rate_hz,
-                    (first + 1 / SAMPLES_PER_INTERVAL) * fmt.interval_s,
-                )
-            if rows < len(places_mm):
-                raise monitor.warnings[-1]
+            told_mm = self.start_mm + told * fmt.step_mm
+            begin_s = (first + 1 / SAMPLES_PER_INTERVAL) * fmt.interval_s
+            yield from self.followed(told_mm, places_mm, places_mm, begin_s)
         self.end_error_mm = self.end_mm - np.array(fmt.end_mm)
 
     def _check_counts(self) -> None:

@@ -104,6 +104,24 @@ def test_a_path_from_another_zero_is_compared_where_it_was_drawn(
     assert answer.exit_code == exit_code
 
 
+@pytest.mark.parametrize(
+    ("zero", "said"),
+    [
+        ((), "has another zero than the sheet's lower left corner, which --zero X,Y gives"),
+        (("--zero", "0,0"), "has another zero than the --zero that was given"),
+    ],
+)
+def test_what_may_be_wrong_with_a_path_beside_the_ink_depends_on_what_is_known_of_its_zero(
+    morfax: Morfax, here: Path, zero: tuple[str, ...], said: str
+) -> None:
+    """The bracket's own outline 15 mm to the right: two of its sides still lie along ink."""
+    outline_mm = read_path(SAMPLES / "bracket.csv").runs()[0]
+    rows = [f"{x_mm + 15:.4f},{y_mm:.4f}" for x_mm, y_mm in outline_mm]
+    (here / "beside.csv").write_text("\n".join(["x,y", *rows]))
+    answer = morfax("compare", SAMPLES / "bracket.png", "beside.csv", *zero)
+    assert said in answer.err and "--picture shows where" in answer.err
+
+
 def test_a_zero_without_a_drawing_is_refused(morfax: Morfax, path_file: Path) -> None:
     answer = morfax("compare", path_file, path_file, "--zero", "reference")
     assert answer.exit_code == 2 and "--zero is a place on a drawing" in answer.fault

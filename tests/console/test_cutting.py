@@ -140,7 +140,7 @@ def test_a_program_says_its_zero_and_the_size_of_the_part_and_compare_takes_them
     # 7 mm away hardly any of it lies on ink, and what does is no measure
     far = morfax("compare", *told, "--zero", "sheet", "--tolerance", "5mm")
     assert far.exit_code == 1 and far.figures["within_tolerance"] is False
-    assert "% of the path lies along the drawing's ink: the path has another zero" in far.err
+    assert "% of the path lies along the drawing's ink: the path leaves the ink" in far.err
 
 
 @pytest.mark.parametrize(

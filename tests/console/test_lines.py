@@ -13,8 +13,8 @@ from tests.console.conftest import SAMPLES, Morfax
 
 DPI = (300, 300)
 PX_PER_MM = 300 / 25.4
-# share: a length by a patch's area is so much off the way along its middle, ...
-AREA_OVER_WIDTH = 0.06
+# share: a length by the ink of hard pixels is so much off the way along its middle, ...
+AREA_OVER_WIDTH = 0.045
 ENDS_MM = 1.2  # ... and an open one has its pen's width at both ends more, and corners
 
 

@@ -50,7 +50,7 @@ def test_several_starts_are_one_program_the_slot_before_its_outline(
 
 def test_a_plain_trace_says_what_else_is_on_the_sheet(morfax: Morfax, here: Path) -> None:
     told = morfax("trace", SAMPLES / "bracket.png", "-o", "outline.csv").err
-    assert "the sheet has 1 other line of about 72 mm, inside it: --lines contours cuts" in told
+    assert "the sheet has 1 other line of about 69 mm, inside it: --lines contours cuts" in told
     both = morfax(
         "trace", SAMPLES / "bracket.png", "--lines", "contours", "-o", "b.csv", "--json"
     )

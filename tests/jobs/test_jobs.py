@@ -34,6 +34,7 @@ from morfax.jobs.settings.settings import (
     ToolSettings,
     TraceSettings,
 )
+from morfax.jobs.sheet import SheetJob
 from morfax.jobs.systems import SystemsJob
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
@@ -113,6 +114,24 @@ def test_a_playing_may_be_set(tape_file: Path) -> None:
     faster, _ = worked(PlayJob(tape_file, control=ControlSettings(feed_override=1.5)))
     shares = plain.figures["duration_s"] / faster.figures["duration_s"]
     assert shares == pytest.approx(1.5, rel=1e-3)
+
+
+def test_a_motor_is_its_lock_and_a_chart_has_speeds(here: Path, path_file: Path) -> None:
+    """A hydraulic motor's drive swings at 60 Hz; of a program in blocks a chart shows the speeds held."""
+    settings = ControlSettings(motor="hydraulic").for_file(Path("a.wav"), ByHand())
+    assert settings["settings"].natural_hz == 60
+    RecordJob(path_file, here / "circle.ngc").run()
+    drawn = PlayJob(here / "circle.ngc", charts=(here / "servos.png",)).run()
+    listed = PlayJob(here / "circle.ngc", charts=(here / "servos.csv",)).run()
+    assert drawn.speeds is not None and listed.speeds is None
+
+
+def test_a_printed_sheet_has_a_margin_about_its_frame(here: Path) -> None:
+    figures = SheetJob(here / "sheet.pdf").run().figures
+    wide_mm, high_mm = figures["frame_width_mm"], figures["frame_height_mm"]
+    # printers leave 3 to 6 mm white; most of the sheet is for the drawing
+    assert 0.8 * 210 < wide_mm < 210 - 2 * 3
+    assert 0.8 * 297 < high_mm < 297 - 2 * 3
 
 
 def test_compare(path_file: Path, tape_file: Path) -> None:
@@ -237,6 +256,8 @@ def test_what_is_wrong_is_raised(here: Path, path_file: Path) -> None:
         TraceJob(CURVE, TraceOutputs(here / "a.csv"), both).run()
     with pytest.raises(WrongUse, match="--pickup is for tapes"):
         RecordJob(path_file, here / "a.steps", unit=RecordingUnit("coil")).run()
+    with pytest.raises(WrongUse, match="--pickup is for tapes"):
+        RunJob(CURVE, here, unit=RecordingUnit("coil", machine="grbl-pen")).run()
     with pytest.raises(WrongUse, match="no setting 'colour'"):
         TraceSettings(head=HeadSettings(changes=("colour=3",))).of_head()
     assert list(here.iterdir()) == []

@@ -17,6 +17,7 @@ from morfax.jobs.tracing.tracing import Tracing
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.lines.selection import Others
 from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.drawing.test_skips import ring
 from tests.tracer.ink.test_pale import with_pale_bar
 from tests.tracer.inked import Points, arc, cross, inked, polyline
@@ -71,6 +72,20 @@ def test_pale_lines_are_told_where_all_ink_is_asked_for() -> None:
     assert not any("left out" in text for text in said)
 
 
+def test_ink_that_was_left_is_told_with_the_place_of_its_longest_stretch() -> None:
+    found = trace_ink(inked(polyline((10, 10), (50, 10)), seed=1))
+    assert found.ink is not None
+
+    def said(lost: tuple[tuple[float, float, float], ...]) -> str:
+        ink = found.ink._replace(left_mm=5.0, lost=lost) if found.ink else None
+        (text,) = (t for t in of_ink(replace(found, ink=ink), several=True) if "could not" in t)
+        return text
+
+    assert "5 mm of ink (11 %)" in said(()) and "too short to list" in said(())
+    told = said(((30.0, 20.0, 3.5), (12.0, 13.0, 1.5)))
+    assert "3.5 mm, at 30.0,20.0 mm" in told and "the figures list" in told
+
+
 def open_where(line: LineSettings, places_mm: Points) -> tuple[list[str], list[str]]:
     """What is said of a line that is perhaps closed, and how its lines end."""
     said, endings = said_of(inked(places_mm, width_mm=0.6, seed=1), line)
@@ -100,6 +115,7 @@ def test_a_line_without_one_of_its_corners_is_told() -> None:
     ("others", "said"),
     [
         (Others(1, 0, 30.4), "the sheet has 1 other line of about 30 mm: --lines"),
+        (Others(1, 0, 50.4), "1 other line of about 50 mm: --lines"),
         (Others(1, 0, 277.0), "1 other line of about 277 mm, longer than this one: --lines"),
         (
             Others(3, 2, 277.0),

@@ -25,14 +25,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing import coarse, grain, inks, large, raster, ruling
+from morfax.tracer.drawing import coarse, grain, inks, large, raster, ruling, speckled
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import LEAST, deepened, deepened_note
 from morfax.tracer.drawing.levelling import levelled
 from morfax.tracer.drawing.narrow import Strips
-from morfax.tracer.drawing.noise import Noise, Within, measured, within
+from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
@@ -236,16 +236,21 @@ class Drawing:
         # 1. darkness, without what is printed and the scan's border
         darkness, shapes, paper_noise = _levelled(grey, pitch_mm, reading)
         darkness, cleared = _cleared(darkness, pitch_mm, reading)
-        notes += cleared
-        # 2. pale lines
         lines, pale_mm = within(darkness, paper_noise), 0.0
+        times = speckled.times_larger(darkness, lines)
+        if times > 1:
+            notes = (*notes, speckled.note(times, pitch_mm))
+            larger = speckled.on_larger_pixels(np.asarray(grey), times)
+            return cls._of_lines(file, larger, times * pitch_mm, notes, reading)
+        # 2. pale lines
+        notes += cleared
         drawn_grain = lines.grain
         is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
             pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
         if pale_mm:
             lines = within(darkness, paper_noise)
-        notes += _of_few_pixels(lines, drawn_grain, pitch_mm)
+        notes += grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm)
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
         # 3. grain, of lines as they are drawn
         slit = grain.slit_for(drawn_grain, lines.width_px, pitch_mm)
@@ -282,15 +287,6 @@ def _cleared(darkness: Any, pitch_mm: float, reading: Reading) -> tuple[Any, tup
     edges = without_border(darkness, LEAST if reading.pale_is_ink else INK)
     border = border_note(edges) if edges else None
     return darkness, tuple(note for note in (printed, border) if note is not None)
-
-
-def _of_few_pixels(lines: Within, drawn_grain: float, pitch_mm: float) -> tuple[str, ...]:
-    """What the operator should know of lines that are few pixels wide."""
-    if lines.seen_px < coarse.SEEN_PX:
-        return (coarse.note(lines.seen_px, pitch_mm),)
-    if grain.is_too_thin(drawn_grain, lines.width_px):
-        return (grain.thin_note(pitch_mm),)
-    return ()
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Any:

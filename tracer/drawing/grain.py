@@ -24,14 +24,17 @@ and a corner is rounded by some 0.1 mm.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.coarse import FEWEST_PX, finer_dpi
+from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
+
+if TYPE_CHECKING:
+    from morfax.tracer.drawing.noise import Within
 
 Darkness = NDArray[np.float32]
 
@@ -83,7 +86,7 @@ class Slit(NamedTuple):
 
 def slit_for(grain: float, width_px: float, pitch_mm: float) -> Slit | None:
     """The slit that lines of a grain and width ask for; None without grain, and for too thin lines."""
-    if not (grain > LEAST_OF_SOME and width_px > FEWEST_PX):
+    if not (grain > LEAST_OF_SOME and width_px > coarse.FEWEST_PX):
         return None
     along_px = max(ALONG_MM / pitch_mm, ALONG_WIDTHS * width_px)
     return Slit(along_px, max(ACROSS_WIDTHS * width_px, 0.5), width_px)
@@ -98,17 +101,16 @@ def note(slit: Slit, pitch_mm: float) -> str:
     )
 
 
-def is_too_thin(grain: float, width_px: float) -> bool:
-    """Whether lines have grain, and are so thin that no slit sees it apart from their pixels."""
-    return grain > LEAST_GRAIN and not width_px > FEWEST_PX
-
-
-def thin_note(pitch_mm: float) -> str:
-    """What the operator should know of lines with grain that are too thin for the slit."""
+def notes_of_few_pixels(lines: Within, drawn_grain: float, pitch_mm: float) -> tuple[str, ...]:
+    """What the operator should know of lines that are few pixels wide, with grain or without."""
+    if lines.seen_px < coarse.SEEN_PX:
+        return (coarse.note(lines.seen_px, pitch_mm),)
+    if not drawn_grain > LEAST_GRAIN or lines.width_px > coarse.FEWEST_PX:
+        return ()
     return (
-        f"the lines have grain, as of a pencil, and are fewer than {FEWEST_PX:g} pixels wide, so that it is "
-        "not averaged: the path strays by up to a line's width; scan at "
-        f"{finer_dpi(pitch_mm, ENOUGH_TIMES)} dpi, or ink the lines over"
+        f"the lines have grain, as of a pencil, and are fewer than {coarse.FEWEST_PX:g} pixels wide, so that "
+        "it is not averaged: the path strays by up to a line's width; scan at "
+        f"{coarse.finer_dpi(pitch_mm, ENOUGH_TIMES)} dpi, or ink the lines over",
     )
 
 

@@ -104,12 +104,14 @@ class Within(NamedTuple):
     """The grain of the ink within single lines, how wide lines look, and the noise that they show.
 
     A line that is less wide than two pixels looks as wide as two, but where a pixel lies right on it: there
-    `seen_px`, the ink across it over the darkness in its middle, goes on falling.
+    `seen_px`, the ink across it over the darkness in its middle, goes on falling. `single` is the share of
+    places on ink at which there is a single line.
     """
 
     grain: float
     seen_px: float
     found: InPixels
+    single: float = 0.0
 
     @property
     def width_px(self) -> float:
@@ -138,14 +140,15 @@ def within(darkness: Kept, paper: float | None = None) -> Within:
     there = seen_at(darkness, (profiles.middles + width_px * along).T)
     on_line = there > PAPER * median(here)
     if np.count_nonzero(on_line) < FEWEST_PROFILES:
-        return Within(math.nan, seen_px, found)
+        return Within(math.nan, seen_px, found, profiles.single)
     differ = _spread((there - here)[on_line]) / math.sqrt(2)
     profiles_differ = _along(darkness, profiles)
     grain, of_profiles = (
         math.sqrt(max(some**2 - INTERPOLATED_NOISE * paper**2, 0.0))
         for some in (differ, profiles_differ)
     )
-    return Within(min(grain, of_profiles / LEFT_OF_GRAIN), seen_px, found)
+    grain = min(grain, of_profiles / LEFT_OF_GRAIN)
+    return Within(grain, seen_px, found, profiles.single)
 
 
 def _along(darkness: Kept, profiles: Profiles) -> float:

@@ -44,7 +44,8 @@ GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples fill the pixel evenly
 class Profiles(NamedTuple):
     """Profiles across lines: darkness (n, k) at distances (k,) px from their middles, the middles (n, 2) row
     and column, the unit vectors (n, 2) across, and how dark the paper beside them is in the mean: its 0 is
-    the level of its lighter pixels (see `levelling`).
+    the level of its lighter pixels (see `levelling`). `single` is the share of the places looked at that
+    have a single line.
     """
 
     seen: Array
@@ -52,6 +53,7 @@ class Profiles(NamedTuple):
     middles: Array
     across: Array
     paper: float
+    single: float
 
     @property
     def width_px(self) -> float:
@@ -97,7 +99,8 @@ def profiles_of(darkness: Kept) -> Profiles | None:
         return None
     seen = seen[good]
     paper = median(seen[:, outside].ravel())
-    found = Profiles(_own(seen, paper), at_px, middles[good], across[good], paper)
+    single = float(np.mean(good))
+    found = Profiles(_own(seen, paper), at_px, middles[good], across[good], paper, single)
     # of a pattern or a damaged picture: what is dark in them is not in their middle
     is_line = median(middle_of(found)) > 0 and median(seen.sum(axis=1)) > 0
     return found if is_line else None

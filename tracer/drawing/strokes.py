@@ -28,6 +28,7 @@ from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
+from morfax.tracer.drawing.lengths import one_pen_mm
 from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
 from morfax.tracer.drawing.weighing import Weight, weighed_mm
@@ -41,8 +42,6 @@ FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial
 ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
-# lines whose widths are within this share of the usual width are one pen's; by trial
-ONE_PEN = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +124,7 @@ class Sheet:
     def longest(self) -> Stroke:
         """The longest line; of a sheet that has nothing else the longest rim of a filled shape."""
         are_lines = self._long_enough() & ~self.are_solid
-        lengths_mm = self.one_pen_mm()
+        lengths_mm = one_pen_mm(self)
         if are_lines.any():
             lengths_mm = np.where(are_lines, lengths_mm, 0.0)
         long = np.flatnonzero(lengths_mm >= (1 - 2 * ALIKE) * lengths_mm.max())
@@ -140,19 +139,8 @@ class Sheet:
         weights = (runs.end - runs.begin).astype(float)
         sums = [np.bincount(runs.patch, weights * column, runs.count) for column in places_mm.T]
         middles_mm = np.column_stack(sums)[patches] / runs.areas[patches][:, None]
-        lengths_mm = weighed_mm(self, patches, self.one_pen_mm()[patches])
+        lengths_mm = weighed_mm(self, patches, one_pen_mm(self)[patches])
         return patches[longest_first(lengths_mm, middles_mm, Ink.of(places_mm, weights))]
-
-    def one_pen_mm(self) -> Array:
-        """Lengths of the patches, mm, by one width for all that one pen may have drawn: a scan measures a
-        width of three pixels a little differently at each angle.
-        """
-        areas_mm2 = self.lengths_mm * self.widths_mm
-        order = np.argsort(self.widths_mm)
-        sums = np.cumsum(areas_mm2[order])
-        usual_mm = self.widths_mm[order[np.searchsorted(sums, 0.5 * sums[-1])]]
-        is_pen = np.abs(self.widths_mm / usual_mm - 1) < ONE_PEN
-        return np.asarray(areas_mm2 / np.where(is_pen, usual_mm, self.widths_mm))
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
         """The line nearest to a place; raises LineFault, with its place, if it is out of reach."""

@@ -23,7 +23,8 @@ from morfax.motion.median import median
 from morfax.motion.plane import left_of, unit
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import ONE_PEN, Window
+from morfax.tracer.drawing.lengths import ONE_PEN
+from morfax.tracer.drawing.strokes import Window
 from morfax.tracer.following.plain_places import FAINTEST, aperture_for
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.doubled import LEAST_WIDTHS

@@ -65,7 +65,7 @@ class Shared(NamedTuple):
 
 
 @dataclass(slots=True)
-class Beside:
+class StretchLine:
     """A line of a stretch: its runs, what was felt between them, and how far it ends beyond these, mm; None
     at an end of the stretch.
     """
@@ -80,7 +80,7 @@ class Beside:
         self.runs += runs
 
 
-def lines_beside(run: Run, pen_mm: float, ends: Ends) -> list[Beside]:
+def lines_beside(run: Run, pen_mm: float, ends: Ends) -> list[StretchLine]:
     """The lines along a stretch in part of which two of a width run beside each other; none if it is other.
 
     Where the sheet does not tell the pen's width, NaN, the stretch's own narrow ink does.
@@ -93,7 +93,7 @@ def lines_beside(run: Run, pen_mm: float, ends: Ends) -> list[Beside]:
         return []
     off = round(OWN[0] * pen_mm / run.view.step_mm)
     cuts = [0, *(at for part in shared for at in part.cuts(off)), len(run)]
-    found, view = [Beside()], replace(run.view, width_mm=pen_mm)
+    found, view = [StretchLine()], replace(run.view, width_mm=pen_mm)
     for k, (first, last) in enumerate(zip(cuts[::2], cuts[1::2], strict=True)):
         # a line by itself, and then two of them
         own = replace(run.part(first, last), view=view)
@@ -108,7 +108,7 @@ def lines_beside(run: Run, pen_mm: float, ends: Ends) -> list[Beside]:
     return found
 
 
-def _add_two(found: list[Beside], part: Shared, run: Run, pen_mm: float) -> None:
+def _add_two(found: list[StretchLine], part: Shared, run: Run, pen_mm: float) -> None:
     """Add the lines along a part that two share; the last of those found comes in, and the last goes on."""
     felt = replace(part.felt, view=replace(run.view, width_mm=pen_mm))
     left, right = within_rims(felt, felt.widths_mm, pen_mm)
@@ -116,10 +116,10 @@ def _add_two(found: list[Beside], part: Shared, run: Run, pen_mm: float) -> None
     before_mm, behind_mm = _ends_mm(run, part, left, pen_mm)
     found[-1].goes_on([strand[part.comes]], [])
     if part.comes == part.goes_on:
-        found.insert(0, Beside([strand[-part.comes]], [], (before_mm, behind_mm)))
+        found.insert(0, StretchLine([strand[-part.comes]], [], (before_mm, behind_mm)))
     else:
         found[-1].ends_mm = found[-1].ends_mm[0], behind_mm
-        found.append(Beside([strand[part.goes_on]], [], (before_mm, None)))
+        found.append(StretchLine([strand[part.goes_on]], [], (before_mm, None)))
 
 
 def _shared(stations: Run, pen_mm: float) -> Iterator[Shared | None]:

@@ -15,25 +15,29 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.ink.felt import FEWEST_STATIONS
+from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends
 from morfax.tracer.ink.run import Run, smooth
 
 # All limits below were chosen by trial on drawings of nets and on line art.
 # of its way: ink of two lines that becomes wider by more has come to others that cross it
 FLARE = 0.15
 TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
-# widths from there: the slope of the ink's width up to the nearer place ...
+# widths from there: the slope of the ink's width up to the nearer place, the mean of both sides, ...
 CROSSED = 3.0, 6.0
-# ... is so much of that between the two, or more: of lines that only touch, as a parabola does, a third
-LEVEL_OFF = 0.45
+# ... is so much of that between the two, or more: of lines that cross, straight or bent, it is as much, of
+# lines that only touch, as a parabola does, a third
+LEVEL_OFF = 0.6
+# widths from the middle of their ink: two lines that are further apart are told from each other
+APART = 0.1
 # of the stations where ink lies still: of two lines more lie together, between flares. Ink that swells and
 # shrinks on the way is a line that is broader at its bends, as a printed letter's (0.2 to 0.7; a pen's loop
 # 0.83); by trial
 STILL = 0.75
 
 
-def strands(stations: Run, width_mm: float) -> list[Run]:
-    """The two lines of a width whose ink runs together along some stations: half a width within its rims.
+def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list[Run]:
+    """The two lines of a width whose ink runs together along some stations: half a width within its rims;
+    `ends` says where their ink ends.
 
     None where the ink swells on the way. Where the ink is as narrow as one line they touch, or change sides:
 
@@ -49,7 +53,10 @@ def strands(stations: Run, width_mm: float) -> list[Run]:
     part_of = _without_flares(widths, known, reach, FLARE * reach * stations.view.step_mm)
     if part_of is None:
         return []
-    return within_rims(stations.part(*part_of), widths[slice(*part_of)], width_mm)
+    stations, widths = stations.part(*part_of), widths[slice(*part_of)]
+    near, far = (round(share * width_mm / stations.view.step_mm) for share in CROSSED)
+    part = _told_apart(0.5 * (widths / width_mm - 1), ends, near, far)
+    return within_rims(stations.part(part.start, part.stop), widths[part], width_mm)
 
 
 def within_rims(part: Run, widths: Array, width_mm: float) -> list[Run]:
@@ -62,6 +69,21 @@ def within_rims(part: Run, widths: Array, width_mm: float) -> list[Run]:
         smooth(replace(own, places_mm=part.places_mm + side * aside[:, None] * normals))
         for side in (1, -1)
     ]
+
+
+def _told_apart(aside: Array, ends: Ends, near: int, far: int) -> slice:
+    """The stations from where two lines are told apart, by how far both are from their ink's middle, widths.
+
+    Where they are together within so `far` of a junction they cross or meet at it, and which of them is on
+    which side is told from beyond that. Not where their ink ends.
+    """
+    together, count = np.flatnonzero(aside < APART), len(aside)
+    parts = np.split(together, np.flatnonzero(np.diff(together) > near) + 1)
+    parts = [part for part in parts if len(part)]
+    before = [part[-1] + 1 for part in parts if part[0] < far and not ends[0]]
+    behind = [part[0] for part in parts if part[-1] + far >= count and not ends[1]]
+    begin, end = int(max(before, default=0)), int(min(behind, default=count))
+    return slice(begin, end) if end - begin > FEWEST_STATIONS else slice(0, count)
 
 
 def _sides(aside: Array, width_mm: float, step_mm: float) -> Array:
@@ -78,7 +100,7 @@ def _sides(aside: Array, width_mm: float, step_mm: float) -> Array:
             for side in (-1, 1)
         ]
         chords = [aside[at + side * near] / near for side in (-1, 1)]
-        if min(chords) > LEVEL_OFF * max(slopes) and min(slopes) > 0:
+        if sum(chords) > LEVEL_OFF * sum(slopes) and min(chords) > 0:
             sides[at:] *= -1
     return sides
 
@@ -100,7 +122,11 @@ def _without_flares(
     # a flare is still for a moment where it is broadest
     parts = np.split(quiet, np.flatnonzero(np.diff(quiet) > reach) + 1)
     longest = max(parts, key=lambda part: int(part[-1] - part[0]))
+    before, behind = steps[quiet[0] : longest[0]], steps[longest[-1] : quiet[-1]]
     among = steps[quiet[0] : quiet[-1]]
-    if len(longest) < STILL * len(quiet) and among.max() > most_mm and among.min() < -most_mm:
+    is_both = among.max() > most_mm and among.min() < -most_mm
+    # it may become narrower as it comes from one flare, and broader as it goes into the other
+    swells = before.max(initial=0.0) > most_mm or behind.min(initial=0.0) < -most_mm
+    if len(longest) < STILL * len(quiet) and is_both and swells:
         return None
     return first + int(longest[0]), first + int(longest[-1]) + reach + 1

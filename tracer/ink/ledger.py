@@ -3,8 +3,7 @@
 Signals: the sheet as it was felt, and the ways of the head, (n, 2) sheet mm, in; the balance out, mm of line
 by the area of its ink, and what was left out, by reason.
 
-The thinned ink says where the middles of all lines are: those near to a way have been followed. Ink that two
-lines share is followed by two strokes.
+Thinned ink near to a way has been followed (see `bare`). Ink that two lines share is followed by two strokes.
 
 Source: our own; the patent has one contour to a tape.
 """
@@ -19,25 +18,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
-from morfax.motion.long_array import one_in
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.polyline import evenly
-from morfax.motion.usual import THINNED
-from morfax.tracer.drawing.depth import depth_of
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.effort import LOOKED_MM
-from morfax.tracer.ink.graph import Graph
+from morfax.tracer.ink.bare import Bare, Thinned, places_along
 from morfax.tracer.ink.hatching import Hatching, hatching
 from morfax.tracer.ink.left_out import Area, InkLeft
 from morfax.tracer.ink.missed_ink import Missed, missed_ink
 from morfax.tracer.ink.pale import Pale, pale_lines
 from morfax.tracer.ink.stretches import FeltSheet
 
-BESIDE_WIDTHS = 0.7  # ink nearer to a way than this is that way's; by trial on drawings of nets
 SPECK_MM = 2.0  # a shorter patch of ink on which no stroke runs is a speck ...
 DOT_WIDTHS = 2.5  # ... and one that is no longer in its own widths a dot; 1.8 is a round one
-LOST_MM = 1.0  # a stretch that is left is told if it is as long
 HALF = 0.5
 TWO_LINES = 1.0  # pen's widths: a way no further from the middle of doubled ink runs in it
 # of doubled ink: its lines bend, and are a little longer or shorter than its middle
@@ -50,10 +42,10 @@ Patch = tuple[float, float, float]  # about where its middle is, and its length,
 class Balance(NamedTuple):
     """The ink of a sheet, mm of line by its area: followed, left, specks, and the rims of filled shapes.
 
-    `lost`: stretches on which no stroke runs, (place X, place Y, length) mm, the longest first. `letters_mm`
-    of lettering were left out, `lettering_mm` followed. `areas`: solid areas and letters that were left out.
-    `hatching`: families of strokes that are hatching, and were followed. `pale`: lines too pale to be ink.
-    `single`: stretches of doubled ink (see `doubled`) along which only one stroke runs, likewise.
+    `lost`: parts of stretches on which no stroke runs, (place X, place Y, length) mm, the longest first.
+    `letters_mm` of lettering were left out, `lettering_mm` followed. `areas`: solid areas and letters that
+    were left out. `hatching`: families of strokes that are hatching, and were followed. `pale`: lines too
+    pale to be ink. `single`: stretches of doubled ink (see `doubled`) along which only one stroke runs.
     """
 
     followed_mm: float
@@ -99,38 +91,36 @@ def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> 
     """What has been followed along some ways (n, 2) mm, and what is left."""
     # 1. which of the thinned pixels are a way's
     graph = felt.graph
-    places = graph.places_mm(sheet.drawing)
-    patch = _patches_at(sheet, graph.rows, graph.columns)
-    usual_mm = _usual_mm(sheet, left)
-    wide_mm = np.where(left.solid_px > 0, usual_mm, np.maximum(sheet.widths_mm, usual_mm))
-    near_mm = BESIDE_WIDTHS * wide_mm[patch]
-    run = np.vstack([evenly(one_in(way, THINNED), LOOKED_MM) for way in ways])
-    is_near = Neighbours(run).nearest(places)[0] < near_mm
+    thinned, run = Thinned.of(sheet, graph, left), places_along(ways)
+    places, patch = thinned.places_mm, thinned.patch
+    is_near = thinned.near(run)
     # 2. by patches; a burr of a line's edge is the middle of no line
     are_on, count = graph.on_stretches(), sheet.patches.count
     pixels = np.maximum(np.bincount(patch[are_on], minlength=count), 1)
     shares = np.bincount(patch[are_on], is_near[are_on], count) / pixels
-    lengths_mm, solid = _line_lengths_mm(sheet, left, usual_mm), sheet.are_solid
+    lengths_mm, solid = _line_lengths_mm(sheet, left, thinned.usual_mm), sheet.are_solid
     are_small = lengths_mm < np.maximum(SPECK_MM, DOT_WIDTHS * sheet.widths_mm)
     specks = ~solid & ~left.letters & (shares == 0) & are_small
     lines = ~solid & ~left.letters & ~specks
     # 3. ink beside the strokes, of which the thinned pixels show nothing; strokes that swell, as those of
     # printed letters do, tell no pen
-    single, lost = dict(_single(felt, places, run)), dict(_lost(graph, places, is_near))
+    single, lost = dict(_single(felt, places, run)), list(thinned.bare(graph, is_near))
     pen_mm = felt.doubled.pen_mm if felt.doubled.stations else math.inf
     are_of_a_pen = lines & (shares > 0) & ~left.lettering & (felt.doubled.pen_mm > 0)
-    of_lines_mm = np.minimum(wide_mm, pen_mm) * are_of_a_pen
+    of_lines_mm = np.minimum(thinned.wide_mm, pen_mm) * are_of_a_pen
     pieces = missed_ink(sheet, left, run, of_lines_mm)
     told = np.zeros(len(places), bool)
-    for n in {*single, *lost}:
+    for n in single:
         told[graph.stretches[n].pixels] = True
+    for part in lost:
+        told[graph.stretches[part.stretch].pixels[part.first : part.last]] = True
     missed, missed_mm = _missed(pieces, Neighbours(places), told, is_near)
     return Balance(
         float(np.sum((shares * lengths_mm)[lines])) - missed_mm,
         float(np.sum(((1 - shares) * lengths_mm)[lines])) + missed_mm,
         float(lengths_mm[specks & (left.solid_px == 0)].sum()),
         float(lengths_mm[solid].sum()),
-        _longest_first([*lost.values(), *missed]),
+        _longest_first([*map(_patch, lost), *missed]),
         float(lengths_mm[left.letters].sum()),
         float((shares * lengths_mm)[lines & left.lettering].sum()),
         left.areas,
@@ -147,24 +137,6 @@ def _line_lengths_mm(sheet: Sheet, left: InkLeft, usual_mm: float) -> Array:
         return sheet.lengths_mm
     ink_mm2 = (sheet.patches.areas - left.solid_px) * sheet.drawing.pitch_mm**2
     return np.where(has_solids, ink_mm2 / usual_mm, sheet.lengths_mm)
-
-
-def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
-    """The usual width of a sheet's lines, mm; a patch with a solid area is broader than its lines."""
-    if left.solid_px.any() and left.ink.any():
-        # as of a patch, see `drawing.strokes`
-        wide_px = 4 * float(depth_of(left.ink).mean()) - 2
-        return max(wide_px, 1.0) * sheet.drawing.pitch_mm
-    weights = np.where(sheet.are_solid, NOT_ZERO, sheet.lengths_mm)
-    return float(np.average(sheet.widths_mm, weights=weights))
-
-
-def _patches_at(sheet: Sheet, rows: Indices, columns: Indices) -> Indices:
-    """The patch of each of some pixels of ink."""
-    patches, width = sheet.patches, sheet.drawing.darkness.shape[1] + 1
-    begins = patches.row.astype(np.int64) * width + patches.begin
-    runs = np.searchsorted(begins, rows * width + columns, side="right") - 1
-    return np.asarray(patches.patch[np.maximum(runs, 0)], np.int64)
 
 
 def _single(felt: FeltSheet, places: Array, run: Array) -> Iterator[tuple[int, Patch]]:
@@ -205,18 +177,12 @@ def _missed(
     return found, missed_mm
 
 
+def _patch(part: Bare) -> Patch:
+    """About where the middle of a part of a stretch is, and how long it is."""
+    x, y = part.places_mm[len(part.places_mm) // 2]
+    return round(float(x), 1), round(float(y), 1), round(part.length_mm, 1)
+
+
 def _longest_first(patches: Iterable[Patch]) -> tuple[Patch, ...]:
     """Patches in order of their lengths."""
     return tuple(sorted(patches, key=lambda patch: -patch[2]))
-
-
-def _lost(
-    graph: Graph, places: Array, is_near: NDArray[np.bool_]
-) -> Iterator[tuple[int, Patch]]:
-    """The stretches of which more than half is left, with their numbers."""
-    for n, stretch in enumerate(graph.stretches):
-        middles = places[stretch.pixels]
-        length_mm = float(np.hypot(*np.diff(middles, axis=0).T).sum())
-        if length_mm > LOST_MM and np.mean(is_near[stretch.pixels]) < HALF:
-            x, y = middles[len(middles) // 2]
-            yield n, (round(float(x), 1), round(float(y), 1), round(length_mm, 1))

@@ -148,7 +148,8 @@ def _two_lines(sheet: FeltSheet, number: int) -> list[Run]:
     """
     if not sheet.is_shared(number):
         return []
-    two = strands(sheet.taken(number).stations, sheet.widths_mm[number])
+    taken, ends = sheet.taken(number), sheet.ends[number]
+    two = strands(taken.stations, sheet.widths_mm[number], ends)
     is_known = number in sheet.together or number in sheet.doubled.stations
     least_mm = 0.0 if is_known else STILL_SHARE * sheet.measured[number].length_mm
     return two if two and two[0].length_mm > least_mm else []

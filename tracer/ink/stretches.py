@@ -21,7 +21,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Window
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.apertures import feel_all
-from morfax.tracer.ink.beside import Beside, lines_beside
+from morfax.tracer.ink.beside import StretchLine, lines_beside
 from morfax.tracer.ink.doubled import BROADER, LEAST_PX, Doubled
 from morfax.tracer.ink.felt import (
     Ends,
@@ -77,7 +77,7 @@ class FeltSheet:
     ends: list[Ends]  # of each stretch, whether the ink ends there
     doubled: Doubled = field(default_factory=Doubled)
     # the lines of each stretch in part of which two run beside each other
-    beside: dict[int, list[Beside]] = field(default_factory=dict)
+    beside: dict[int, list[StretchLine]] = field(default_factory=dict)
     # stretches that have turned out to be two lines
     together: set[int] = field(default_factory=set)
     _taken: dict[tuple[int, float], Taken] = field(default_factory=dict)
@@ -145,7 +145,7 @@ class FeltSheet:
         widths = _line_widths(straight, measured, settings)
         ends = [(_is_end(s.nodes[0], at), _is_end(s.nodes[1], at)) for s in graph.stretches]
         doubled, some = Doubled(), _no_letters(graph, letters)
-        beside = dict[int, list[Beside]]()
+        beside = dict[int, list[StretchLine]]()
         if not settings.line_width_mm and not drawing.grainy:
             patch, pixel_mm = graph.patches(), drawing.pitch_mm * drawing.finer
             narrowest_mm = LEAST_PX[drawing.is_hard] * pixel_mm
@@ -153,7 +153,9 @@ class FeltSheet:
             patch_of = {n: int(patch[n]) for n in some}
             doubled = Doubled.of(felt, swell, patch_of, straight.onward, narrowest_mm)
             pen_mm = narrow_of(list(swell.values()))
-            some_beside = swell if are_strokes else {}
+            # a step of few pixels, where these are ink or paper alone, is no line that begins
+            tells = pen_mm > narrowest_mm or not drawing.is_hard
+            some_beside = swell if are_strokes and tells else {}
             beside = {
                 n: lines
                 for n in some_beside

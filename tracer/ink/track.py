@@ -17,7 +17,7 @@ Source: our own; see `tracer.head` for the head itself.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -88,7 +88,7 @@ def stroke_along(
 ) -> InkStroke:
     """Run the head along a chain; `told` hears the travel, mm."""
     pieces = pieces_of(chain, junctions)
-    longest = max(pieces, key=lambda piece: len(piece.run)).run
+    width_mm = _wide_mm(pieces)
     if chain.closed:
         pieces = cut_open(pieces)
     first, last = pieces[0].run, pieces[-1].run
@@ -100,19 +100,34 @@ def stroke_along(
         out, into = first.leg_out(), last.leg_in()
         begins = out.at(-back_mm), out.heading_at(-back_mm)
         ends = into.at(on_mm), into.heading_at(on_mm)
-    head = InkHead(
-        Carriage(Stance(*begins, first.view), settings, MOTION_RATE_HZ), settings, told
-    )
+    stroke = along_pieces(pieces, begins, ends, settings, told)
+    return stroke._replace(closed=chain.closed, width_mm=width_mm)
+
+
+def along_pieces(
+    pieces: Sequence[Piece],
+    begins: tuple[Array, float],
+    ends: tuple[Array, float],
+    settings: Settings,
+    told: Told | None = None,
+) -> InkStroke:
+    """Run the head along pieces, from one place and heading to another."""
+    first = pieces[0].run
+    carriage = Carriage(Stance(*begins, first.view), settings, MOTION_RATE_HZ)
+    head = InkHead(carriage, settings, told)
     head.set_out(first, *begins)
     for k, piece in enumerate(pieces):
         head.follow(piece.run)
         if k + 1 < len(pieces):
             head.through(piece.run, pieces[k + 1])
-    head.arrive(last, ends)
-    way_mm = head.carriage.positions_mm
-    return InkStroke(
-        way_mm, length_mm(way_mm), chain.closed, longest.view.width_mm, head.carriage.led
-    )
+    head.arrive(pieces[-1].run, ends)
+    way_mm = carriage.positions_mm
+    return InkStroke(way_mm, length_mm(way_mm), False, _wide_mm(pieces), carriage.led)
+
+
+def _wide_mm(pieces: Sequence[Piece]) -> float:
+    """How wide the line of the longest of some pieces is, mm."""
+    return max(pieces, key=lambda piece: len(piece.run)).run.view.width_mm
 
 
 @dataclass

@@ -9,8 +9,9 @@ leaves it, if one does.
 A cross: see `crosses`. A ring: spokes from its middle meet paper, then ink as wide as a line, then paper
 again; its place is the middle of the circle through them.
 
-A cross is nothing but a reference point. A ring is a hole of the part as well: of itself it is a reference
-point only where the line that begins at it leads to a contour, or the operator says that a program is drawn.
+A cross is nothing but a reference point. A ring is a hole of the part as well, or a box of a form: of itself
+it is a reference point only where a single line leaves it and leads to a contour, or the operator says that a
+program is drawn.
 A symbol, a cross in a circle, marks a position or a hole's middle: it is one only if the operator says so.
 
 Source: patent ES 361967, section on use: a reference point, normally outside the contour, and a lead line
@@ -52,19 +53,22 @@ Kind = Literal["cross", "ring", "symbol"]
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A reference point: its place, mm, and the clean beginning of the lead line that touches it."""
+    """A reference point: its place, mm, the clean beginning of the lead line that touches it, and whether
+    more lines leave it.
+    """
 
     place_mm: tuple[float, float]
     kind: Kind
     lead: Leg | None = None
+    is_forked: bool = False
 
     def is_sure(self, sheet: Sheet, patch: int) -> bool:
-        """Whether it is one for a line of a patch that begins at it: a cross, or a ring if the patch goes
-        round a contour besides.
+        """Whether it is one for a line of a patch that begins at it: a cross, or a ring that one line leaves
+        if the patch goes round a contour besides.
         """
         if self.kind == "cross" or sheet.bare_rings:
             return True
-        if self.kind == "symbol":
+        if self.kind == "symbol" or self.is_forked:
             return False
         return any(
             size_mm > LARGEST_MM or math.dist(middle_mm, self.place_mm) > LEAST_MM
@@ -178,11 +182,15 @@ def _inside(sheet: Sheet, patch: int) -> Iterator[tuple[Array, float, bool]]:
 def _reference(view: View, centre: Array, reach_mm: float, kind: Kind) -> Reference:
     """A reference point that reaches so far from its centre, with its lead line."""
     place_mm = float(centre[0]), float(centre[1])
-    return Reference(place_mm, kind, _lead(view, centre, reach_mm))
+    leads = _leads(view, centre, reach_mm)
+    lead = next(leads, None)
+    is_forked = kind == "ring" and any(_leaves(view, centre, reach_mm, each) for each in leads)
+    return Reference(place_mm, kind, lead, is_forked)
 
 
-def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
-    """The clean beginning of the line that leaves a cross or a ring, felt back to it as far as it is clean.
+def _leads(view: View, centre: Array, reach_mm: float) -> Iterator[Leg]:
+    """The clean beginnings of the lines that leave a cross or a ring, felt back to it as far as they are
+    clean.
 
     The cross or the ring reaches so far from its centre. Two lines that part there are a part of the drawing.
     """
@@ -205,8 +213,17 @@ def _lead(view: View, centre: Array, reach_mm: float) -> Leg | None:
             back = view.feel(leg.end_mm, leg.heading_rad + math.pi, reach_mm + view.width_mm)
             last = max(1, len(back) - round(view.width_mm / view.step_mm))
             clear = back[1:last]  # of the other arms
-            return leg_of(np.vstack([clear[::-1], seen]), False, view.leg_mm)
-    return None
+            yield leg_of(np.vstack([clear[::-1], seen]), False, view.leg_mm)
+            break
+
+
+def _leaves(view: View, centre: Array, reach_mm: float, lead: Leg) -> bool:
+    """Whether the line of a lead leaves the ring that reaches so far: ink leads back from it to the ring."""
+    back = lead.at(-np.arange(0.0, reach_mm, view.step_mm))
+    on_ring = np.hypot(*(back - centre).T) < reach_mm
+    if not on_ring.any():
+        return False
+    return bool((view.darkness_along(back[: np.argmax(on_ring)]) > view.level).all())
 
 
 def _round(along_mm: Array, circle_mm: float) -> Array:

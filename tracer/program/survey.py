@@ -28,6 +28,7 @@ import numpy as np
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import APART_MM
 from morfax.tracer.drawing.enclosure import NONE, Enclosure
+from morfax.tracer.drawing.lengths import told_mm
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
@@ -105,7 +106,7 @@ class Survey:
     @property
     def left_out_mm(self) -> float:
         """Length of the patches that have no number, mm."""
-        return float(self.sheet.lengths_mm[list(self.left_out)].sum())
+        return float(told_mm(self.sheet)[list(self.left_out)].sum())
 
     @property
     def width_mm(self) -> float | None:
@@ -120,9 +121,10 @@ def survey(setup: Setup) -> Survey:
     contours, _ = selection.plan(sheet, "contours")
     letters = lettering(sheet)
     # 1. patches that are lines
-    drawn = _references(setup)
+    drawn, lengths_mm = _references(setup), told_mm(sheet)
     seen = [
-        _of_patch(setup, contour, view, drawn) for contour, view in _viewed(setup, contours)
+        _of_patch(setup, contour, view, drawn, float(lengths_mm[contour.stroke.patch]))
+        for contour, view in _viewed(setup, contours)
     ]
     entries = {entry.patch: entry for entry in _with_references(seen, contours)}
     # 2. dots that stand alone, and slots whose sides run together
@@ -164,7 +166,9 @@ def _references(setup: Setup) -> list[Reference]:
     return list(references(setup.sheet, view))
 
 
-def _of_patch(setup: Setup, contour: Contour, view: View, drawn: list[Reference]) -> Entry:
+def _of_patch(
+    setup: Setup, contour: Contour, view: View, drawn: list[Reference], length_mm: float
+) -> Entry:
     """What a patch looks like, but for what it goes round: "several" with more than two ends, "closed" with
     none.
     """
@@ -180,7 +184,7 @@ def _of_patch(setup: Setup, contour: Contour, view: View, drawn: list[Reference]
         contour.number,
         "several" if len(ends) > 2 else "open" if ends else "closed",
         starts_mm[0],
-        stroke.length_mm,
+        length_mm,
         stroke.width_mm,
         stroke.patch,
         is_solid=bool(sheet.are_solid[stroke.patch]),

@@ -25,6 +25,7 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import InkLeft, ink_left
+from morfax.tracer.ink.put_down_again import put_down_again
 from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.struck_off import struck_off
@@ -79,10 +80,10 @@ def _of_strokes(
     give_back()
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt, _told_of(progress)), settings, progress)
-    strokes = _kept(_mended(loops, run))
+    strokes = struck_off(sheet.drawing, _long_enough(_kept(_mended(loops, run))))
+    strokes += put_down_again(sheet, felt, left, strokes, settings)
     felt = felt.without_cells()
     give_back()
-    strokes = struck_off(sheet.drawing, _long_enough(strokes))
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
@@ -97,7 +98,7 @@ def _of_strokes(
     broad += _slots_left(setup, lines)
     setup.sheet.seen.clear()
     give_back()
-    off = strokes_off_ink(left.drawing, lines)
+    off = strokes_off_ink(left.drawing, lines, settings.gap_mm)
     broad += [place for place in off if not is_about(place, beside, lines)]
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
     ink = balance(sheet, felt, left, [line.xy_mm for line in lines])

@@ -69,11 +69,11 @@ def test_what_the_cells_saw_is_gone_when_the_strokes_are_held_against_the_ink(
         monkeypatch.setattr(trace_ink_module, name, told)
 
     monkeypatch.setattr(photocell, "behind_aperture", kept)
-    for name in ("as_contours", "struck_off", "strokes_off_ink"):
+    for name in ("as_contours", "strokes_off_ink"):
         counted(name)
     lines = trace_ink(drawing).lines
     assert len(lines) > 1 and len(seen) > 1
-    assert alive == {"struck_off": 0, "as_contours": 0, "strokes_off_ink": 0}
+    assert alive == {"as_contours": 0, "strokes_off_ink": 0}
 
 
 def test_a_bar_and_a_spur_are_followed_beside_the_outline() -> None:

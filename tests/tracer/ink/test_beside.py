@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from morfax.motion.polyline import length_mm, nearest_mm
+from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.beside import Shared, lines_beside
@@ -17,6 +18,7 @@ from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
+from tests.tracer.drawing.test_grain import opened
 from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline, together
 
 CLEAR = polyline((5, 40), (55, 40))  # a line by itself
@@ -59,6 +61,21 @@ def test_bent_lines_of_two_pixels_are_two_strokes() -> None:
     for line in (one, other):
         # half of a pixel
         assert min(aside_mm(line, stroke.xy_mm) for stroke in found.lines) < 0.127
+
+
+@pytest.mark.parametrize(("width_mm", "dpi"), [(0.5, 200.0), (0.45, 300.0)])
+def test_a_line_of_ink_and_paper_alone_is_one_stroke_where_it_is_nearly_level(
+    width_mm: float, dpi: float
+) -> None:
+    """Of two levels, as a fax has it: from step to step it is a pixel broader or narrower."""
+    turn = np.linspace(0, 2 * np.pi, 1500)
+    across = 30 * np.cos(turn) - 9 * np.cos(2 * turn)
+    up = 14 * np.sin(turn) + 5 * np.sin(2 * turn) * np.cos(turn)
+    fish = np.column_stack([105 + 2.4 * across, 50.03 + 2.4 * up])
+    levels = np.where(inked(fish, width_mm=width_mm, dpi=dpi).darkness > 0.5, 0.0, 255.0)
+    (stroke,) = trace_ink(opened(levels, dpi)).lines
+    assert stroke.ending == "closed"
+    assert aside_mm(fish, stroke.xy_mm) < MM_PER_INCH / dpi  # a pixel, at its corners
 
 
 def beside(drawing: Drawing) -> dict[int, list[int]]:

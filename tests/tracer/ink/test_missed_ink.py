@@ -79,3 +79,16 @@ def test_the_ledger_counts_missed_ink_as_left_and_lists_its_place() -> None:
     assert some.left_mm > 0.7 and some.followed_mm < all_of_it.followed_mm - 0.7
     ((x, y, _),) = some.lost
     assert (x, y) == pytest.approx((19.5, 10.6), abs=0.2)
+
+
+def test_a_part_of_a_line_that_no_stroke_runs_along_is_listed_however_long_the_line_is() -> (
+    None
+):
+    beyond = polyline((6, 20), (6, 4), (46, 4), (46, 26), (6, 26), (6, 25))
+    some = ledger(UPPER, LOWER, beyond)
+    ((x, y, long_mm),) = some.lost
+    # ink nearer to a way than 0.7 of its width is that way's
+    assert (x, y) == pytest.approx((6, 22.5), abs=0.2) and long_mm == pytest.approx(
+        4.0, abs=0.3
+    )
+    assert some.left_mm == pytest.approx(long_mm, abs=0.5)

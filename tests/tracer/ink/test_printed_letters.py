@@ -49,7 +49,9 @@ def printed(font: str, size_px: int, *texts: str) -> Drawing:
     ],
 )
 def test_letters_whose_strokes_swell_are_followed(font: str, size_px: int) -> None:
-    """Bowls and stems were taken for two lines that run together, and a fifth of a page was lost."""
+    """Bowls and stems were taken for two lines that run together, and a fifth of a page was lost; and of an 8
+    half a loop, of a g half a bowl, of an E the stem.
+    """
     ink = trace_ink(printed(font, size_px, "DRAWING 3986", "SEGa Rg Bead")).ink
     assert ink is not None
     assert ink.lost == ()

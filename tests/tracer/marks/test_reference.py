@@ -207,3 +207,19 @@ def test_of_many_holes_each_line_asks_only_those_next_to_it(
     # its own hole, as ink and as a patch, and the four beside it
     assert len(asked) <= 6 * len(holes)
     assert all(found is not None and found.kind == "ring" for found in asked)
+
+
+@pytest.mark.parametrize("size_mm", [3.2, 4.0])
+def test_a_box_of_a_row_of_boxes_is_no_reference_point(size_mm: float) -> None:
+    """Spokes meet the sides of a square box as a ring's, but lines leave it at more than one corner."""
+    left, low, boxes = 5.0, 8.0, 8
+    right, high = left + boxes * size_mm, low + size_mm
+    row = polyline((left, low), (right, low), (right, high), (left, high), (left, low))
+    bars = [
+        polyline((left + k * size_mm, low), (left + k * size_mm, high)) for k in range(boxes)
+    ]
+    sheet = Sheet.of(inked(row, *bars, width_mm=0.3, dpi=200, seed=3))
+    stroke = sheet.stroke(int(selection.lines_of(sheet)[0]))
+    view = view_of(sheet, None, stroke.width_mm)
+    ends = at_ends(view, sheet, stroke, 0.5, None)
+    assert all(end.reference_mm is None for end in ends)

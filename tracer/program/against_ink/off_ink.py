@@ -25,7 +25,7 @@ from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.against_ink.window import Window
 from morfax.tracer.sensing.view import STEP_WIDTHS
-from morfax.tracer.tangles.felt_pen import FAR, FeltPen
+from morfax.tracer.tangles.felt_pen import FAR, PAPER_FROM, FeltPen
 from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
 from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
 from morfax.tracer.tangles.spline import nearest_pieces, wrong_at
@@ -100,10 +100,12 @@ def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | 
             owns.append(own)
             inks.append(ink.only(np.flatnonzero(beside)))
             away.append(away_mm[beside])
-    if sum(map(len, away)) < FEWEST:
+    every_mm = np.concatenate([np.empty(0), *away])
+    # of a line along coarse pixels none may lie where paper begins
+    if len(every_mm) < FEWEST or not (every_mm > PAPER_FROM * width_mm).any():
         return None
     dark = np.concatenate([ink.darkness for ink in inks])
-    pen = FeltPen.of(np.concatenate(away), inks[0]._replace(darkness=dark))
+    pen = FeltPen.of(every_mm, inks[0]._replace(darkness=dark))
     left = [
         wrong_about(pen.sees(ink), own, np.zeros(len(own), bool), STEP_WIDTHS)[around]
         for ink, own in zip(inks, owns, strict=True)

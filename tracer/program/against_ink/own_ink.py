@@ -54,7 +54,7 @@ TILE_PX = 128  # of what is judged in one
 QUICK_PX = 256  # of what is looked through first
 
 
-class Beside(NamedTuple):
+class BesideInk(NamedTuple):
     """A stretch of a way beside its ink: the place furthest beside it, how long it is, mm, and whether
     it is above the whole limit.
     """
@@ -92,7 +92,9 @@ class _Tiles(NamedTuple):
         return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
 
 
-def beside(drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0) -> Iterator[Beside]:
+def beside(
+    drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0
+) -> Iterator[BesideInk]:
     """Where lines that closed or ended run beside their ink, by so much of the limit; nothing where no pen
     can be told.
     """
@@ -116,7 +118,7 @@ def beside(drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0) -> It
             places = 1 + station[stretch[-1]] - station[stretch[0]]
             place_mm = _mm(drawing, ways.places_px[station[worst]])
             long_mm = float(places * PLACES_PX * drawing.pitch_mm)
-            yield Beside(place_mm, long_mm, bool(over[worst] > least))
+            yield BesideInk(place_mm, long_mm, bool(over[worst] > least))
 
 
 def _least(half_px: Array) -> Array:

@@ -8,7 +8,8 @@ All the ink is some stroke's: what a pen leaves there is no other line's, as it 
 
     off = max(ink left, ink drawn on paper), in widths of the pen squared, in a box as wide as the pen
 
-of the pen's widths that explain the box best. Ends that are alone are left out: a pen is lifted as it likes.
+of the pen's widths that explain the box best. Ends that are alone are left out, and so are gaps that the head
+may cross: a pen is lifted as it likes.
 
 Signals: the drawing and its strokes in; places out, the worst first.
 
@@ -28,10 +29,11 @@ from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.motion.usual import THINNED
+from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
-from morfax.tracer.limits import CLEAR_WIDTHS
+from morfax.tracer.limits import CLEAR_WIDTHS, PAPER
 from morfax.tracer.program.against_ink.own_ink import PLACES_PX, Part, parts
 from morfax.tracer.program.against_ink.pen_on_ink import (
     Band,
@@ -54,13 +56,18 @@ TILE_PX = 192  # of what is judged in one
 STATION_PX = 2  # places from one that is judged to the next
 
 
-def strokes_off_ink(drawing: Drawing, lines: Sequence[Line]) -> list[Unexplained]:
-    """Where strokes along all the ink are off it, the worst first; nothing where no pen can be told."""
+def strokes_off_ink(
+    drawing: Drawing, lines: Sequence[Line], gap_mm: float = 0.0
+) -> list[Unexplained]:
+    """Where strokes along all the ink, over gaps in it too, are off it, the worst first; nothing where no pen
+    can be told.
+    """
     noise, some = drawing.noise, [line for line in lines if not line.on_edge]
     if not noise.softness_px > 0 or drawing.grainy or drawing.finer > 1 or not some:
         return []
     ways, from_memory = _ways(drawing, some)
     is_station = from_memory & ~_at_lone_ends(ways)
+    is_station &= ~_at_lone_gaps(drawing, ways, gap_mm / drawing.pitch_mm)
     is_station &= np.arange(len(is_station)) % STATION_PX == 0
     if not is_station.any():
         return []
@@ -97,21 +104,55 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> tuple[Ways, NDArray[np.boo
 
 def _at_lone_ends(ways: Ways) -> NDArray[np.bool_]:
     """Which places are about an end of a stroke beside which no other runs."""
-    about_px = ABOUT_END * 2 * ways.half_px
     first = np.flatnonzero(np.diff(ways.line, prepend=-1))
     last = np.r_[first[1:], len(ways.line)] - 1
-    count = min(2 * math.ceil(about_px.max() / PLACES_PX), len(ways.line))
-    lone = np.zeros(len(ways.line), bool)
-    for ends, way in ((first, 1), (last, -1)):
-        near = Neighbours(ways.places_px).several(ways.places_px[ends], count)
-        off_px = np.hypot(*np.moveaxis(ways.places_px[near] - ways.places_px[ends, None], 2, 0))
-        on = np.abs(near - ends[:, None]) * PLACES_PX
-        is_other = (ways.line[near] != ways.line[ends, None]) | (on > 2 * about_px[:, None])
-        is_lone = ~(is_other & (off_px < about_px[:, None])).any(axis=1)
-        for k in np.flatnonzero(is_lone).tolist():
-            reach = math.ceil(about_px[k] / PLACES_PX)
-            lone[ends[k] : ends[k] + way * reach : way] |= True
-    return lone
+    lone = np.concatenate([ends[_are_lone(ways, ends)] for ends in (first, last)])
+    return _about(ways, lone, lone)
+
+
+def _at_lone_gaps(drawing: Drawing, ways: Ways, gap_px: float) -> NDArray[np.bool_]:
+    """Which places are about a gap in a stroke's ink, no longer than that, beside which no other runs."""
+    column, row = ways.places_px.T
+    is_bare = between(drawing.darkness, row, column, edge_goes_on=True) < PAPER
+    edges = np.diff(np.r_[False, is_bare, False].astype(np.int8))
+    first, last = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0) - 1
+    most_px = gap_px + CLEAR_WIDTHS * 2 * ways.half_px[ways.line[first]]
+    is_gap = (ways.line[first] == ways.line[last]) & ((last - first) * PLACES_PX < most_px)
+    is_gap &= _are_lone(ways, first) & _are_lone(ways, last)
+    return _about(ways, first[is_gap], last[is_gap])
+
+
+def _about(ways: Ways, first: NDArray[np.int64], last: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which places of their lines lie between some places and others, or so near that ends are looked at."""
+    about = np.zeros(len(ways.line), bool)
+    reach = np.ceil(_about_end_px(ways, first) / PLACES_PX).astype(int)
+    begins, ends = (
+        np.searchsorted(ways.line, ways.line[first], side) for side in ("left", "right")
+    )
+    begins, ends = np.maximum(first - reach + 1, begins), np.minimum(last + reach, ends)
+    for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
+        about[begin:end] = True
+    return about
+
+
+def _about_end_px(ways: Ways, some: NDArray[np.int64]) -> Array:
+    """How near to each of some places, if it were an end, the round of its pen is looked at, pixels."""
+    return np.asarray(ABOUT_END * 2 * ways.half_px[ways.line[some]])
+
+
+def _are_lone(ways: Ways, some: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether beside each of some places no other stroke runs, nor the same one farther on."""
+    if not len(some):
+        return np.zeros(0, bool)
+    about_px = _about_end_px(ways, some)
+    widest_px = ABOUT_END * 2 * float(ways.half_px.max())
+    count = min(2 * math.ceil(widest_px / PLACES_PX), len(ways.line))
+    near = Neighbours(ways.places_px).several(ways.places_px[some], count)
+    off_px = np.hypot(*np.moveaxis(ways.places_px[near] - ways.places_px[some, None], 2, 0))
+    on_px = np.abs(near - some[:, None]) * PLACES_PX
+    is_other = ways.line[near] != ways.line[some, None]
+    is_other |= on_px > 2 * about_px[:, None]
+    return np.asarray(~(is_other & (off_px < about_px[:, None])).any(axis=1))
 
 
 def _off(part: Part) -> Array:

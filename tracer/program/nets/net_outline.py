@@ -32,6 +32,7 @@ from morfax.motion.faults import LineFault
 from morfax.motion.long_array import one_in
 from morfax.motion.polyline import area_mm2, length_mm
 from morfax.motion.usual import THINNED
+from morfax.tracer.drawing.lengths import one_pen_mm
 from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
@@ -78,7 +79,7 @@ def of_net(setup: Setup) -> OfNet:
     if not may_solve(setup):
         return OfNet(setup)
     is_net = are_nets(sheet)
-    lengths_mm = sheet.one_pen_mm()
+    lengths_mm = one_pen_mm(sheet)
     longest_mm = float(np.max(lengths_mm[~is_net], initial=0.0))
     nets = np.flatnonzero(is_net & (lengths_mm > (1 - ALIKE) * longest_mm))
     if not len(nets) or _has_reference(setup):

@@ -86,3 +86,10 @@ def test_ink_of_another_line_goes_on_and_the_lines_own_does_not() -> None:
 def test_too_little_ink_shows_no_pen() -> None:
     drawing = inked(LINE, width_mm=WIDTH_MM, dpi=DPI, seed=1)
     assert felt_at(drawing, [Clean(LINE, np.array([], int))], WIDTH_MM) is None
+
+
+def test_pixels_that_lie_only_on_ink_show_no_pen() -> None:
+    """Along coarse pixels, no row of which lies between one and one and a quarter widths from the line."""
+    drawing = inked(polyline((5, 6.477), (60, 6.477)), width_mm=0.6, dpi=100, seed=1)
+    way = evenly(polyline((8, 6.477), (57, 6.477)), STEP_WIDTHS * 0.6)
+    assert felt_at(drawing, [Clean(way, np.arange(20, len(way) - 20))], 0.6) is None

@@ -55,6 +55,22 @@ def test_an_end_that_is_alone_is_not_told() -> None:
     assert strokes_off_ink(drawing, [stroke(polyline((4.6, 20), (35.4, 20)))]) == []
 
 
+GAP = polyline((4, 20), (19, 20)), polyline((21, 20), (36, 20))
+
+
+@pytest.mark.parametrize("gap_mm", [0.0, 1.0])
+def test_a_gap_that_the_head_may_cross_is_not_told(gap_mm: float) -> None:
+    told = strokes_off_ink(inked(*GAP, seed=3), [stroke(ACROSS)], gap_mm)
+    assert bool(told) == (gap_mm == 0.0)
+
+
+def test_paper_beside_another_stroke_is_no_gap() -> None:
+    beside = polyline((19.6, 20.7), (19.6, 30))
+    drawing, strokes = inked(*GAP, beside, seed=3), [stroke(ACROSS), stroke(beside)]
+    worst = strokes_off_ink(drawing, strokes, 1.0)[0]
+    assert worst.place_mm == pytest.approx((20, 20), abs=ABOUT_MM)
+
+
 def test_where_the_cell_led_the_ink_is_the_lines_own() -> None:
     drawing = inked(ACROSS, TIP, seed=3)
     assert strokes_off_ink(drawing, [stroke(line, CELL) for line in (ACROSS, CUT)]) == []

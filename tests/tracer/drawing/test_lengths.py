@@ -1,0 +1,81 @@
+"""Lengths: what a reader is told of a line that was not followed is true, whatever its angle and its pen.
+
+Broken on purpose, with the width by depths, or without the round ends of open lines, tests here fail.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from morfax.motion.polyline import length_mm
+from morfax.motion.units import MM_PER_INCH
+from morfax.tracer.drawing.drawing import Drawing, Reading
+from morfax.tracer.drawing.lengths import told_mm
+from morfax.tracer.drawing.scale import Scale
+from morfax.tracer.drawing.scan import Scan, Stated
+from morfax.tracer.drawing.strokes import Sheet
+from tests.tracer.inked import Points, arc, inked, polyline, together
+
+# slanting, at three angles; steep; round; closed, with corners
+LINES = (
+    polyline((5, 5), (35, 13)),
+    polyline((5, 20), (25, 38)),
+    polyline((42, 5), (50, 40)),
+    arc((65.0, 15.0), 8.0),
+    polyline((60, 30), (78, 33), (66, 46), (60, 30)),
+)
+
+
+def told(*drawn: tuple[Points, float]) -> list[float]:
+    """The lengths that are told of some lines, each of a pen, in their order, mm."""
+    return told_on(together(*drawn, seed=3), [line for line, _ in drawn])
+
+
+def told_on(drawing: Drawing, lines: Sequence[Points]) -> list[float]:
+    """The lengths that are told of some lines of a drawing, mm."""
+    sheet = Sheet.of(drawing)
+    lengths_mm = told_mm(sheet)
+    return [float(lengths_mm[sheet.patch_at(line[0])]) for line in lines]
+
+
+@pytest.mark.parametrize("width_mm", [0.35, 0.5, 0.9])
+@pytest.mark.parametrize("dpi", [200.0, 300.0, 600.0])
+def test_lengths_are_true_at_any_angle_width_and_resolution(
+    width_mm: float, dpi: float
+) -> None:
+    true_mm = [length_mm(line) for line in LINES]
+    seen = told_on(inked(*LINES, width_mm=width_mm, dpi=dpi, seed=3), LINES)
+    # the ink within corners; of lines of three pixels the two edges fall among a few pixels
+    tolerance = 0.02 if width_mm * dpi > 4 * MM_PER_INCH else 0.03
+    assert seen == pytest.approx(true_mm, rel=tolerance)
+
+
+def test_a_line_of_a_broad_pen_among_others_is_not_told_longer() -> None:
+    broad = polyline((5, 52), (75, 55))
+    *_, seen_mm = told(*((line, 0.4) for line in LINES), (broad, 0.8))
+    # its own width is that of its depths: half a pixel of 9 too narrow at the most
+    assert seen_mm == pytest.approx(length_mm(broad), rel=0.05)
+
+
+def test_a_dot_is_as_long_as_it_is_wide() -> None:
+    dot = polyline((70, 5), (70.1, 5))
+    *_, seen_mm = told(*((line, 0.5) for line in LINES), (dot, 0.5))
+    assert seen_mm == pytest.approx(0.5, abs=0.1)  # a pixel is 0.085 mm
+
+
+def test_the_edges_of_filled_shapes_are_as_long_as_they_are() -> None:
+    """A disc with a square hole, whose sides lie along the pixels."""
+    grey = np.full((700, 700), 240, np.uint8)
+    cv2.circle(grey, (350, 350), 280, 40, -1, cv2.LINE_AA)
+    cv2.rectangle(grey, (250, 250), (450, 450), 240, -1)
+    scan = Scan(Path("made.png"), grey, Stated((300.0, 300.0)))
+    sheet = Sheet.of(Drawing.of(scan, Scale(), reading=Reading(edge=True)))
+    px_mm = MM_PER_INCH / 300
+    true_mm = [math.tau * 280.5 * px_mm, 4 * 201 * px_mm]  # to the middles of the pixels' edges
+    assert sorted(told_mm(sheet), reverse=True) == pytest.approx(true_mm, rel=0.005)
