@@ -70,7 +70,7 @@ def watched(
         for block in stream:
             yield block
             done_s += block.duration_s
-            advance(done_s)
+            advance(min(done_s, total_s))  # of a program the total is about right only
 
 
 def never_back(advance: Advance) -> Callable[[float, float], None]:

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import INK, Mask, strips
 from morfax.tracer.drawing.contrast import DARKER, LEAST_STROKE_MM, LEAST_STROKE_PX
+from morfax.tracer.drawing.depth import depth_of
 from morfax.tracer.drawing.noise import measured
 from morfax.tracer.drawing.solids import LONG
 from morfax.tracer.drawing.spots import (
@@ -143,7 +144,7 @@ def _lines(
         return None
     rows, columns = np.nonzero(pale)
     patch = labels[rows, columns]
-    depth = cv2.distanceTransform(pale, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[rows, columns]
+    depth = depth_of(pale)
     areas = np.maximum(np.bincount(patch, minlength=count), 1)
     # a line's pixels are a quarter of its breadth deep, and half a pixel, as a mean
     broad_px = np.maximum(4 * np.bincount(patch, depth, count) / areas - 2, 1)

@@ -27,16 +27,23 @@ PER_PIXEL = 9.0
 PER_INKED_PIXEL = 5.0
 FIXED_BYTES = 0.3 * GB  # strips in work, libraries
 SMALL_PX = 16e6  # a sheet below this is tried in any case
+ALONE_FROM = (
+    -3
+)  # glibc's M_MMAP_THRESHOLD: larger pieces of memory are the system's own, each alone
+SHEET_BYTES = 8_000_000  # of a sheet that is worth that, 2 Mpx as floats; its pages are made anew each time
 
 
 def give_back() -> None:
-    """Have the C library give memory that is free back to the system, where it can (glibc).
+    """Have the C library give memory that is free back to the system, where it can (glibc), and from now on
+    what a sheet was in as soon as that is free.
 
-    It keeps what sheets as floats were in on the way, which most of a trace does not need again.
+    It keeps what sheets as floats were in on the way, which most of a trace does not need again, and puts
+    small things between them, which last.
     """
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if os.name == "posix" else None
-    if trim is not None:
-        trim(0)
+    library = ctypes.CDLL(None) if os.name == "posix" else None
+    if library is not None and hasattr(library, "malloc_trim"):
+        library.mallopt(ALONE_FROM, SHEET_BYTES)
+        library.malloc_trim(0)
 
 
 def make_sure(

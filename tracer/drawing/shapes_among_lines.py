@@ -22,6 +22,7 @@ import numpy as np
 
 from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import FRINGE_PX, INK, SOFTENED_PX, Mask
+from morfax.tracer.drawing.depth import depth_px
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.inks import Colour, covered
 from morfax.tracer.drawing.lengths import ONE_PEN
@@ -78,9 +79,7 @@ def drawing_of_all_ink(
 def has_lines(drawing: Drawing) -> bool:
     """Whether a drawing of lines is one, and no sheet of silhouettes."""
     ink = (drawing.darkness > INK).view(np.uint8)
-    depth = np.asarray(
-        cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
-    )
+    depth = depth_px(ink)
     usual_px = usual_width_px(depth)
     if usual_px * drawing.pitch_mm > BROADEST_MM:
         return False

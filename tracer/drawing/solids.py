@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import Mask, strips
+from morfax.tracer.drawing.depth import depth_px
 from morfax.tracer.drawing.middles import SHALLOWER
 from morfax.tracer.effort import FEW_PX
 from morfax.tracer.limits import LONGER_WIDTHS, ROUND
@@ -61,20 +62,13 @@ class Solids(NamedTuple):
     @classmethod
     def of(cls, ink: Mask) -> Solids:
         """The solid areas of some ink."""
-        usual_px = usual_width_px(_depth(ink))
+        usual_px = usual_width_px(depth_px(ink))
         whole = _without_specks(ink, usual_px)
-        solid = _solid(whole, _depth(whole), usual_px)
+        solid = _solid(whole, depth_px(whole), usual_px)
         if not solid.any():
             return cls(solid)
         solid |= _corners(solid, whole, LONGER_WIDTHS * usual_px + 2)
         return cls(solid, _each(solid))
-
-
-def _depth(ink: Mask) -> NDArray[np.float32]:
-    """How far each pixel of some ink is from paper."""
-    return np.asarray(
-        cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32
-    )
 
 
 def usual_width_px(depth: NDArray[np.float32]) -> float:

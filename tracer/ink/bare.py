@@ -13,7 +13,6 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,6 +21,7 @@ from morfax.motion.long_array import one_in
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly, length_mm
 from morfax.motion.usual import THINNED
+from morfax.tracer.drawing.depth import depth_of
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.effort import LOOKED_MM
@@ -92,9 +92,8 @@ def places_along(ways: Iterable[Array]) -> Array:
 def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
     """The usual width of a sheet's lines, mm; a patch with a solid area is broader than its lines."""
     if left.solid_px.any() and left.ink.any():
-        depth = cv2.distanceTransform(left.ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
         # as of a patch, see `drawing.strokes`
-        wide_px = 4 * float(depth[left.ink > 0].mean()) - 2
+        wide_px = 4 * float(depth_of(left.ink).mean()) - 2
         return max(wide_px, 1.0) * sheet.drawing.pitch_mm
     weights = np.where(sheet.are_solid, NOT_ZERO, sheet.lengths_mm)
     return float(np.average(sheet.widths_mm, weights=weights))

@@ -17,13 +17,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.tracer.drawing.components import Mask, grouped
+from morfax.tracer.drawing.depth import depth_at
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 
@@ -56,8 +56,7 @@ class Graph:
     def of(cls, ink: Mask, top: int = 0, left: int = 0) -> Graph:
         """The graph of some ink on a sheet; the mask begins at that row and column of it."""
         rows, columns = thinned(ink)
-        depth = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        depths_px = np.asarray(depth[rows, columns], float)
+        depths_px = np.asarray(depth_at(ink, rows, columns), float)
         graph = cls(rows + top, columns + left, depths_px, [])
         order, begins, ends = _stretches(neighbours(graph.rows, graph.columns))
         for begin, end in zip(begins, ends, strict=True):

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.drawing.depth import depth_px
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.shapes import NoShape, ShapeCut, pen_along
 from morfax.tracer.drawing.shapes_among_lines import edges_of, has_lines
@@ -33,8 +33,7 @@ def lines_and_rims(drawing: Drawing) -> Drawing:
     darkness = left.drawing.darkness
     rims = _rims_px(drawing, left)
     if rims:
-        depth = cv2.distanceTransform(left.ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        width_px = usual_width_px(np.asarray(depth, np.float32))
+        width_px = usual_width_px(depth_px(left.ink))
         darkness = np.maximum(darkness, pen_along(rims, darkness.shape, width_px))
     return replace(drawing, darkness=darkness, both=False)
 

@@ -24,7 +24,6 @@ from morfax.motion.neighbours import Neighbours
 from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.effort import FEW_PX
 from morfax.tracer.ink.left_out import InkLeft
 
 # In widths of the lines of a patch, by trial on 11 sheets with known truth: each piece was one of a true line
@@ -33,6 +32,7 @@ REACH = 0.8  # from all strokes: half a width is the pen's, and a tenth the scan
 # of missed line, by its ink; a corner of 30 degrees that comes to a point has a third
 LEAST = 0.8
 BROAD = 0.5  # of a piece: so much lies as far on the stroke's other side as well
+LOOKED_PX = 1 << 16  # of ink that are looked at together, in 6 MB; chosen
 # pixels: as near to a solid area ink is its rim's
 RIM_PX = np.array([(i, j) for i in (-2, 0, 2) for j in (-2, 0, 2)])
 
@@ -80,7 +80,8 @@ def _far(sheet: Sheet, left: InkLeft, run: Array, widths_mm: Array) -> _Far:
     patches, near = sheet.patches, Neighbours(run)
     runs, found = np.flatnonzero(widths_mm[patches.patch] > 0), list[_Far]()
     pixels = np.cumsum(patches.end[runs] - patches.begin[runs])
-    parts = np.searchsorted(pixels, np.arange(FEW_PX, pixels[-1] if len(runs) else 0, FEW_PX))
+    last = pixels[-1] if len(runs) else 0
+    parts = np.searchsorted(pixels, np.arange(LOOKED_PX, last, LOOKED_PX))
     for some in np.split(runs, parts):
         counts = patches.end[some] - patches.begin[some]
         within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)

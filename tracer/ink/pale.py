@@ -26,6 +26,7 @@ from morfax.tracer.drawing.components import INK, Mask, grouped, strips
 from morfax.tracer.drawing.contrast import ABOVE_NOISE, EVERY_COLUMN
 from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
 from morfax.tracer.drawing.deepening import LEAST, shaded
+from morfax.tracer.drawing.depth import depth_at
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.spots import PART_PX, SPOT_PX, STRIPS, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
@@ -119,7 +120,7 @@ def _lines(mask: Mask, drawing: Drawing) -> Iterator[Pale]:
     steps_px = np.hypot(rows[other] - rows[one], columns[other] - columns[one])
     patch = grouped(np.column_stack([one, other]), len(rows))
     count = int(patch.max(initial=-1)) + 1
-    depth = cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[rows, columns]
+    depth = depth_at(mask, rows, columns)
     pixels = np.maximum(np.bincount(patch, minlength=count), 1)
     lengths_px = 0.5 * np.bincount(
         patch[one], steps_px, count

@@ -74,8 +74,9 @@ def _of_strokes(
 ) -> Trace:
     """Follow every stretch of the ink that is left for strokes."""
     # 1. the lines and their junctions, and the head along each
-    letters = _letters(sheet, left)
-    felt = FeltSheet.of(left.drawing, settings, left.ink, letters, are_strokes=True)
+    felt = FeltSheet.of(
+        left.drawing, settings, left.ink, _letters(sheet, left), are_strokes=True
+    )
     give_back()
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt, _told_of(progress)), settings, progress)
@@ -95,6 +96,8 @@ def _of_strokes(
     lines, broad = as_contours(setup, lines)
     lines, beside = beside_mended(setup, bent(setup, lines))
     broad += _slots_left(setup, lines)
+    setup.sheet.seen.clear()
+    give_back()
     off = strokes_off_ink(left.drawing, lines, settings.gap_mm)
     broad += [place for place in off if not is_about(place, beside, lines)]
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)

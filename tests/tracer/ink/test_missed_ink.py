@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from morfax.motion.arrays import Array
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.ledger import Balance, balance
@@ -43,6 +45,22 @@ def test_ink_on_both_sides_of_a_stroke_is_a_broad_line() -> None:
     sides = [polyline((6, y), (30, y)) for y in (9.6, 10.0, 10.4)]
     assert found([*sides, BAR], [LOWER, BAR]) == []
     assert len(found([*sides, BAR], [sides[0], BAR])) == 1  # and at its rim it is not
+
+
+def test_some_pixels_at_a_time_are_the_same_as_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    parts = [polyline((6, 10.575), (18, 10.575)), polyline((21, 10.575), (30, 10.575))]
+    (whole,) = found([UPPER, LOWER, BAR], [*parts, LOWER, BAR])
+    looked, nearest = list[int](), Neighbours.nearest
+
+    def counted(self: Neighbours, places: Array, within: float = np.inf) -> tuple[Array, Array]:
+        looked.append(len(places))
+        return nearest(self, places, within)
+
+    monkeypatch.setattr(Neighbours, "nearest", counted)
+    monkeypatch.setattr("morfax.tracer.ink.missed_ink.LOOKED_PX", 1000)
+    (piece,) = found([UPPER, LOWER, BAR], [*parts, LOWER, BAR])
+    assert np.array_equal(piece.places_mm, whole.places_mm)
+    assert len(looked) > 5 and max(looked) < 2000
 
 
 def ledger(*ways: Points) -> Balance:
