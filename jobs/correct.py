@@ -14,7 +14,12 @@ from morfax.motion.faults import CardFault, DrawingFault
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
-    from morfax.tracer.corrections.corrections import Correction, Corrections, Picture, Place
+    from morfax.tracer.corrections.corrections import (
+        Correction,
+        Corrections,
+        PictureFile,
+        Place,
+    )
     from morfax.tracer.corrections.on_sheet import OnSheet, SheetSize
     from morfax.tracer.drawing.scan import Scan
 
@@ -89,14 +94,14 @@ class CorrectJob:
         height_mm = scan.rows * y_mm
         return SheetSize(width_mm, height_mm, scan.columns, scan.rows), True
 
-    def _picture(self, scan: Scan) -> Picture:
+    def _picture(self, scan: Scan) -> PictureFile:
         """The picture that the corrections belong to."""
         from morfax.motion.files import printable
-        from morfax.tracer.corrections.corrections import Picture
+        from morfax.tracer.corrections.corrections import PictureFile
 
         name = printable(self.drawing.file.name)
         checked = sha256_of(self.drawing.file)
-        return Picture(name, scan.columns, scan.rows, checked, scan.page)
+        return PictureFile(name, scan.columns, scan.rows, checked, scan.page)
 
     def _taken(self, before: Corrections) -> tuple[int, ...]:
         """The numbers of the corrections that are taken away."""
@@ -118,7 +123,7 @@ class CorrectJob:
         text: str,
         numbers: tuple[int, ...],
         added: tuple[Correction, ...],
-        picture: Picture,
+        picture: PictureFile,
     ) -> None:
         """Write the edited text."""
         from morfax.tracer.corrections import correction_file
@@ -169,7 +174,7 @@ def _text_of(file: FilePath) -> str:
     return file.read_text(encoding="utf-8-sig")
 
 
-def _in_frame(one: Correction, size: SheetSize, picture: Picture) -> Correction:
+def _in_frame(one: Correction, size: SheetSize, picture: PictureFile) -> Correction:
     """A correction with its places in pixels of the picture that the file states."""
     from morfax.tracer.corrections.corrections import Place, Span
 

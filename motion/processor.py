@@ -26,25 +26,25 @@ LEVEL_HAS = frozenset(
 )
 
 
-class Target(NamedTuple):
+class Processor(NamedTuple):
     """A processor to compile for, in LLVM's words."""
 
     name: str
     features: str  # what it has beyond its name; empty: nothing
 
 
-def target(llvm: Any) -> Target:
+def target(llvm: Any) -> Processor:
     """The processor to compile for on this machine; `llvm` is `llvmlite.binding`."""
     if given := os.environ.get("NUMBA_CPU_NAME"):
-        return Target(given, os.environ.get("NUMBA_CPU_FEATURES", ""))
+        return Processor(given, os.environ.get("NUMBA_CPU_FEATURES", ""))
     features = llvm.get_host_cpu_features()
     has = {name for name, there in features.items() if there}
     if llvm.get_process_triple().startswith("x86_64-") and has >= LEVEL_HAS:
-        return Target(LEVEL, "")
-    return Target(llvm.get_host_cpu_name(), features.flatten())
+        return Processor(LEVEL, "")
+    return Processor(llvm.get_host_cpu_name(), features.flatten())
 
 
-def aim(at: Target) -> Target:
+def aim(at: Processor) -> Processor:
     """Have numba compile for a processor; give the one that it does compile for.
 
     That is another one where the process has compiled kernels of others before.
@@ -55,4 +55,4 @@ def aim(at: Target) -> Target:
     config: Any = numba.config
     config.CPU_NAME, config.CPU_FEATURES = at
     _, name, features = cpu_target.target_context.codegen().magic_tuple()
-    return Target(name, features)
+    return Processor(name, features)

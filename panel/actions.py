@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from morfax.jobs.wrong_use import WrongUse
 from morfax.panel import commands, keepsake
 from morfax.panel.corrected import asked_words
-from morfax.panel.history import Step
+from morfax.panel.history import HistoryStep
 from morfax.panel.own_files import as_paths
 from morfax.player.tape.setting import OVERRIDES
 
@@ -59,7 +59,7 @@ def _open(bench: Bench, action: dict[str, Any]) -> None:
             f"there is no drawing {str(drawing)[:60]!r} here; choose one of the list, or drop a file"
         )
     bench.messages.clear()
-    bench.step(Step(drawing, {}))
+    bench.step(HistoryStep(drawing, {}))
 
 
 def _set(bench: Bench, action: dict[str, Any]) -> None:
@@ -85,7 +85,7 @@ def _set(bench: Bench, action: dict[str, Any]) -> None:
     bench.step(replace(bench.history.now, options=options))
 
 
-def _value(field: commands.Field, value: Any, bench: Bench) -> str | bool:
+def _value(field: commands.OptionField, value: Any, bench: Bench) -> str | bool:
     """A value as an option holds it; raises WrongUse for one of another kind."""
     if field.kind == "switch" and value is True:
         return True

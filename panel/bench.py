@@ -1,8 +1,7 @@
 """The bench: one drawing, what is set for it, the run that is under way, and its result.
 
-Signals in: the operator's actions (see `actions`), and what the worker says. Signals out: the state of all
-this as plain values, to as many pages as look on; each page is told when there is something new, and asks
-for it when it is ready: a slow page gets fewer frames, and holds nothing up.
+Signals in: the operator's actions (see `actions`), and what the worker says. Signals out: all of it as plain
+values, to as many pages as look on; each asks for what is new when it is ready: a slow one holds nothing up.
 
 Questions: one drawing lies on the bench at a time; another server on another port has a bench of its own.
 """
@@ -19,11 +18,11 @@ from typing import Any
 from morfax.panel import commands, sheet_picture
 from morfax.panel.commands import CommandLine, Options
 from morfax.panel.corrected import corrections_text, lay_corrections
-from morfax.panel.head_path import HeadPath
-from morfax.panel.history import History, Step
+from morfax.panel.head_path import ShownPath
+from morfax.panel.history import History, HistoryStep
 from morfax.panel.kept_result import STATE, KeptResult
 from morfax.panel.own_files import as_paths, own_files
-from morfax.panel.tiles import LineMap, Picture
+from morfax.panel.tiles import LineMap, Pyramid
 from morfax.panel.uploads import taken_in
 from morfax.panel.workshop import Heard, Workshop
 
@@ -46,8 +45,8 @@ class Bench:
         self.own = own_files(folder)  # cards, settings and machines, by name
         self.history = History(folder / STATE)
         self.workshop = workshop(self.heard)
-        self.path = HeadPath()
-        self.picture: Picture | None = None
+        self.path = ShownPath()
+        self.picture: Pyramid | None = None
         self.line_map: LineMap | None = None
         self.sheet: dict[str, Any] | None = None
         self.refused: str | None = None  # why the drawing cannot be looked at
@@ -108,7 +107,7 @@ class Bench:
             event.set()
 
     # what the operator does
-    def step(self, step: Step) -> None:
+    def step(self, step: HistoryStep) -> None:
         """Take a step, and look at the drawing again if that changed what is seen on it."""
         drawing = self.sources.get(step.drawing or "")
         self.history.add(replace(step, corrections=corrections_text(drawing)))
@@ -242,7 +241,7 @@ class Bench:
             return
         self.line_map = LineMap(seen["numbers"])
         if seen["picture"] is not None:
-            self.picture = Picture(seen["picture"])
+            self.picture = Pyramid(seen["picture"])
             self.picture_id += 1
         self.sheet = {name: value for name, value in seen.items() if name not in HIDDEN}
         self.refused = None

@@ -86,7 +86,7 @@ OWN_FILES = ("--card", "--settings", "--machine")  # that a page may be given
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class OptionField:
     """An option as the page shows it."""
 
     option: str
@@ -99,7 +99,7 @@ class Field:
 class CommandLine(Protocol):
     """The command line's parser: it raises WrongUse in one line for what a terminal would refuse."""
 
-    def fields(self) -> list[Field]:
+    def fields(self) -> list[OptionField]:
         """The options that the page offers, in their order."""
 
     def lines(self, words: list[str]) -> LinesJob:

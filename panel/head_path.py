@@ -22,7 +22,7 @@ PER_MM = round(1 / UM)  # a place is kept in whole um, 4 bytes each way: an hour
 DOWN = -(2**31)  # in place of X: the head was put down anew
 
 
-class HeadPath:
+class ShownPath:
     """Places of the head, "down" where it was put down anew, and what it does now."""
 
     def __init__(self) -> None:

@@ -21,7 +21,7 @@ VERSION = 1  # of the file
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class HistoryStep:
     """What is set: the key of the drawing on the bench, the options as text, and its corrections."""
 
     drawing: str | None = None
@@ -33,13 +33,13 @@ class History:
     """The steps so far, the one that holds, and a number that grows with each change."""
 
     def __init__(self, file: FilePath) -> None:
-        self.file, self.steps, self.at, self.revision = file, [Step()], 0, 0
+        self.file, self.steps, self.at, self.revision = file, [HistoryStep()], 0, 0
         self.running = False  # a run was under way when the file was written
         if file.exists():
             self._read()
 
     @property
-    def now(self) -> Step:
+    def now(self) -> HistoryStep:
         """The step that holds."""
         return self.steps[self.at]
 
@@ -53,7 +53,7 @@ class History:
         """Whether a step was undone."""
         return self.at + 1 < len(self.steps)
 
-    def add(self, step: Step) -> None:
+    def add(self, step: HistoryStep) -> None:
         """Take a step; what was undone before it is gone."""
         if step == self.now:
             return
@@ -98,7 +98,7 @@ class History:
         try:
             kept = json.loads(self.file.read_text(encoding="utf-8"))
             steps = [
-                Step(row["drawing"], dict(row["options"]), str(row["corrections"]))
+                HistoryStep(row["drawing"], dict(row["options"]), str(row["corrections"]))
                 for row in kept["steps"]
             ]
             at, revision, running = (

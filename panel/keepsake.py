@@ -21,7 +21,7 @@ from morfax.motion.files import written_beside
 
 if TYPE_CHECKING:
     from morfax.panel.bench import Bench
-    from morfax.panel.tiles import Picture
+    from morfax.panel.tiles import Pyramid
 
 MODULES = (
     "format.js",
@@ -75,7 +75,7 @@ def page(data: dict[str, Any]) -> str:
     return re.sub(r"@([A-Z]+)@", lambda found: parts[found[1]], text)
 
 
-def _picture(picture: Picture) -> dict[str, Any]:
+def _picture(picture: Pyramid) -> dict[str, Any]:
     """The picture at a size for a page, as a data address."""
     level = next(pixels for pixels in picture.levels if max(pixels.shape) <= MOST_PX)
     done, packed = cv2.imencode(".jpg", level, QUALITY)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from morfax.panel.tiles import Picture
+from morfax.panel.tiles import Pyramid
 
 if TYPE_CHECKING:
     from morfax.panel.commands import Options
@@ -24,7 +24,7 @@ def key(drawing: FilePath, options: Options) -> str:
     return "\n".join([str(drawing), *(f"{name}={options.get(name)}" for name in SHOWN_BY)])
 
 
-def read(drawing: FilePath, options: Options) -> Picture:
+def read(drawing: FilePath, options: Options) -> Pyramid:
     """Read the picture; raises DrawingFault and FileFault for a file that holds none."""
     from morfax.tracer.drawing import raster
 
@@ -35,4 +35,4 @@ def read(drawing: FilePath, options: Options) -> Picture:
         page=int(page) if isinstance(page, str) else None,
         dpi=float(dpi) if isinstance(dpi, str) else None,
     )
-    return Picture(np.clip(scan.pixels, 0, 255).astype(np.uint8, copy=False))
+    return Pyramid(np.clip(scan.pixels, 0, 255).astype(np.uint8, copy=False))

@@ -21,7 +21,7 @@ TILE = 512  # pixels a side
 QUICK = [cv2.IMWRITE_PNG_COMPRESSION, 1]  # speed before size: the network is this computer
 
 
-class Picture:
+class Pyramid:
     """A picture, halved until it fits a tile."""
 
     def __init__(self, pixels: NDArray[np.uint8]) -> None:

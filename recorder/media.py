@@ -22,7 +22,7 @@ from morfax.motion.faults import FileFault
 from morfax.motion.motion import Motion, Path
 
 if TYPE_CHECKING:
-    from morfax.recorder.drawings.outline import Outline
+    from morfax.recorder.drawings.outline import CadOutline
 
 Source = Iterable[Motion] | Motion | Path
 
@@ -85,13 +85,13 @@ _READERS = {
 }
 
 
-def read_outline(file: str | os.PathLike[str], unit: str | None = None) -> Outline:
+def read_outline(file: str | os.PathLike[str], unit: str | None = None) -> CadOutline:
     """Read the lines of a drawing from CAD; with `unit` its figures are in that one, whatever it says.
 
     Raises DrawingFault for one that cannot be read or does not say its unit, FileFault.
     """
     module, function = _READERS[FilePath(file).suffix.lower()]
-    read: Callable[..., Outline] = getattr(importlib.import_module(module), function)
+    read: Callable[..., CadOutline] = getattr(importlib.import_module(module), function)
     return read(FilePath(file), unit)
 
 

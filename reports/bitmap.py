@@ -20,9 +20,18 @@ from morfax.motion.units import POINTS_PER_INCH
 from morfax.reports import lettering
 from morfax.reports.canvas import DPI
 from morfax.reports.looks import AWAY_PT, SEE_THROUGH
-from morfax.reports.page import Box, Page
+from morfax.reports.page import Box, PageLayout
 from morfax.reports.pixels import Pixels, blend, dashes, polylines, seen, strokes_of
-from morfax.reports.plate import Area, Colours, Ground, Line, Plate, Spot, fitted, shades
+from morfax.reports.plate import (
+    Colours,
+    Ground,
+    Plate,
+    Polyline,
+    Spot,
+    TintedArea,
+    fitted,
+    shades,
+)
 
 FINER = 2
 PX_PER_PT = FINER * DPI / POINTS_PER_INCH
@@ -54,7 +63,9 @@ OUTLINES: dict[str, list[tuple[float, float]]] = {  # of size 1 about 0, as matp
 }
 
 
-def drawn(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | None) -> Pixels:
+def drawn(
+    page: PageLayout, plates: Sequence[tuple[Box, Plate]], scale: Colours | None
+) -> Pixels:
     """Draw a page with all its plates and its scale of colours."""
     high, wide = (round(side * DPI) for side in (page.height_in, page.width_in))
     canvas = np.full((high * FINER, wide * FINER, 3), 255, np.uint8)
@@ -72,7 +83,7 @@ def drawn(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | None
     return lettering.written(np.asarray(small, np.uint8), page, plates, scale)
 
 
-def corners_px(page: Page, box: Box) -> tuple[int, int, int, int]:
+def corners_px(page: PageLayout, box: Box) -> tuple[int, int, int, int]:
     """Left, top, right and bottom of a box on the fine canvas, pixels."""
     high = round(page.height_in * DPI)
     left = box.left_in * DPI
@@ -97,11 +108,11 @@ class _Field:
         if self.plate.ground is not None:
             self._ground(self.plate.ground)
         for mark in self.plate.lowest_first:
-            if isinstance(mark, Line):
+            if isinstance(mark, Polyline):
                 self._line(self._px(mark.places_mm), mark)
             elif isinstance(mark, Spot):
                 self._spot(self._px(np.array([mark.place_mm]))[0], mark)
-            elif isinstance(mark, Area):
+            elif isinstance(mark, TintedArea):
                 self._area(self._px(mark.corners_mm), mark)
         for words in self.plate.words:
             if words.ring:
@@ -136,7 +147,7 @@ class _Field:
         above, before = max(-top, 0), max(-first, 0)
         to[:] = grey[above : above + high_px, before : before + wide_px, None]
 
-    def _line(self, at_px: Array, line: Line) -> None:
+    def _line(self, at_px: Array, line: Polyline) -> None:
         """A line with its gaps."""
         if line.dash is not None or len(at_px) > MANY:
             at_px = seen(at_px, self.canvas.shape)
@@ -157,7 +168,7 @@ class _Field:
             closed = True
         polylines(self.canvas, strokes, spot.colour, SPOT_PX, closed=closed)
 
-    def _area(self, corners_px: Array, area: Area) -> None:
+    def _area(self, corners_px: Array, area: TintedArea) -> None:
         """An area that what lies under it shines through."""
         blend(self.canvas, corners_px, area.colour, area.alpha)
         if area.edged:
@@ -181,7 +192,7 @@ class _Field:
         polylines(self.canvas, [corners], EDGE_GREY, SPOT_PX, closed=True)
         for mark, (begin, end, row) in zip(self.plate.legend, box.samples_px, strict=True):
             sample = FINER * np.array([[begin, row], [end, row]])
-            if isinstance(mark, Line):
+            if isinstance(mark, Polyline):
                 self._line(sample, mark)
             elif isinstance(mark, Spot):
                 self._spot(sample.mean(axis=0), mark)

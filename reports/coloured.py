@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.reports.canvas import DPI, SMALLEST_UM, UM_PER_MM, WIDTH_IN
 from morfax.reports.looks import ON_PATHS
-from morfax.reports.plate import Colours, Line, View, shades
+from morfax.reports.plate import Colours, Polyline, View, shades
 
 COLOURS = ("#1f5fa8", "#5fa8d3", "#f2a65a", "#c1121f")  # no error … largest error
 SHADES = 64  # from no error to the largest: neighbours look alike
@@ -28,7 +28,7 @@ BESIDE = 0.1  # of a view: points this far outside of it still belong to what is
 
 def error_lines(
     points_mm: Array, error_mm: Array, view: View, line_pt: float
-) -> tuple[list[Line], Colours]:
+) -> tuple[list[Polyline], Colours]:
     """The error along the points as lines, where it is a number; and what their colours mean."""
     error_um = np.abs(error_mm) * UM_PER_MM
     most_um = max(float(np.nanmax(error_um)), SMALLEST_UM)
@@ -45,7 +45,7 @@ def error_lines(
     there, lines = _lines(ends[shown], numbers, np.flatnonzero(shown))
     colours = [f"#{shade:06x}" for shade in shades(COLOURS, SHADES)]
     drawn = [
-        Line(places, colours[shade], line_pt, order=ON_PATHS)
+        Polyline(places, colours[shade], line_pt, order=ON_PATHS)
         for shade, places in zip(there, lines, strict=True)
     ]
     return drawn, Colours(COLOURS, most_um, "error, µm")

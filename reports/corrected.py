@@ -13,10 +13,10 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import left_of
 from morfax.reports.looks import BELOW_PT, LINE_PT, NAMES, SPOT_PT, SPOTS, WORDS_PT
-from morfax.reports.plate import Area, Line, Mark, Spot, Words
+from morfax.reports.plate import Caption, Mark, Polyline, Spot, TintedArea
 
 if TYPE_CHECKING:
-    from morfax.tracer.corrections.on_sheet import OnSheet, PlaceMm, Stroke
+    from morfax.tracer.corrections.on_sheet import CorrectionStroke, OnSheet, PlaceMm
 
 COLOUR = "#d100b8"
 TURNS = {"straight": "↑", "left": "↰", "right": "↱"}
@@ -35,7 +35,7 @@ def marks(laid: OnSheet) -> list[Mark]:
         drawn += [*_stroke(stroke), _number(stroke.number, first)]
     for turn in laid.turns:
         drawn += [
-            Words(turn.place_mm, TURNS[turn.do], 2 * SPOT_PT, COLOUR, centred=True),
+            Caption(turn.place_mm, TURNS[turn.do], 2 * SPOT_PT, COLOUR, centred=True),
             _number(turn.number, turn.place_mm),
         ]
     for stop in laid.stops:
@@ -47,11 +47,11 @@ def marks(laid: OnSheet) -> list[Mark]:
     return drawn
 
 
-def _stroke(stroke: Stroke) -> list[Mark]:
+def _stroke(stroke: CorrectionStroke) -> list[Mark]:
     """A stroke of the rubber as areas, one of the pen as a line."""
     places_mm = stroke.places_mm
     if stroke.do == "bridge" and len(places_mm) > 1:
-        return [Line(places_mm, COLOUR, LINE_PT, dash=(2, 1), order=SPOTS)]
+        return [Polyline(places_mm, COLOUR, LINE_PT, dash=(2, 1), order=SPOTS)]
     if stroke.do == "rub-area":
         return [_rubbed(places_mm)]
     half_mm = 0.5 * (stroke.width_mm or 1.0)
@@ -66,9 +66,9 @@ def _stroke(stroke: Stroke) -> list[Mark]:
     return drawn
 
 
-def _rubbed(corners_mm: Array) -> Area:
+def _rubbed(corners_mm: Array) -> TintedArea:
     """An area that was rubbed out."""
-    return Area(corners_mm, COLOUR, RUBBED_ALPHA, edged=True, order=1)
+    return TintedArea(corners_mm, COLOUR, RUBBED_ALPHA, edged=True, order=1)
 
 
 def _spot(shape: str, place_mm: PlaceMm) -> Spot:
@@ -76,6 +76,6 @@ def _spot(shape: str, place_mm: PlaceMm) -> Spot:
     return Spot(place_mm, shape, SPOT_PT, COLOUR, order=NAMES)
 
 
-def _number(number: int, place_mm: PlaceMm) -> Words:
+def _number(number: int, place_mm: PlaceMm) -> Caption:
     """The number of a correction beside its place."""
-    return Words(place_mm, f"c{number}", WORDS_PT, COLOUR, BELOW_PT)
+    return Caption(place_mm, f"c{number}", WORDS_PT, COLOUR, BELOW_PT)

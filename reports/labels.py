@@ -21,7 +21,7 @@ from morfax.motion.arrays import Array
 from morfax.reports import lettering
 from morfax.reports.lettering import PX_PER_PT
 from morfax.reports.looks import ON_PATHS, THIN_PT, TITLE_PT
-from morfax.reports.plate import Line, Mark, Place, Plate, Spot, Words, filled_in, fitted
+from morfax.reports.plate import Caption, Mark, Place, Plate, Polyline, Spot, filled_in, fitted
 
 CELL_PT = 2.0
 LETTER = 0.62  # width of a letter over its size; DejaVu's own is 0.6 on average
@@ -62,7 +62,7 @@ def spread(plate: Plate, wide_pt: float, high_pt: float) -> None:
     """Give the words of a plate, on axes of a size, offsets at which nothing is hidden."""
     grid, marks = _Grid(plate, wide_pt, high_pt), list[Mark]()
     for mark in plate.marks:
-        if isinstance(mark, Words) and not mark.centred:
+        if isinstance(mark, Caption) and not mark.centred:
             put = grid.put(mark)
             marks += [*grid.leaders(put), put]
         else:
@@ -79,7 +79,7 @@ class _Grid:
         rows, columns = int(high_pt / CELL_PT) + 1, int(wide_pt / CELL_PT) + 1
         self.cost: NDArray[np.float64] = np.zeros((rows, columns))
         for mark in plate.marks:
-            if isinstance(mark, Line):
+            if isinstance(mark, Polyline):
                 self._take_line(mark.places_mm)
             elif isinstance(mark, Spot):
                 x, y = self._pt(np.array([mark.place_mm]))[0]
@@ -90,7 +90,7 @@ class _Grid:
             left, top, right, bottom = (side / PX_PER_PT for side in legend.sides_px)
             self._take((left, high_pt - bottom, right, high_pt - top), NAME_COST)
 
-    def put(self, words: Words) -> Words:
+    def put(self, words: Caption) -> Caption:
         """The same words at the best offset; those of places beside the axes stay as they are."""
         x, y = self._pt(np.array([words.place_mm]))[0].tolist()
         if not (
@@ -104,14 +104,16 @@ class _Grid:
         self._take(boxes[best], NAME_COST)
         return replace(words, offset_pt=tried[best])
 
-    def leaders(self, words: Words) -> list[Line]:
+    def leaders(self, words: Caption) -> list[Polyline]:
         """The line from a place to its name, where that does not stand beside it."""
         wide, (dx, dy) = _wide_pt(words), words.offset_pt
         nearest_pt = np.clip(0.0, [dx, dy], [dx + wide, dy + words.size_pt])
         if np.hypot(*nearest_pt) < TITLE_PT:
             return []
         end_mm = words.place_mm + nearest_pt / self.pt_per_mm
-        return [Line(np.array([words.place_mm, end_mm]), words.colour, THIN_PT, order=ON_PATHS)]
+        return [
+            Polyline(np.array([words.place_mm, end_mm]), words.colour, THIN_PT, order=ON_PATHS)
+        ]
 
     def _pt(self, places_mm: Array) -> Array:
         """Places from the lower left corner of the axes, points."""
@@ -142,7 +144,7 @@ class _Grid:
         return float(self.cost[rows, columns].sum()) + NAME_COST * beside
 
 
-def _wide_pt(words: Words) -> float:
+def _wide_pt(words: Caption) -> float:
     """How long a name is."""
     return max(len(words.text), 1) * LETTER * words.size_pt
 

@@ -27,14 +27,14 @@ from morfax.motion.units import POINTS_PER_INCH
 from morfax.reports import looks
 from morfax.reports.axis_numbers import numbers, steps_in
 from morfax.reports.canvas import DPI
-from morfax.reports.page import Box, Page
+from morfax.reports.page import Box, PageLayout
 from morfax.reports.plate import (
     BLACK,
+    Caption,
     Colours,
     Place,
     Plate,
     View,
-    Words,
     fitted,
     free_corner,
 )
@@ -67,7 +67,7 @@ def scale_numbers(scale: Colours, box: Box) -> list[tuple[float, str]]:
     return [(value / scale.largest, text) for value, text in numbers(0.0, scale.largest, steps)]
 
 
-def ring(words: Words) -> tuple[Place, float]:
+def ring(words: Caption) -> tuple[Place, float]:
     """Middle, from the words' place, and radius of the ring round words."""
     left, top, right, bottom = _font(words.size_pt).getbbox(_plain(words.text), anchor="ls")
     x = words.offset_pt[0] * PX_PER_PT
@@ -110,7 +110,7 @@ def _legend_px(plate: Plate) -> tuple[float, float]:
 
 def written(
     pixels: NDArray[np.uint8],
-    page: Page,
+    page: PageLayout,
     plates: Sequence[tuple[Box, Plate]],
     scale: Colours | None,
 ) -> NDArray[np.uint8]:
@@ -129,7 +129,7 @@ def written(
 class _Pen:
     """Writes on a page."""
 
-    def __init__(self, image: Image.Image, page: Page) -> None:
+    def __init__(self, image: Image.Image, page: PageLayout) -> None:
         self.image, self.draw = image, ImageDraw.Draw(image)
         self.page_px = round(page.height_in * DPI)
 

@@ -42,15 +42,15 @@ from morfax.reports.looks import (
     THIN_PT,
     WORDS_PT,
 )
-from morfax.reports.page import INSETS, Page, lay_out
+from morfax.reports.page import INSETS, PageLayout, lay_out
 from morfax.reports.plate import (
     BLACK,
+    Caption,
     Colours,
-    Line,
     Plate,
+    Polyline,
     Spot,
     View,
-    Words,
     has_free_corner,
     with_gaps,
 )
@@ -101,7 +101,7 @@ def draw(picture: Picture, file: FilePath) -> None:
         at = (float(place_mm[0]), float(place_mm[1]))
         main.add(
             Spot(at, "+", SPOT_PT, BLACK, order=ON_SPOTS),
-            Words(at, str(number), WORDS_PT, offset_pt=BESIDE_PT),
+            Caption(at, str(number), WORDS_PT, offset_pt=BESIDE_PT),
         )
     labels.spread(
         main, page.main.width_in * POINTS_PER_INCH, page.main.height_in * POINTS_PER_INCH
@@ -116,14 +116,16 @@ def draw(picture: Picture, file: FilePath) -> None:
         save(vector.figure_of(page, plates, scale), file, trim=False)
 
 
-def _laid_out(picture: Picture, view: View, insets: int) -> tuple[Page, Plate, Colours | None]:
+def _laid_out(
+    picture: Picture, view: View, insets: int
+) -> tuple[PageLayout, Plate, Colours | None]:
     """The page for a view, the whole contour on it, and what its colours mean."""
     shape = (view[3] - view[2]) / (view[1] - view[0])
     page = lay_out(shape, insets, has_bar=_is_measured(picture))
     return page, *_whole(picture, view, page)
 
 
-def _legend_share(plate: Plate, page: Page) -> tuple[float, float]:
+def _legend_share(plate: Plate, page: PageLayout) -> tuple[float, float]:
     """How much of the main axes' width and height the legend takes."""
     from morfax.reports.lettering import legend_share
 
@@ -146,7 +148,7 @@ def shortened(title: str, letters: int) -> str:
     return f"{title[:first]}…{title[first + 1 - letters :]}"
 
 
-def _whole(picture: Picture, view: View, page: Page) -> tuple[Plate, Colours | None]:
+def _whole(picture: Picture, view: View, page: PageLayout) -> tuple[Plate, Colours | None]:
     """The whole contour with its marks, and what its colours mean."""
     letters = round(page.main.width_in * LETTERS_PER_IN)
     title = picture.title
@@ -173,7 +175,7 @@ def _ground(plate: Plate, picture: Picture) -> None:
     if picture.drawing is not None:
         plate.ground = grey(picture.drawing, plate.view, LIGHT)
     if picture.reference is not None and (runs := picture.reference.runs()):
-        plate.add(Line(with_gaps(runs), REFERENCE, THIN_PT, dash=(4, 2), order=1))
+        plate.add(Polyline(with_gaps(runs), REFERENCE, THIN_PT, dash=(4, 2), order=1))
 
 
 def _is_measured(picture: Picture) -> bool:
@@ -189,7 +191,7 @@ def _contour(plate: Plate, picture: Picture) -> Colours | None:
     measured = _is_measured(picture)
     if runs := picture.path.runs():
         colour = UNMEASURED if measured else PLAIN
-        plate.add(Line(with_gaps(runs), colour, LINE_PT))
+        plate.add(Polyline(with_gaps(runs), colour, LINE_PT))
     if not measured:
         return None
     assert picture.points_mm is not None and picture.error_mm is not None
@@ -221,7 +223,7 @@ def _numbers(plate: Plate, picture: Picture) -> None:
     longest = set(numbers[:MOST_NUMBERED])
     for number, place_mm in picture.numbers_mm:
         if number in longest:
-            plate.add(Words(place_mm, number, WORDS_PT, offset_pt=beside_pt, ring=REFERENCE))
+            plate.add(Caption(place_mm, number, WORDS_PT, offset_pt=beside_pt, ring=REFERENCE))
 
 
 def _stops(plate: Plate, picture: Picture) -> None:
@@ -229,7 +231,7 @@ def _stops(plate: Plate, picture: Picture) -> None:
     if not picture.stops_mm:
         return
     raised = np.where(picture.path.tool[:, None], np.nan, picture.path.xy_mm)
-    plate.add(Line(raised, RAISED, LINE_PT, dash=(4, 2), label="tool up"))
+    plate.add(Polyline(raised, RAISED, LINE_PT, dash=(4, 2), label="tool up"))
     written, named = labels.shortened(picture.stops_mm), set[str]()
     for name, place_mm in picture.stops_mm.items():
         words, label = written[name]
@@ -238,7 +240,7 @@ def _stops(plate: Plate, picture: Picture) -> None:
                 place_mm, "D", SPOT_PT, RAISED, "" if label in named else label, order=ON_SPOTS
             )
         )
-        plate.add(Words(place_mm, words, WORDS_PT, RAISED, BESIDE_PT))
+        plate.add(Caption(place_mm, words, WORDS_PT, RAISED, BESIDE_PT))
         named.add(label)
 
 

@@ -37,7 +37,7 @@ class Box(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Page:
+class PageLayout:
     """A page, inches: the boxes of the main axes, of the enlargements, and of the scale of colours."""
 
     width_in: float
@@ -47,7 +47,7 @@ class Page:
     bar: Box | None
 
 
-def lay_out(height_to_width: float, insets: int, *, has_bar: bool) -> Page:
+def lay_out(height_to_width: float, insets: int, *, has_bar: bool) -> PageLayout:
     """Choose the size of a page, and the places of its axes."""
     shape = max(height_to_width, FLATTEST)
     high = WIDTH_IN * min(shape, TALLEST)
@@ -70,4 +70,4 @@ def lay_out(height_to_width: float, insets: int, *, has_bar: bool) -> Page:
         beside.append(
             Box(left + (cell_wide - side) / 2, bottom + (cell_high - side) / 2, side, side)
         )
-    return Page(width, height, main, beside, bar)
+    return PageLayout(width, height, main, beside, bar)

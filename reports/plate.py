@@ -32,7 +32,7 @@ class Ground:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class Polyline:
     """A polyline (n, 2); where it is not a number it has a gap. Lines of a higher order lie on top."""
 
     places_mm: Array
@@ -56,7 +56,7 @@ class Spot:
 
 
 @dataclass(frozen=True, slots=True)
-class Area:
+class TintedArea:
     """A polygon (n, 2) that what lies under it shines through."""
 
     corners_mm: Array
@@ -68,7 +68,7 @@ class Area:
 
 
 @dataclass(frozen=True, slots=True)
-class Words:
+class Caption:
     """Words that begin beside a place, or have it in their middle; in a white ring if that is asked for."""
 
     place_mm: Place
@@ -89,8 +89,8 @@ class Colours:
     label: str
 
 
-Shape = Line | Spot | Area
-Mark = Shape | Words
+Shape = Polyline | Spot | TintedArea
+Mark = Shape | Caption
 
 
 @dataclass(slots=True)
@@ -113,18 +113,18 @@ class Plate:
     @property
     def lowest_first(self) -> list[Shape]:
         """All marks but words, those that lie below others first."""
-        marks: list[Shape] = [mark for mark in self.marks if not isinstance(mark, Words)]
+        marks: list[Shape] = [mark for mark in self.marks if not isinstance(mark, Caption)]
         return sorted(marks, key=lambda mark: mark.order)
 
     @property
-    def words(self) -> list[Words]:
+    def words(self) -> list[Caption]:
         """All words: they lie on top."""
-        return [mark for mark in self.marks if isinstance(mark, Words)]
+        return [mark for mark in self.marks if isinstance(mark, Caption)]
 
     @property
     def legend(self) -> list[Shape]:
         """The marks that have a label."""
-        return [mark for mark in self.marks if not isinstance(mark, Words) and mark.label]
+        return [mark for mark in self.marks if not isinstance(mark, Caption) and mark.label]
 
 
 def fitted(view: View, height_to_width: float) -> View:
@@ -180,7 +180,7 @@ def _in_corners(plate: Plate, share: tuple[float, float]) -> dict[tuple[bool, bo
     """How many places lie in each corner of a plate: an upper one or not, a right one or not."""
     left, right, low, high = plate.view
     apart_mm = 0.25 * min(share) * min(right - left, high - low)
-    lines = [mark for mark in plate.marks if isinstance(mark, Line)]
+    lines = [mark for mark in plate.marks if isinstance(mark, Polyline)]
     marked = [filled_in(line.places_mm, apart_mm) for line in lines]
     marked += [np.array([spot.place_mm]) for spot in plate.marks if isinstance(spot, Spot)]
     places = np.vstack([np.empty((0, 2)), *marked])

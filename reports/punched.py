@@ -33,7 +33,7 @@ PAPER, HOLE, INK = "#f3e3b3", "#30302c", "#30302c"
 
 
 @dataclass(frozen=True, slots=True)
-class Hole:
+class PunchedHole:
     """A hole: its centre from the picture's upper left corner, and its diameter, mm."""
 
     x_mm: float
@@ -42,7 +42,7 @@ class Hole:
 
 
 @dataclass(frozen=True, slots=True)
-class Strip:
+class TapeStrip:
     """A strip of tape: left edge, width and length, mm, and the number of its first row."""
 
     x_mm: float
@@ -60,13 +60,13 @@ def draw_tape(program: StepProgram, file: FilePath) -> int:
     return min(len(program.rows), MOST_ROWS)
 
 
-def strips(program: StepProgram) -> list[Strip]:
+def strips(program: StepProgram) -> list[TapeStrip]:
     """The strips that the tape is cut into; one at least."""
     rows = min(len(program.rows), MOST_ROWS)
     width_mm = WIDTHS_MM[program.format.channels]
     firsts = range(0, max(1, rows), ROWS_PER_STRIP)
     return [
-        Strip(
+        TapeStrip(
             BETWEEN_MM + number * (width_mm + BETWEEN_MM),
             width_mm,
             (min(ROWS_PER_STRIP, rows - first) + 1) * PITCH_MM,
@@ -76,7 +76,7 @@ def strips(program: StepProgram) -> list[Strip]:
     ]
 
 
-def holes(program: StepProgram) -> Iterator[Hole]:
+def holes(program: StepProgram) -> Iterator[PunchedHole]:
     """All holes that are shown, feed holes too."""
     channels = program.format.channels
     codes = program.rows[:MOST_ROWS].tolist()
@@ -88,14 +88,14 @@ def holes(program: StepProgram) -> Iterator[Hole]:
             codes[strip.first_row : strip.first_row + ROWS_PER_STRIP], 1
         ):
             y_mm = BETWEEN_MM + row * PITCH_MM
-            yield Hole(right_mm - 3 * PITCH_MM, y_mm, FEED_HOLE_MM)
+            yield PunchedHole(right_mm - 3 * PITCH_MM, y_mm, FEED_HOLE_MM)
             for bit in range(channels):
                 if code >> bit & 1:
                     track = bit if bit < 3 else bit + 1
-                    yield Hole(right_mm - track * PITCH_MM, y_mm, HOLE_MM)
+                    yield PunchedHole(right_mm - track * PITCH_MM, y_mm, HOLE_MM)
 
 
-def _size_mm(parts: list[Strip]) -> tuple[float, float]:
+def _size_mm(parts: list[TapeStrip]) -> tuple[float, float]:
     """Width and height of the picture."""
     return parts[-1].x_mm + parts[-1].width_mm + BETWEEN_MM, BETWEEN_MM + parts[
         0

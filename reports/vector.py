@@ -15,15 +15,15 @@ from morfax.reports.axis_numbers import numbers
 from morfax.reports.canvas import DPI, new_figure
 from morfax.reports.lettering import PAD, legend_share
 from morfax.reports.looks import AWAY_PT, NAMES, SEE_THROUGH, WORDS_PT
-from morfax.reports.page import Box, Page
+from morfax.reports.page import Box, PageLayout
 from morfax.reports.plate import (
-    Area,
+    Caption,
     Colours,
-    Line,
     Mark,
     Plate,
+    Polyline,
     Spot,
-    Words,
+    TintedArea,
     free_corner,
 )
 
@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def figure_of(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | None) -> Figure:
+def figure_of(
+    page: PageLayout, plates: Sequence[tuple[Box, Plate]], scale: Colours | None
+) -> Figure:
     """A page with all its plates and its scale of colours."""
     figure = new_figure(page.width_in, page.height_in, layout="none")
 
@@ -59,7 +61,7 @@ def figure_of(page: Page, plates: Sequence[tuple[Box, Plate]], scale: Colours | 
 
 def put(axes: Axes, mark: Mark) -> None:
     """Draw one mark on axes."""
-    if isinstance(mark, Line):
+    if isinstance(mark, Polyline):
         _line(axes, mark)
     elif isinstance(mark, Spot):
         axes.plot(
@@ -72,7 +74,7 @@ def put(axes: Axes, mark: Mark) -> None:
             label=mark.label or None,
             zorder=mark.order,
         )
-    elif isinstance(mark, Area):
+    elif isinstance(mark, TintedArea):
         from matplotlib.patches import Polygon
 
         edge = mark.colour if mark.edged else "none"
@@ -112,7 +114,7 @@ def _fill(axes: Axes, plate: Plate, size_px: tuple[float, float]) -> None:
         axes.legend(loc=corner, fontsize=WORDS_PT, framealpha=SEE_THROUGH, **room)
 
 
-def _line(axes: Axes, line: Line) -> None:
+def _line(axes: Axes, line: Polyline) -> None:
     """Draw a line with its gaps."""
     style: dict[str, Any] = {"linewidth": line.width_pt, "solid_capstyle": "round"}
     if line.dash is not None:
@@ -121,7 +123,7 @@ def _line(axes: Axes, line: Line) -> None:
     axes.plot(*line.places_mm.T, color=line.colour, **style)
 
 
-def _words(axes: Axes, words: Words) -> None:
+def _words(axes: Axes, words: Caption) -> None:
     """Write words beside a place, or with their middle on it."""
     style: dict[str, Any] = {"fontsize": words.size_pt, "color": words.colour, "zorder": NAMES}
     if words.ring:

@@ -13,7 +13,7 @@ from morfax.motion.faults import DrawingFault, FileFault
 
 if TYPE_CHECKING:
     from morfax.console.verbs.as_jobs import WordsAsJobs
-    from morfax.panel.commands import Field
+    from morfax.panel.commands import OptionField
     from morfax.panel.server import Address
 
 EXAMPLES = """\b
@@ -93,9 +93,9 @@ def command(
     _make(place)
     bench = Bench(place, sources, _command_line())
     if len(sources) == 1 and bench.drawing is None:  # else what lay there stays
-        from morfax.panel.history import Step
+        from morfax.panel.history import HistoryStep
 
-        bench.history.add(Step(next(iter(sources)), {}))
+        bench.history.add(HistoryStep(next(iter(sources)), {}))
     server.serve(bench, address, _said, browser)
 
 
@@ -162,7 +162,7 @@ class _OfVerbs:
         params = words.verbs["trace"].params
         self._options = {p.opts[0]: p for p in params if isinstance(p, GroupedOption)}
 
-    def fields(self) -> list[Field]:
+    def fields(self) -> list[OptionField]:
         """The options that the page offers, in their order."""
         from morfax.panel.commands import OFFERED
 
@@ -173,9 +173,9 @@ class _OfVerbs:
             if name in self._options
         ]
 
-    def _field(self, group: str, name: str) -> Field:
+    def _field(self, group: str, name: str) -> OptionField:
         """An option as a field."""
-        from morfax.panel.commands import OWN_FILES, Field
+        from morfax.panel.commands import OWN_FILES, OptionField
         from morfax.recorder.gcode.machine import names
 
         param = self._options[name]
@@ -183,9 +183,9 @@ class _OfVerbs:
         record = param.get_help_record(context)
         told = " ".join((record[1] if record else "").split())
         if param.is_flag:
-            return Field(name, group, "switch", told)
+            return OptionField(name, group, "switch", told)
         if name in OWN_FILES:
             choices = tuple(names()) if name == "--machine" else ()
-            return Field(name, group, "file", told, choices)
+            return OptionField(name, group, "file", told, choices)
         choices = tuple(map(str, getattr(param.type, "choices", ())))
-        return Field(name, group, "choice" if choices else "text", told, choices)
+        return OptionField(name, group, "choice" if choices else "text", told, choices)

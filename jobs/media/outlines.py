@@ -16,7 +16,7 @@ from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
     from morfax.motion.motion import Path
-    from morfax.recorder.drawings.outline import Outline
+    from morfax.recorder.drawings.outline import CadOutline
 
 MOST_ORDERED = 200  # contours; a way through more takes longer than it saves
 
@@ -43,7 +43,7 @@ def check_unit(unit: str | None, *files: FilePath) -> None:
     )
 
 
-def _in_order(outline: Outline) -> Outline:
+def _in_order(outline: CadOutline) -> CadOutline:
     """The contours in the order of cutting: inner before outer, the idle way short."""
     contours = outline.contours_mm
     if not 1 < len(contours) <= MOST_ORDERED:

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Protocol
 MARKED = 10  # of the places that a picture marks: a plan with two pens has many
 
 
-class Found(Protocol):
+class Located(Protocol):
     """What was found on a line, and where that is, sheet mm."""
 
     @property
@@ -30,7 +30,7 @@ class OnLines:
     # the figures of each place, and what they are of it
     rows: ClassVar[tuple[tuple[str, str], ...]]
 
-    of_lines: tuple[tuple[int, Found], ...] = ()
+    of_lines: tuple[tuple[int, Located], ...] = ()
 
     def remarks(self) -> Iterator[str]:
         """What is to be said of the worst; nothing where nothing was found."""

@@ -38,7 +38,7 @@ from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, re
 from morfax.player.gcode.pulses import STANDSTILL_S
 from morfax.player.monitor.following_limit import FollowingLimit
 from morfax.player.monitor.monitor import Supervised
-from morfax.player.monitor.position_servo import PositionServo, PositionServos, Way
+from morfax.player.monitor.position_servo import Interpolated, PositionServo, PositionServos
 
 TOLERANCE_MM = 0.02  # of following, at rest: twenty increments
 
@@ -138,7 +138,7 @@ class PositionPlayback(Supervised):
         demand = np.tile(held, (round(seconds * MOTION_RATE_HZ), 1))
         return demand, self.servos.follow(demand)
 
-    def _way(self, place: tuple[float, float, float], move: Move) -> Way:
+    def _way(self, place: tuple[float, float, float], move: Move) -> Interpolated:
         """A move as the servos take it: its increments on all axes together, and its arc."""
         increment_mm = self.settings.servo.increment_mm
         places = [place, move.end_mm]
@@ -147,7 +147,7 @@ class PositionPlayback(Supervised):
         counts = np.rint(np.array(places) / increment_mm).astype(np.int64)
         increments = int(sum(np.abs(b - a).sum() for a, b in pairwise(counts)))
         path_mm = length_mm(place, move) / max(1, increments)
-        way = Way(self._feed_mm_s(move), increments, path_mm)
+        way = Interpolated(self._feed_mm_s(move), increments, path_mm)
         if not move.turned_rad:
             return way
         radius_mm = math.dist(move.centre_mm, move.end_mm[:2])

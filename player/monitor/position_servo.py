@@ -71,7 +71,7 @@ class PositionServo:
         return 1 / self.gain_per_s
 
 
-class Way(NamedTuple):
+class Interpolated(NamedTuple):
     """How a move goes to its end: feed, increments of all axes, and an arc's centre, radius and sense."""
 
     feed_mm_s: float
@@ -123,7 +123,7 @@ class PositionServos:
         _follow(demand, self._common(), as_rows(self.conditions), self._state, actual)
         return actual
 
-    def go(self, end_mm: Array, way: Way) -> Iterator[tuple[Array, Array]]:
+    def go(self, end_mm: Array, way: Interpolated) -> Iterator[tuple[Array, Array]]:
         """Move to a place: what the axes were told and where they were (n, axes), mm, block by block.
 
         The counter is set to the increments of the move below zero; the move ends when the transducers give

@@ -77,7 +77,7 @@ class Bound:
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class GapEdge:
     """Motion at the edge of a gap, in cycles and rows: place, speed, half the acceleration, worst misfit."""
 
     place: float
@@ -111,15 +111,15 @@ class Bridge:
         return self.counted and self.between < AGREED_CYCLES and self.misfit < ROUGH_CYCLES
 
 
-def side(cycles: Array, at: int) -> Side:
+def side(cycles: Array, at: int) -> GapEdge:
     """Parabola through the rows beside a gap, taken at row `at` (the nearest to the gap)."""
     steps = np.arange(len(cycles)) - at
     bend, speed, place = np.polyfit(steps, cycles - cycles[at], 2)
     misfit = np.abs(cycles - cycles[at] - np.polyval([bend, speed, place], steps)).max()
-    return Side(float(place + cycles[at]), float(speed), float(bend), float(misfit))
+    return GapEdge(float(place + cycles[at]), float(speed), float(bend), float(misfit))
 
 
-def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
+def bridge(before: GapEdge, after: GapEdge, rows: int, acceleration: float) -> Bridge:
     """A gap of this many rows between two sides; the acceleration in cycles per row²."""
     travel = rows * (before.speed + after.speed) / 2 + rows**2 * (before.bend - after.bend) / 6
     off = after.place - before.place - travel
@@ -135,7 +135,7 @@ def bridge(before: Side, after: Side, rows: int, acceleration: float) -> Bridge:
     )
 
 
-def turned(before: Side, after: Side, rows: int, acceleration: float) -> Bridge | None:
+def turned(before: GapEdge, after: GapEdge, rows: int, acceleration: float) -> Bridge | None:
     """The same gap, if the acceleration changes once within it; None where the sides do not say so."""
     first, last, gained = 2 * before.bend, 2 * after.bend, after.speed - before.speed
     if abs(first - last) < NOT_ZERO:
@@ -154,7 +154,7 @@ def turned(before: Side, after: Side, rows: int, acceleration: float) -> Bridge 
     return Bridge(travel + off, off, reach, abs(off) / 2, misfit, turn)
 
 
-def filled(before: Side, after: Side, travel: float, rows: int) -> Array:
+def filled(before: GapEdge, after: GapEdge, travel: float, rows: int) -> Array:
     """The rows within a gap: a cubic with the place and speed of both sides."""
     u = np.arange(1, rows) / rows
     v0, v1, way = before.speed * rows, after.speed * rows, travel
@@ -178,8 +178,8 @@ class Gap:
     axis: int
     first: int
     last: int
-    before: Side
-    after: Side
+    before: GapEdge
+    after: GapEdge
     bridge: Bridge
     bound: Bound
     short: bool = False
@@ -292,7 +292,7 @@ class Gap:
         return np.asarray(before.place + way + self.bridge.off * u**2 * (3 - 2 * u))
 
 
-def freedom(before: Side, after: Side, laid: Array, bound: Bound) -> float:
+def freedom(before: GapEdge, after: GapEdge, laid: Array, bound: Bound) -> float:
     """The furthest that a motion within a bound may lie off what is laid between two sides, cycles."""
     ends, rows = np.array([before.place, before.speed, after.place, after.speed]), len(laid) + 1
     above = upper_edge(ends, rows, bound.acceleration, bound.speed) - laid

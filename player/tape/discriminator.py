@@ -58,7 +58,7 @@ class _Fields(NamedTuple):
 
 
 @keeps_kinds
-class Bench(_Fields):
+class FilterBench(_Fields):
     """The filter, as `branches` has it, and the arrays in which a chunk of rows goes through it."""
 
 
@@ -84,7 +84,7 @@ class Discriminator:
         self._reach = 2 * self._half // decimation
         taps, turns_re, turns_im = branches(sample_rate_hz, reference_hz, decimation, GROUP)
         length = CHUNK_ROWS + max(self._reach, taps.shape[2])
-        self._bench = Bench(
+        self._bench = FilterBench(
             np.ascontiguousarray(taps),
             turns_re,
             turns_im,

@@ -40,7 +40,7 @@ POSITION, SPEED, DEMAND, LEAD, ERROR, SECTOR, COUNT, LAST = 0, 1, 2, 3, 4, 5, 6,
 
 
 @dataclass(frozen=True, slots=True)
-class Reference:
+class ReferenceTrack:
     """What the reference track does at the machine: cycles from row to row, and the wheels that it turns."""
 
     cycles_per_row: float = 1.0
@@ -65,7 +65,7 @@ class _Fields(NamedTuple):
 
 
 @keeps_kinds
-class Machine(_Fields):
+class Loops(_Fields):
     """The loops as the kernel takes them: figures of comparator, networks and motor; wheels; their state."""
 
 
@@ -80,10 +80,10 @@ class Drives:
         settings: PhaseLock | None = None,
         *,
         steps: int = 1,
-        reference: Reference | None = None,
+        reference: ReferenceTrack | None = None,
     ) -> None:
         self.settings = settings or PhaseLock()
-        reference = reference or Reference()
+        reference = reference or ReferenceTrack()
         wheels = reference.wheel.wheels(axes, mm_per_cycle)
         self._cycles = reference.cycles_per_row / steps  # of the reference in a step
         self._stepped = 0
@@ -139,11 +139,11 @@ class Drives:
 
 def _machine(
     settings: PhaseLock, mm_per_cycle: float, dt_s: float, steps: int, wheels: Wheels, axes: int
-) -> Machine:
+) -> Loops:
     """The loops for so many steps from row to row; raises ValueError if the motion rate is too low."""
     drive = settings.drive
     network = place(settings, dt_s)
-    return Machine(
+    return Loops(
         steps=steps,
         mm_per_cycle=mm_per_cycle,
         range_mm=settings.range_cycles * mm_per_cycle,

@@ -32,7 +32,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.motion.usual import MOTION_RATE_HZ
-from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, Side, side
+from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, GapEdge, side
 from morfax.player.tape.discriminator import Discriminator
 from morfax.player.tape.motion_edges import END_ROWS, furthest
 from morfax.player.tape.phases import Phases, Uncertain
@@ -66,7 +66,7 @@ def under_way(rows: Phases, discriminator: Discriminator) -> Array:
 def _count_on(
     discriminator: Discriminator,
     axis: int,
-    at: Side,
+    at: GapEdge,
     cycles: Array,
     surprise: NDArray[np.float32],
 ) -> None:

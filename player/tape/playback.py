@@ -33,10 +33,10 @@ from morfax.motion.faults import Fault, LockFault
 from morfax.motion.motion import AXES, Motion
 from morfax.player.monitor.monitor import Supervised
 from morfax.player.tape.ahead import ReadAhead
-from morfax.player.tape.drives import Drives, Reference, following_limit
+from morfax.player.tape.drives import Drives, ReferenceTrack, following_limit
 from morfax.player.tape.lock_faults import Stood, ended_elsewhere, out_of_range
 from morfax.player.tape.phase_lock import PhaseLock
-from morfax.player.tape.reader import Read, TapeReader
+from morfax.player.tape.reader import ReadRows, TapeReader
 from morfax.player.tape.sector_wheel import SectorWheel
 from morfax.player.tape.setting import Setting, check_resumption
 from morfax.player.tape.track_order import found_order
@@ -193,7 +193,7 @@ class TapePlayback(Supervised):
             self.rate_hz,
             self.settings,
             steps=self._steps,
-            reference=Reference(fmt.reference_hz / fmt.motion_rate_hz, self.setting.wheel),
+            reference=ReferenceTrack(fmt.reference_hz / fmt.motion_rate_hz, self.setting.wheel),
         )
         drives.adjust(self._zero_mm)
         adjusted_edges = drives.cell_edges
@@ -221,16 +221,16 @@ class TapePlayback(Supervised):
                 raise found.fault
         self._check_end()
 
-    def _read(self) -> Iterator[Read]:
+    def _read(self) -> Iterator[ReadRows]:
         """What the reader gives, read ahead if it may be."""
-        ahead = ReadAhead[tuple[Read, int]]()
+        ahead = ReadAhead[tuple[ReadRows, int]]()
 
         def stands_mm() -> Sequence[float]:
             if self.reads_ahead:
                 ahead.wait_for_use()
             return self.end_mm.tolist()
 
-        def made() -> Iterator[tuple[Read, int]]:
+        def made() -> Iterator[tuple[ReadRows, int]]:
             for read in self.reader.read(stands_mm, ahead=self.reads_ahead):
                 yield read, len(self.reader.bridged)
 

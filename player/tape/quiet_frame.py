@@ -45,7 +45,7 @@ MOMENTS = (
 _FIXED = lasting((WORD, *TABLES, MOMENTS))
 
 
-class Read(NamedTuple):
+class QuietFrame(NamedTuple):
     """A frame that is quiet: what each track says, and its rows and times as `count_on` fills them."""
 
     said: tuple[CheckFrame | None, ...]
@@ -95,14 +95,14 @@ class QuietFrames:
             np.empty((tracks, FIGURES)),
         )
 
-    def read(self, points: Subcarrier, begins: float) -> Read | None:
+    def read(self, points: Subcarrier, begins: float) -> QuietFrame | None:
         """Read the frame that begins at a count of the reference; None where it is not quiet."""
         clock, room = (points.first, points.hop, points.cycles_per_frame), self._room
         seen = (points.points, points.theta, begins)
         if not _read_quiet(seen, clock, self._cycle_s, _FIXED, room):
             return None
         said = tuple([said_by(told) for told in room.told.view(np.uint64).tolist()])
-        return Read(said, room.frames.tolist(), room.figures.tolist())
+        return QuietFrame(said, room.frames.tolist(), room.figures.tolist())
 
 
 @njit(cache=True, nogil=True)

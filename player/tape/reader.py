@@ -47,7 +47,7 @@ from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 Listened = tuple[Stored, list[FrameReport]]
 
 
-class Read(NamedTuple):
+class ReadRows(NamedTuple):
     """Rows, the bearings they count from, what watches them (None: nothing), and the fault behind them.
 
     Who reads ahead leaves it to the machine's side to look at the rows: both have about as much to do then.
@@ -109,7 +109,7 @@ class TapeReader:
 
     def read(
         self, stands_mm: Callable[[], Sequence[float]], *, ahead: bool = False
-    ) -> Iterator[Read]:
+    ) -> Iterator[ReadRows]:
         """Rows, bearings, and the first uncertain row of a block; `stands_mm`: the machine's place.
 
         With `ahead` the check signal is read in a thread of its own. Raises TapeFault where the tape is none,
@@ -178,7 +178,7 @@ class TapeReader:
         run: _Run,
         held: list[Stored],
         stands_mm: Callable[[], Sequence[float]],
-    ) -> Iterator[Read]:
+    ) -> Iterator[ReadRows]:
         """All rows of the tape through its gaps, its warrant and the watch; `held`: the last block of it."""
         warrant, bearings, gaps, watch, steadiest = run
         watched = not (self._resume_at_s or warrant.is_checked)
@@ -188,10 +188,10 @@ class TapeReader:
             wrong = steadiest.wrong(held[-1], time_s) if watched else None
             if wrong is not None:
                 raise wrong
-            yield Read(out, bearings, watch, fault)
+            yield ReadRows(out, bearings, watch, fault)
         rest = _certain(gaps, phases.cut(len(phases), len(phases)), last=True)
         out, fault = warrant.feed(rest, stands_mm, last=True)
-        yield Read(out, bearings, None, fault)
+        yield ReadRows(out, bearings, None, fault)
         if self._resume_at_s:
             return  # what was before is not known
         doubt = steadiest.doubtful(time_s) if watched else None

@@ -24,7 +24,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import MotionFault
 from morfax.motion.median import medians
 from morfax.motion.motion import Motion
-from morfax.player.tape.drives import Drives, Reference
+from morfax.player.tape.drives import Drives, ReferenceTrack
 from morfax.player.tape.phase_lock import PhaseLock
 from morfax.player.tape.predictor import count_turns, predictor_gains
 from morfax.player.tape.standstill import STANDSTILL_S
@@ -56,7 +56,7 @@ class Rehearsal:
             fmt.mm_per_cycle,
             rate_hz,
             (settings or PhaseLock()).suited_to(rate_hz),
-            reference=Reference(fmt.reference_hz / rate_hz),
+            reference=ReferenceTrack(fmt.reference_hz / rate_hz),
         )
         self._shown = np.zeros((0, axes), np.float32)  # surprises from the next window on
         self._loud = np.zeros(axes, int)  # windows in a row in which an axis shook

@@ -25,7 +25,7 @@ from morfax.player.tape.bridges import (
     Bound,
     Bridge,
     Gap,
-    Side,
+    GapEdge,
     bridge,
     side,
     turned,
@@ -67,7 +67,7 @@ class Riding:
         return gaps[0]
 
     def _ways(
-        self, before: Side, after: Side, rows: int, told: Bound | None
+        self, before: GapEdge, after: GapEdge, rows: int, told: Bound | None
     ) -> Sequence[Bridge]:
         """The ways across a gap of so many rows, the likeliest first."""
         if told is None:
@@ -86,7 +86,7 @@ def _level_step(levels: NDArray[np.float32], within: tuple[int, int], rows: int)
     return float(np.abs(ratio - 1).max())
 
 
-def _sides(cycles: Array, a: int, b: int, rows: int) -> tuple[Side, Side]:
+def _sides(cycles: Array, a: int, b: int, rows: int) -> tuple[GapEdge, GapEdge]:
     """The sides of a gap from row `a` to before `b`, from so many rows each; the second in any turn."""
     before = side(cycles[a - rows : a], rows - 1)
     return before, side(np.unwrap(cycles[b : b + rows], period=1.0), 0)

@@ -39,7 +39,7 @@ from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.check_frame import SYMBOLS
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
-from morfax.recorder.tape.told_figures import Stated, agreed
+from morfax.recorder.tape.told_figures import StatedFigures, agreed
 
 LARGEST_OFF_S = 6e-6  # of a delay off the line through seven: 0.036 cycle; 26 dB leave 2
 
@@ -102,7 +102,7 @@ class Vouching:
         """Raise TapeFault unless each track is what it should be, and the text states what they say."""
         fmt = self._format
         faults.demand_tracks(self._check.tracks, fmt.axes)
-        used = Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm)
+        used = StatedFigures(fmt.cycles_per_mm, fmt.axes, fmt.start_mm)
         self.notes = agreed(self._check.found[0][0].said, fmt.stated, used)
 
     def _take_reports(self) -> None:

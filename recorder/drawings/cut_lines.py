@@ -24,7 +24,7 @@ from morfax.recorder.gcode.program_text import Block
 Place = tuple[float, float]
 
 
-class Piece(NamedTuple):
+class CutPiece(NamedTuple):
     """A line to a place, or an arc that turns by an angle, rad, + left (0: a line); mm."""
 
     end_mm: Place
@@ -36,7 +36,7 @@ class CutLine:
     """A chain of pieces from a place on, mm."""
 
     begin_mm: Place
-    pieces: tuple[Piece, ...]
+    pieces: tuple[CutPiece, ...]
 
     @property
     def closed(self) -> bool:
@@ -61,7 +61,7 @@ def cut_lines_of(source: Source, writing: Writing) -> tuple[list[CutLine], Block
 def _cut_of(planned: BlockPlan) -> Iterator[CutLine]:
     """What a plan cuts, as often as it does."""
     begin_mm: tuple[float, float] | None = None
-    pieces = list[Piece]()
+    pieces = list[CutPiece]()
     place = (float(planned.start_mm[0]), float(planned.start_mm[1]), float(planned.start_mm[2]))
     for block in planned.blocks:
         cuts = block.code != "G0" and min(place[2], block.place_mm[2]) <= IN_WORK_BELOW_MM
@@ -77,19 +77,19 @@ def _cut_of(planned: BlockPlan) -> Iterator[CutLine]:
         yield CutLine(begin_mm, tuple(pieces))
 
 
-def _piece(begin_mm: tuple[float, float, float], block: Block) -> Piece:
+def _piece(begin_mm: tuple[float, float, float], block: Block) -> CutPiece:
     """The line or arc of a block."""
     end_mm = block.place_mm[0], block.place_mm[1]
     if block.code not in ("G2", "G3"):
-        return Piece(end_mm)
+        return CutPiece(end_mm)
     x, y = block.centre_mm
     centre = begin_mm[0] + x, begin_mm[1] + y
     first = math.atan2(-y, -x)
     last = math.atan2(end_mm[1] - centre[1], end_mm[0] - centre[0])
     sense = 1 if block.code == "G3" else -1
-    return Piece(end_mm, sense * (sense * (last - first) % math.tau))
+    return CutPiece(end_mm, sense * (sense * (last - first) % math.tau))
 
 
-def radius_mm(begin_mm: Place, piece: Piece) -> float:
+def radius_mm(begin_mm: Place, piece: CutPiece) -> float:
     """Radius of an arc."""
     return math.dist(begin_mm, piece.end_mm) / abs(2 * math.sin(piece.turned_rad / 2))

@@ -22,7 +22,7 @@ from typing import Any
 from morfax.motion.files import written_beside
 from morfax.motion.segments import Source
 from morfax.recorder.drawings.chords import box
-from morfax.recorder.drawings.cut_lines import CutLine, Piece, Place, cut_lines_of, radius_mm
+from morfax.recorder.drawings.cut_lines import CutLine, CutPiece, Place, cut_lines_of, radius_mm
 from morfax.recorder.drawings.drawn_units import ZERO
 from morfax.recorder.gcode.machine import TOLERANCE_MM
 from morfax.recorder.gcode.plan import Writing
@@ -165,13 +165,13 @@ def _path(line: CutLine, place: Callable[[float, float], str]) -> str:
     return " ".join(words).rstrip()
 
 
-def _narrow(line: CutLine) -> list[Piece]:
+def _narrow(line: CutLine) -> list[CutPiece]:
     """The pieces of a line, wide arcs in two."""
     begins = [line.begin_mm, *(piece.end_mm for piece in line.pieces)]
     return [part for k, piece in enumerate(line.pieces) for part in _halves(begins[k], piece)]
 
 
-def _halves(begin_mm: Place, piece: Piece) -> list[Piece]:
+def _halves(begin_mm: Place, piece: CutPiece) -> list[CutPiece]:
     """An arc in two where it turns so far that its ends and its radius say little about its centre."""
     if abs(piece.turned_rad) < WIDEST_ARC_RAD:
         return [piece]
@@ -179,4 +179,7 @@ def _halves(begin_mm: Place, piece: Piece) -> list[Piece]:
     half = chord / 2 * complex(1, -math.tan(piece.turned_rad / 4))
     middle = complex(*begin_mm) + half
     turned_rad = piece.turned_rad / 2
-    return [Piece((middle.real, middle.imag), turned_rad), Piece(piece.end_mm, turned_rad)]
+    return [
+        CutPiece((middle.real, middle.imag), turned_rad),
+        CutPiece(piece.end_mm, turned_rad),
+    ]

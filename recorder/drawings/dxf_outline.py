@@ -32,7 +32,7 @@ from morfax.motion.faults import DrawingFault, FileFault
 from morfax.motion.usual import INCREMENT_MM
 from morfax.recorder.drawings.curve_chords import bulged
 from morfax.recorder.drawings.drawn_units import NO_UNIT, unit_mm
-from morfax.recorder.drawings.outline import Outline
+from morfax.recorder.drawings.outline import CadOutline
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -56,7 +56,7 @@ DAMAGE = (
 LEAST_CHORDS = 8
 
 
-def read_dxf(file: FilePath, unit: str | None = None) -> Outline:
+def read_dxf(file: FilePath, unit: str | None = None) -> CadOutline:
     """Read a DXF; raises DrawingFault for one that is damaged, empty or without a unit, FileFault."""
     from ezdxf.lldxf.const import DXFError
 
@@ -74,7 +74,7 @@ def read_dxf(file: FilePath, unit: str | None = None) -> Outline:
     if not pieces:
         raise DrawingFault(f"{file} holds no lines in its model space; save the part there")
     told = ", ".join(f"{count} {kind}" for kind, count in sorted(left_out.items()))
-    return Outline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
+    return CadOutline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
 
 
 def _pieces(file: FilePath, unit: str | None) -> tuple[list[Array], Counter[str]]:

@@ -31,14 +31,14 @@ JOINED_MM = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Outline:
+class CadOutline:
     """Contours (n, 2) mm, in the order of the file; those of one place are holes."""
 
     contours_mm: tuple[Array, ...]
     notes: tuple[str, ...] = ()  # what the operator should know
 
     @classmethod
-    def of(cls, pieces_mm: Sequence[Array], notes: Sequence[str] = ()) -> Outline:
+    def of(cls, pieces_mm: Sequence[Array], notes: Sequence[str] = ()) -> CadOutline:
         """Join the pieces of a file; a piece that is there twice is taken once.
 
         Raises DrawingFault for a place that is no number or more than a kilometre away, as of a path file.

@@ -26,7 +26,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.motion.usual import INCREMENT_MM
 from morfax.recorder.drawings.curve_chords import bezier, chords_of
-from morfax.recorder.drawings.outline import Outline
+from morfax.recorder.drawings.outline import CadOutline
 from morfax.recorder.drawings.svg_sheet import sheet_of
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ HREF = "{http://www.w3.org/1999/xlink}href"
 MOST_REPEATED = 100_000
 
 
-def read_svg(file: FilePath, unit: str | None = None) -> Outline:
+def read_svg(file: FilePath, unit: str | None = None) -> CadOutline:
     """Read an SVG; raises DrawingFault for one that is damaged, empty or without a unit, FileFault."""
     root = _root(file)
     sheet = sheet_of(file, root, unit)
@@ -60,7 +60,7 @@ def read_svg(file: FilePath, unit: str | None = None) -> Outline:
         raise DrawingFault(f"{file} holds no lines; turn words into paths, and save it again")
     count = Counter(tag for tag in map(_tag, root.iter()) if tag in WORDS)
     told = ", ".join(f"{n} {tag}" for tag, n in sorted(count.items()))
-    return Outline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
+    return CadOutline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
 
 
 def _root(file: FilePath) -> ElementTree.Element:

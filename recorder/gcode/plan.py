@@ -30,7 +30,7 @@ from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.machine import DECIMALS, TOLERANCE_MM
 from morfax.recorder.gcode.program_text import Block
 from morfax.recorder.gcode.spline import LineOrArc
-from morfax.recorder.gcode.stretches import Stretch, stretches
+from morfax.recorder.gcode.stretches import FeedStretch, stretches
 
 # of an arc: its centre has to lie within the travel of the machine, +-2 m; a flatter one becomes lines
 _LARGEST_RADIUS_MM = 1000.0
@@ -52,7 +52,7 @@ class Feeds:
     plunge_mm_s: float | None = None
     down_slopes_mm_s: float = math.inf  # of Z on a slope, at most
 
-    def with_plunge_of(self, parts: Sequence[Stretch]) -> Feeds:
+    def with_plunge_of(self, parts: Sequence[FeedStretch]) -> Feeds:
         """The feeds with that of Z on slopes: no more than what is asked for, or any straight plunge has."""
         speeds_mm_s = (part.speed_mm_s for part in parts if part.plunge_mm >= FELT_PLUNGE_MM)
         slowest_mm_s = min(speeds_mm_s, default=math.inf)
@@ -81,7 +81,7 @@ class BlockPlan:
 
     start_mm: Array
     blocks: list[Block]
-    parts: list[Stretch]
+    parts: list[FeedStretch]
     duration_s: float
     deviation_mm: float
 
@@ -126,7 +126,7 @@ class _Planner:
         self.duration_s = self.deviation_mm = 0.0
         self.start_mm = self.place = self._written(start_mm)
 
-    def stretch(self, stretch: Stretch) -> None:
+    def stretch(self, stretch: FeedStretch) -> None:
         """BlockPlan a stretch, and the dwell before it."""
         if stretch.dwell_s:
             self.blocks.append(Block("G4", tuple(self.place), dwell_s=stretch.dwell_s))
@@ -151,7 +151,7 @@ class _Planner:
             for segment in chain.segments:
                 self._segment(segment, feed_mm_s, chain.deviation_mm)
 
-    def _feed_mm_s(self, stretch: Stretch) -> float:
+    def _feed_mm_s(self, stretch: FeedStretch) -> float:
         """The feed of a stretch: the operator's, or the motion's."""
         asked_mm_s = (
             self.feeds.plunge_mm_s if stretch.kind == "upright" else self.feeds.cut_mm_s

@@ -57,14 +57,14 @@ class LineOrArc:
 
 
 @dataclass(frozen=True, slots=True)
-class Chain:
+class SegmentChain:
     """Segments from corner to corner, and their largest distance from the path."""
 
     segments: list[LineOrArc]
     deviation_mm: float
 
 
-class Spline:
+class ArcSpline:
     """A chain with as many segments as there are pieces, each tangent to the one before.
 
     Unknown are the joints (x, y) between fixed ends, and half the angle that each curved segment turns.
@@ -88,7 +88,7 @@ class Spline:
         # of each segment's five numbers
         self.columns = np.column_stack([number[:, :2], ends, number[:, 2]])
 
-    def laid(self, tolerance_mm: float) -> Chain | None:
+    def laid(self, tolerance_mm: float) -> SegmentChain | None:
         """The chain by least squares, the worst places weighted more where needed; None if none fits."""
         weights = np.ones(len(self.few))
         for _ in range(4):
@@ -97,7 +97,7 @@ class Spline:
             table = table_of(self.joints, self.halves)
             off = np.abs(offs(table, self.places, owners(table, self.shares)))
             if off.max() <= tolerance_mm and np.abs(self.halves).max() <= MOST_HALF_RAD:
-                return Chain(segments(rows_of(table)), float(off.max()))
+                return SegmentChain(segments(rows_of(table)), float(off.max()))
             if off.max() > 2 * tolerance_mm:
                 break
             weights = weights * (0.3 + off[self.few] / off.max())

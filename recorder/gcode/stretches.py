@@ -46,7 +46,7 @@ Kind = Literal["plane", "slope", "upright"]
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class FeedStretch:
     """Points (n, 3) mm of one kind, the speed at which most of their length is run, and the dwell before."""
 
     points_mm: Array
@@ -84,7 +84,7 @@ class _Steps:
     climbs: NDArray[np.bool_]
 
 
-def stretches(path: Path, tolerance_mm: float) -> Iterator[Stretch]:
+def stretches(path: Path, tolerance_mm: float) -> Iterator[FeedStretch]:
     """The stretches of a path; a path that stands at one place has none."""
     steps = _moving(path)
     cuts = np.flatnonzero(np.diff(steps.climbs) | (steps.stood_s[1:] > 0)) + 1
@@ -159,7 +159,7 @@ def _stands(speeds_mm_s: Array) -> list[int]:
     return [int(place[np.argmin(speeds_mm_s[place])]) for place in places]
 
 
-def _stretch(path: Path, steps: _Steps, part: slice, tolerance_mm: float) -> Stretch:
+def _stretch(path: Path, steps: _Steps, part: slice, tolerance_mm: float) -> FeedStretch:
     """A stretch of some steps."""
     index = steps.index[part]
     points = path.positions_mm[np.r_[index, index[-1] + 1]]
@@ -176,7 +176,7 @@ def _stretch(path: Path, steps: _Steps, part: slice, tolerance_mm: float) -> Str
     lengths_mm = np.hypot(steps.across_mm[part], steps.up_mm[part])
     share = UPRIGHT_SHARE if kind == "upright" else HALF
     speed_mm_s = _speed_mm_s(lengths_mm, steps.took_s[part], share)
-    return Stretch(points, kind, speed_mm_s, float(steps.stood_s[part.start]))
+    return FeedStretch(points, kind, speed_mm_s, float(steps.stood_s[part.start]))
 
 
 def _speed_mm_s(lengths_mm: Array, seconds: Array, share_below: float) -> float:

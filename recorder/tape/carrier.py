@@ -44,7 +44,7 @@ from morfax.recorder.tape.lacing import (
     BARE,
     CHUNK_PERIODS,
     Beneath,
-    Room,
+    LacingRoom,
     finish,
     lace,
     words_of,
@@ -107,7 +107,7 @@ class Carrier:
         harmonics = 1 if sensor.is_sine else int((FADE_TO / lowest + 1) / 2)
         amplitudes = pick_up.level * sensor.amplitudes(harmonics)
         self._wave = _Wave(pick_up.reference_cycles, amplitudes, sensor.by_speed)
-        self._room = Room.of(1 + self._axes, pick_up.samples_per_motion)
+        self._room = LacingRoom.of(1 + self._axes, pick_up.samples_per_motion)
 
     def frames(self, positions_mm: ArrayLike) -> Stored:
         """Frames (n, 1 + axes) from positions (n, axes) in mm; the last two samples are held back."""

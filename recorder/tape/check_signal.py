@@ -47,7 +47,7 @@ from morfax.recorder.tape.check_frame import (
 from morfax.recorder.tape.format import CHECK_SHARE, TapeFormat
 from morfax.recorder.tape.lacing import BARE, Beneath
 from morfax.recorder.tape.speed_gauge import widest_moves
-from morfax.recorder.tape.told_figures import Stated, frame_of
+from morfax.recorder.tape.told_figures import StatedFigures, frame_of
 from morfax.recorder.tape.waiting_rows import ROWS_AT_ONCE
 
 CYCLES_PER_SUBCARRIER = 6.0  # of the reference
@@ -142,7 +142,7 @@ class _Teller(_Fields):
 
 def _teller(fmt: TapeFormat, rows_per_frame: float, gauge: int) -> _Teller:
     """That of a tape."""
-    said = frame_of(Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm), 0)
+    said = frame_of(StatedFigures(fmt.cycles_per_mm, fmt.axes, fmt.start_mm), 0)
     of_reference = said.counts, said.speed, said.acceleration
     per_cycle, rate_hz = COUNTS_PER_CYCLE[VERSION], fmt.motion_rate_hz
     told = middle_bits(VERSION, 1)

@@ -28,7 +28,7 @@ from morfax.motion.faults import TapeFault
 from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ, SAMPLES_PER_MOTION
 from morfax.recorder.tape.carrier import PickUp
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, SCREW, Sensor
-from morfax.recorder.tape.told_figures import Stated
+from morfax.recorder.tape.told_figures import StatedFigures
 
 VERSION = 3  # the latest
 _NEW_ENTRIES = {"pickup": 2, "still": 3, "alike": 3}  # the first version that has it
@@ -70,7 +70,7 @@ class TapeFormat:
     # the check signal is recorded; the text does not say so, the tracks do
     checked: bool = field(default=False, compare=False)
     # what the text that it was read from states, whatever is given by hand
-    stated: Stated | None = field(default=None, compare=False)
+    stated: StatedFigures | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         _check_numbers(self)
@@ -170,7 +170,7 @@ class TapeFormat:
         }
         try:
             fmt = cls(**as_tuples)
-            return replace(fmt, stated=Stated(fmt.cycles_per_mm, fmt.axes, fmt.start_mm))
+            return replace(fmt, stated=StatedFigures(fmt.cycles_per_mm, fmt.axes, fmt.start_mm))
         except (TypeError, ValueError) as error:
             raise TapeFault(f"the tape's text chunk is wrong: {error}; {_AGAIN}") from None
 

@@ -57,7 +57,7 @@ class _Fields(NamedTuple):
 
 
 @keeps_kinds
-class Room(_Fields):
+class LacingRoom(_Fields):
     """Memory for what is between positions and frames, of so many periods.
 
     `columns`: carriers; `finished`: the same with check signal and in 16 bit; `said`: what a track says, and
@@ -66,7 +66,7 @@ class Room(_Fields):
     """
 
     @classmethod
-    def of(cls, tracks: int, steps: int) -> Room:
+    def of(cls, tracks: int, steps: int) -> LacingRoom:
         """Room for so many tracks, and steps of a period."""
         shape = tracks, steps, CHUNK_PERIODS
         return cls(

@@ -36,7 +36,7 @@ LEAST_OCTAVE, OCTAVES = -16, 32  # 1.5e-5 to 65 536 cycles per mm; beyond nothin
 CODES = 126
 
 
-class Stated(NamedTuple):
+class StatedFigures(NamedTuple):
     """What a text chunk states: cycles per mm, names of the axes, start in mm."""
 
     cycles_per_mm: float
@@ -44,7 +44,7 @@ class Stated(NamedTuple):
     start_mm: tuple[float, ...]
 
 
-def frame_of(stated: Stated, number: int, last: bool = False) -> CheckFrame:
+def frame_of(stated: StatedFigures, number: int, last: bool = False) -> CheckFrame:
     """What the reference's track says in a frame of this number."""
     tens, ones = divmod(_sum(stated), CODES)
     return CheckFrame(
@@ -57,7 +57,7 @@ def frame_of(stated: Stated, number: int, last: bool = False) -> CheckFrame:
     )
 
 
-def demand_agreement(said: CheckFrame, stated: Stated, used: Stated) -> None:
+def demand_agreement(said: CheckFrame, stated: StatedFigures, used: StatedFigures) -> None:
     """Raise TapeFault where a text states other figures than were recorded; not for those given by hand."""
     told = said.counts
     if (
@@ -80,7 +80,9 @@ def demand_agreement(said: CheckFrame, stated: Stated, used: Stated) -> None:
         )
 
 
-def agreed(said: CheckFrame, stated: Stated | None, used: Stated) -> tuple[str, ...]:
+def agreed(
+    said: CheckFrame, stated: StatedFigures | None, used: StatedFigures
+) -> tuple[str, ...]:
     """Notes on figures given by hand, or lost with the text, that are not those of the recording.
 
     Raises TapeFault for a text that states others.
@@ -119,7 +121,7 @@ def _scale(cycles_per_mm: float) -> int:
     return told if 0 < told < OCTAVES * STEPS_PER_OCTAVE else 0
 
 
-def _sum(stated: Stated) -> int:
+def _sum(stated: StatedFigures) -> int:
     """The check sum of the axes and the start."""
     text = json.dumps([stated.axes, [float(mm) for mm in stated.start_mm]])
     return zlib.crc32(text.encode()) % CODES**2

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from morfax.motion.processor import LEVEL, LEVEL_HAS, Target, target
+from morfax.motion.processor import LEVEL, LEVEL_HAS, Processor, target
 
 OLDER = "sse2 avx"
 
@@ -48,7 +48,7 @@ def nothing_asked(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_machines_that_have_the_level_share_their_code() -> None:
     has = " ".join(LEVEL_HAS)
-    assert target(Llvm(has)) == target(Llvm(f"{has} avx512f")) == Target(LEVEL, "")
+    assert target(Llvm(has)) == target(Llvm(f"{has} avx512f")) == Processor(LEVEL, "")
 
 
 @pytest.mark.parametrize("missing", sorted(LEVEL_HAS))
@@ -65,7 +65,7 @@ def test_another_kind_of_machine_has_code_of_its_own() -> None:
 
 def test_numba_s_own_setting_goes_before(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_CPU_NAME", "nehalem")
-    assert target(Llvm(" ".join(LEVEL_HAS))) == Target("nehalem", "")
+    assert target(Llvm(" ".join(LEVEL_HAS))) == Processor("nehalem", "")
 
 
 NUMBA_FIRST = """

@@ -20,7 +20,7 @@ from morfax.console.verbs.panel import _command_line
 from morfax.panel.app import routes
 from morfax.panel.bench import Bench
 from morfax.panel.guard import Guard
-from morfax.panel.history import Step
+from morfax.panel.history import HistoryStep
 from morfax.panel.server import Address, _listening
 
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -53,7 +53,7 @@ def bench_in(folder: Path) -> Bench:
     shutil.copy(SAMPLES / "cam.png", folder)
     (folder / "work").mkdir()
     bench = Bench(folder / "work", {"cam.png": folder / "cam.png"}, _command_line(), Idle)
-    bench.history.add(Step("cam.png", {}))
+    bench.history.add(HistoryStep("cam.png", {}))
     return bench
 
 

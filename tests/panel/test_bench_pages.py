@@ -11,7 +11,7 @@ import pytest
 from morfax.motion.faults import FileFault
 from morfax.panel.app import _Pages
 from morfax.panel.bench import Bench
-from morfax.panel.history import History, Step
+from morfax.panel.history import History, HistoryStep
 
 
 def test_a_file_that_holds_no_state_is_refused_and_left_alone(tmp_path: Any) -> None:
@@ -30,7 +30,7 @@ def test_a_file_that_holds_no_state_is_refused_and_left_alone(tmp_path: Any) -> 
 
 def test_a_step_is_whole_on_disk(tmp_path: Any) -> None:
     history = History(tmp_path / "state.json")
-    history.add(Step("a.png", {"--width": "120mm"}))
+    history.add(HistoryStep("a.png", {"--width": "120mm"}))
     kept = json.loads((tmp_path / "state.json").read_text())
     step = {"drawing": "a.png", "options": {"--width": "120mm"}, "corrections": ""}
     assert kept["steps"][kept["at"]] == step

@@ -14,7 +14,7 @@ from morfax.jobs.settings.settings import DrawingFile
 from morfax.panel import result_data, sheet_data
 from morfax.panel.lookout import STEP_MM, Lookout
 from morfax.panel.tape_levels import levels
-from morfax.panel.tiles import TILE, LineMap, Picture
+from morfax.panel.tiles import TILE, LineMap, Pyramid
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 
@@ -26,7 +26,7 @@ def unpacked(png: bytes) -> np.ndarray:
 
 def test_tiles_of_the_first_level_are_the_picture_itself() -> None:
     pixels = np.random.default_rng(1).integers(0, 256, (700, 1300), dtype=np.uint8)
-    picture = Picture(pixels)
+    picture = Pyramid(pixels)
     assert len(picture.levels) == 3 and max(picture.levels[-1].shape) <= TILE
     assert (unpacked(picture.tile(0, 1, 0)) == pixels[:TILE, TILE : 2 * TILE]).all()
     assert unpacked(picture.tile(0, 2, 1)).shape == (700 - TILE, 1300 - 2 * TILE)

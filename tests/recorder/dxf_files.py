@@ -11,7 +11,7 @@ import numpy as np
 from ezdxf import units
 
 from morfax.motion.arrays import Array
-from morfax.recorder.drawings.cut_lines import CutLine, Piece
+from morfax.recorder.drawings.cut_lines import CutLine, CutPiece
 
 UM = 1e-3
 
@@ -40,11 +40,11 @@ def cut() -> list[CutLine]:
     """Lines and arcs that turn both ways, narrow and wide, and a hole; closed where they end exactly."""
     angle = math.radians(170)
     around = (20 + 10 * math.cos(angle), 20 + 10 * math.sin(angle))
-    half = (Piece((10.0, 20.0), math.pi), Piece((30.0, 20.0), math.pi))
+    half = (CutPiece((10.0, 20.0), math.pi), CutPiece((30.0, 20.0), math.pi))
     return [
-        CutLine((3.0, 4.0), (Piece((33.3333, 4.0)), Piece((43.3333, 14.0), math.pi / 2))),
+        CutLine((3.0, 4.0), (CutPiece((33.3333, 4.0)), CutPiece((43.3333, 14.0), math.pi / 2))),
         CutLine((30.0, 20.0), half),
-        CutLine((30.0, 20.0), (Piece(around, angle),)),
-        CutLine((50.0, 40.0), (Piece((51.0, 40.0), -1.8 * math.pi), Piece((60.0, 45.0)))),
+        CutLine((30.0, 20.0), (CutPiece(around, angle),)),
+        CutLine((50.0, 40.0), (CutPiece((51.0, 40.0), -1.8 * math.pi), CutPiece((60.0, 45.0)))),
         CutLine((12.5, 12.5), ()),
     ]

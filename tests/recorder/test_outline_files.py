@@ -16,7 +16,7 @@ from morfax.motion.usual import INCREMENT_MM
 from morfax.recorder.drawings.curve_chords import bulged
 from morfax.recorder.drawings.cut_lines import CutLine
 from morfax.recorder.drawings.drawings import _dxf, _svg
-from morfax.recorder.drawings.outline import Outline
+from morfax.recorder.drawings.outline import CadOutline
 from morfax.recorder.media import read_outline
 from tests.recorder.dxf_files import UM, cut, dxf, off_circle
 
@@ -60,7 +60,7 @@ def test_pieces_whose_ends_meet_are_one_contour(tmp_path: Path) -> None:
 
 def test_the_tool_is_up_before_between_and_after_the_contours() -> None:
     square = np.array([[0, 0], [10, 0], [10, 10], [0, 0]], float)
-    path = Outline.of([square, np.array([[5.0, 3.0]])]).path(5.0)
+    path = CadOutline.of([square, np.array([[5.0, 3.0]])]).path(5.0)
     assert path.positions_mm[[0, -1], 2].tolist() == [2, 2]
     runs = path.runs()
     assert runs[0].tolist() == square.tolist() and runs[1].tolist() == [[5, 3]]

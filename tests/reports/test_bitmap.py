@@ -15,20 +15,20 @@ from morfax.reports import bitmap, vector
 from morfax.reports.axis_numbers import numbers
 from morfax.reports.canvas import DPI, save
 from morfax.reports.overlay import Picture, draw
-from morfax.reports.page import Box, Page
+from morfax.reports.page import Box, PageLayout
 from morfax.reports.plate import (
     BLACK,
-    Area,
+    Caption,
     Ground,
-    Line,
     Plate,
+    Polyline,
     Spot,
-    Words,
+    TintedArea,
     free_corner,
     with_gaps,
 )
 
-PAGE = Page(4.0, 4.0, Box(0.5, 0.5, 3.0, 3.0), [], None)  # 300 x 300 mm at 100 mm an inch
+PAGE = PageLayout(4.0, 4.0, Box(0.5, 0.5, 3.0, 3.0), [], None)  # 300 x 300 mm at 100 mm an inch
 VIEW = (0.0, 300.0, 0.0, 300.0)
 RED, BLUE = "#ff0000", "#0000ff"
 MM = DPI / 100  # pixels of that page
@@ -52,7 +52,7 @@ def places_mm(of: np.ndarray) -> np.ndarray:
 
 def test_a_line_lies_where_its_places_are_and_has_its_gap() -> None:
     runs = [np.array([[50.0, 100.0], [100.0, 100.0]]), np.array([[200.0, 100.0], [250, 100.0]])]
-    found = places_mm(is_red(page_of(Plate(VIEW, marks=[Line(with_gaps(runs), RED, 3.0)]))))
+    found = places_mm(is_red(page_of(Plate(VIEW, marks=[Polyline(with_gaps(runs), RED, 3.0)]))))
     assert found[:, 1].mean() == pytest.approx(100.0, abs=0.5 / MM)  # half a pixel
     assert found[:, 1].max() - found[:, 1].min() == pytest.approx(
         3.0 * DPI / 72 / MM, abs=2 / MM
@@ -64,7 +64,7 @@ def test_a_line_lies_where_its_places_are_and_has_its_gap() -> None:
 
 def test_a_higher_order_lies_on_top_and_nothing_leaves_the_axes() -> None:
     across = np.array([[-900.0, 150.0], [900.0, 150.0]])
-    marks = [Line(across, RED, 6.0, order=3), Line(across[:, ::-1], BLUE, 6.0, order=2)]
+    marks = [Polyline(across, RED, 6.0, order=3), Polyline(across[:, ::-1], BLUE, 6.0, order=2)]
     pixels = page_of(Plate(VIEW, marks=marks))
     assert is_red(pixels)[round(2 * DPI), round(2 * DPI)]  # where both cross
     found = places_mm(is_red(pixels))
@@ -85,7 +85,7 @@ def test_an_area_shines_through_to_the_drawing_below() -> None:
     grey = np.full((30, 30), 200, np.uint8)
     grey[:15] = 100  # the upper half
     corners = np.array([[0.0, 0.0], [150.0, 0.0], [150.0, 300.0], [0.0, 300.0]])
-    plate = Plate(VIEW, ground=Ground(grey, VIEW), marks=[Area(corners, "#000000", 0.5)])
+    plate = Plate(VIEW, ground=Ground(grey, VIEW), marks=[TintedArea(corners, "#000000", 0.5)])
     pixels = page_of(plate)
     row, column = np.array([1.25, 2.75]) * DPI, np.array([1.25, 2.75]) * DPI
     seen = pixels[np.ix_(row.astype(int), column.astype(int))][:, :, 0]
@@ -93,12 +93,12 @@ def test_an_area_shines_through_to_the_drawing_below() -> None:
 
 
 def test_words_stand_beside_their_place_and_a_legend_in_its_corner() -> None:
-    plate = Plate(VIEW, marks=[Words((150.0, 150.0), "M", 30, RED, (20.0, 10.0))])
+    plate = Plate(VIEW, marks=[Caption((150.0, 150.0), "M", 30, RED, (20.0, 10.0))])
     found = places_mm(is_red(page_of(plate)))
     pt = DPI / 72 / MM  # in mm
     assert found[:, 0].min() == pytest.approx(150 + 20 * pt, abs=3 * pt)
     assert found[:, 1].min() == pytest.approx(150 + 10 * pt, abs=2 * pt)
-    plate = Plate(VIEW, marks=[Line(np.zeros((0, 2)), RED, 3.0, label="a line")])
+    plate = Plate(VIEW, marks=[Polyline(np.zeros((0, 2)), RED, 3.0, label="a line")])
     found = places_mm(is_red(page_of(plate)))
     assert len(found) and (found > 200).all()
 
@@ -114,9 +114,9 @@ def test_a_legend_stands_in_the_corner_in_which_the_fewest_places_lie(
         for is_right in (True, False)
     }
     full = np.vstack([np.linspace(at, at + 50, 99) for c, at in corners.items() if c != taken])
-    assert free_corner(Plate(VIEW, marks=[Line(full, BLACK, 1.0)]), (0.3, 0.3)) == taken
+    assert free_corner(Plate(VIEW, marks=[Polyline(full, BLACK, 1.0)]), (0.3, 0.3)) == taken
     plate = Plate(
-        VIEW, marks=[Line(full, BLACK, 0.1), Line(full[:0], RED, 3.0, label="a line")]
+        VIEW, marks=[Polyline(full, BLACK, 0.1), Polyline(full[:0], RED, 3.0, label="a line")]
     )
     found = places_mm(is_red(page_of(plate)))
     assert len(found)
@@ -144,8 +144,8 @@ def test_pixels_and_vectors_show_the_same(tmp_path: FilePath) -> None:
 
     t = np.linspace(0, 2 * np.pi, 200)
     around = 150 + 100 * np.column_stack([np.cos(t), np.sin(2 * t)])
-    marks = [Line(around, RED, 2.0, label="way"), Spot((60.0, 60.0), "D", 9, BLUE, "stop")]
-    marks.append(Words((60, 60), "D1", 9))
+    marks = [Polyline(around, RED, 2.0, label="way"), Spot((60.0, 60.0), "D", 9, BLUE, "stop")]
+    marks.append(Caption((60, 60), "D1", 9))
     plates = [(PAGE.main, Plate(VIEW, "a title", names=None, marks=marks))]
     save(vector.figure_of(PAGE, plates, None), tmp_path / "a.png", trim=False)
     with Image.open(tmp_path / "a.png") as image:

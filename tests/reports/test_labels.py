@@ -10,7 +10,7 @@ import pytest
 from morfax.motion.motion import Path
 from morfax.reports import labels, overlay
 from morfax.reports.overlay import Picture
-from morfax.reports.plate import Line, Plate, Spot, Words, free_corner
+from morfax.reports.plate import Caption, Plate, Polyline, Spot, free_corner
 
 WIDE_PT = HIGH_PT = 400.0
 SIZE_PT = 8.0
@@ -29,10 +29,10 @@ def boxes_pt(plate: Plate) -> np.ndarray:
 def crowd(count: int, *lines: np.ndarray) -> Plate:
     """A plate with as many named places within 20 mm of each other, and lines."""
     plate = Plate(VIEW)
-    plate.add(*(Line(line, "#c1121f", 1.0) for line in lines))
+    plate.add(*(Polyline(line, "#c1121f", 1.0) for line in lines))
     for k, (x, y) in enumerate(np.random.default_rng(4).uniform(40, 60, (count, 2)).tolist()):
         plate.add(Spot((x, y), "D", 6, "#1f5fbf"))
-        plate.add(Words((x, y), f"unexplained {k}", SIZE_PT, offset_pt=(7, 7)))
+        plate.add(Caption((x, y), f"unexplained {k}", SIZE_PT, offset_pt=(7, 7)))
     labels.spread(plate, WIDE_PT, HIGH_PT)
     return plate
 
@@ -49,7 +49,7 @@ def test_names_of_places_near_to_each_other_do_not_lie_over_one_another(count: i
 def test_a_line_leads_to_every_name_that_does_not_stand_beside_its_place() -> None:
     """(Fails without `leaders`, and with a leader that ends elsewhere than at the name.)"""
     plate = crowd(labels.FEW_NAMES)
-    boxes, leaders = boxes_pt(plate), [m for m in plate.marks if isinstance(m, Line)]
+    boxes, leaders = boxes_pt(plate), [m for m in plate.marks if isinstance(m, Polyline)]
     led = 0
     for words, (left, low, right, high) in zip(plate.words, boxes, strict=True):
         place_pt = 4.0 * np.array(words.place_mm)
@@ -65,9 +65,9 @@ def test_a_line_leads_to_every_name_that_does_not_stand_beside_its_place() -> No
 def test_a_name_leaves_the_path_free_and_stays_on_the_axes() -> None:
     """One upright line through the place where the name would stand, and a place at the right border."""
     plate = Plate(VIEW)
-    plate.add(Line(np.array([[53.0, 0], [53.0, 100]]), "#c1121f", 1.0))
-    plate.add(Words((50.0, 50.0), "stop 1", SIZE_PT, offset_pt=(7, 7)))
-    plate.add(Words((98.0, 20.0), "stop 2", SIZE_PT, offset_pt=(7, 7)))
+    plate.add(Polyline(np.array([[53.0, 0], [53.0, 100]]), "#c1121f", 1.0))
+    plate.add(Caption((50.0, 50.0), "stop 1", SIZE_PT, offset_pt=(7, 7)))
+    plate.add(Caption((98.0, 20.0), "stop 2", SIZE_PT, offset_pt=(7, 7)))
     labels.spread(plate, WIDE_PT, HIGH_PT)
     (left, _, right, _), (_, _, outermost, _) = boxes_pt(plate)
     assert right < 4 * 53.0 or left > 4 * 53.0

@@ -34,7 +34,7 @@ from morfax.tracer.corrections.corrections import (
     Correction,
     Corrections,
     Kind,
-    Picture,
+    PictureFile,
     Place,
     Span,
 )
@@ -65,7 +65,7 @@ def as_toml(corrections: Corrections) -> str:
     return HEAD + picture + "".join(map(_entry_toml, corrections.each))
 
 
-def with_added(text: str, more: tuple[Correction, ...], picture: Picture) -> str:
+def with_added(text: str, more: tuple[Correction, ...], picture: PictureFile) -> str:
     """A text with more corrections at its end; an empty text gets the head and the picture before them."""
     if not text.strip():
         return as_toml(Corrections(more, picture))
@@ -108,7 +108,7 @@ def _corrections(whole: Field, name: str) -> Corrections:
     return Corrections(each, read(fields, "drawing", _picture, None), name)
 
 
-def _picture(field: Field) -> Picture:
+def _picture(field: Field) -> PictureFile:
     """The picture that the corrections belong to."""
     fields = field.table(*_PICTURE_KEYS)
     for key in ("name", "pixels"):
@@ -122,7 +122,7 @@ def _picture(field: Field) -> Picture:
         fields["pixels"].refuse(f"it may hold {allowed}")
     columns, rows = (one.number() for one in pixels)
     checked = read(fields, "sha256", _sum, "")
-    return Picture(
+    return PictureFile(
         _text(fields["name"]), columns, rows, checked, read(fields, "page", Field.number, 1)
     )
 
@@ -242,7 +242,7 @@ def _with_remarks(lines: list[str], line: int) -> int:
     return line
 
 
-def _picture_toml(picture: Picture) -> str:
+def _picture_toml(picture: PictureFile) -> str:
     """The picture as a table."""
     lines = [
         "\n[drawing]",

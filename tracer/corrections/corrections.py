@@ -157,7 +157,7 @@ class Correction:
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class PictureFile:
     """The picture that corrections belong to: its file's name, size in pixels, page, and the file's sum."""
 
     name: str
@@ -172,7 +172,7 @@ class Corrections:
     """All corrections of a drawing, in the order in which they were made."""
 
     each: tuple[Correction, ...] = ()
-    picture: Picture | None = None  # None: nobody has said which
+    picture: PictureFile | None = None  # None: nobody has said which
     file: str = field(default="", compare=False)  # its name, for messages
 
     def of(self, *kinds: Kind) -> list[tuple[int, Correction]]:

@@ -46,7 +46,7 @@ PlaceMm = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Stroke:
+class CorrectionStroke:
     """A stroke of the rubber or of the pen: places (n, 2) mm; its width, None for the line's own."""
 
     number: int
@@ -86,7 +86,7 @@ class OnSheet:
     """Corrections as they lie on a sheet; `ink_changed` has the numbers of those that changed its ink."""
 
     corrections: Corrections
-    strokes: tuple[Stroke, ...] = ()
+    strokes: tuple[CorrectionStroke, ...] = ()
     turns: tuple[TurnAt, ...] = ()
     stops: tuple[StopAt, ...] = ()
     start_mm: PlaceMm | None = None
@@ -138,7 +138,7 @@ class SheetSize:
         return OnSheet(
             corrections,
             tuple(
-                Stroke(n, one.do, mm, self._width_mm(corrections, one))
+                CorrectionStroke(n, one.do, mm, self._width_mm(corrections, one))
                 for n, one, mm in each
                 if one.do in INKED
             ),

@@ -30,7 +30,7 @@ from morfax.motion import curves
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import heading_of, left_of, unit
 from morfax.motion.polyline import evenly
-from morfax.tracer.corrections.on_sheet import Stroke
+from morfax.tracer.corrections.on_sheet import CorrectionStroke
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.limits import FADES, PAPER
 
@@ -48,7 +48,7 @@ ALONG = math.radians(50)  # a stroke that leaves its line at more than this has 
 CURVE_PX = 0.5  # between places on a stroke's cubic
 
 
-class Pen(NamedTuple):
+class DrawingPen(NamedTuple):
     """The usual pen of a drawing: its width and the softness of its edges, mm."""
 
     width_mm: float
@@ -70,13 +70,13 @@ class Easel:
 
     darkness: Darkness
     pitch_mm: float
-    pen: Pen
+    pen: DrawingPen
 
-    def drawn(self, strokes: tuple[Stroke, ...]) -> frozenset[int]:
+    def drawn(self, strokes: tuple[CorrectionStroke, ...]) -> frozenset[int]:
         """Draw all strokes in their order; the numbers of those that changed ink."""
         return frozenset(stroke.number for stroke in strokes if self._draw(stroke))
 
-    def _draw(self, stroke: Stroke) -> bool:
+    def _draw(self, stroke: CorrectionStroke) -> bool:
         """Draw one stroke; whether it changed ink."""
         if stroke.do == "rub-area":
             return self._rub_area(stroke.places_mm)
@@ -114,7 +114,7 @@ class Easel:
 
     # the pen
 
-    def _bridge(self, stroke: Stroke) -> bool:
+    def _bridge(self, stroke: CorrectionStroke) -> bool:
         """Draw a stroke of ink, as wide and dark as the lines at its ends if no width is given."""
         places_mm = stroke.places_mm
         begins, ends = self._lines_at(places_mm)

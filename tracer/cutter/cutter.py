@@ -94,7 +94,7 @@ class LeftOut:
     line: int
     length_mm: float
     stops: tuple[int, ...]
-    room: sides.Room | None
+    room: sides.Clearance | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,7 +40,7 @@ PASSES_MM = 0.05  # steps of the diameters that are named, and room that a cutte
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class Clearance:
     """The largest circle beside a line: where its middle is, and how wide it is (mm)."""
 
     place_mm: tuple[float, float]
@@ -105,7 +105,7 @@ def tool_left(
     ]
 
 
-def room(curves: Sequence[DriveCurve], number: int) -> Room | None:
+def room(curves: Sequence[DriveCurve], number: int) -> Clearance | None:
     """The largest circle that goes beside one of the lines, on its side; None if that side is not shut in."""
     own = curves[number]
     if not own.closed:
@@ -130,7 +130,7 @@ def room(curves: Sequence[DriveCurve], number: int) -> Room | None:
         away_mm = near.distances_mm(places)
         place = places[int(away_mm.argmax())]
         cell_mm = cell_mm * 2 / FINER
-    return Room((float(place[0]), float(place[1])), 2 * float(away_mm.max()))
+    return Clearance((float(place[0]), float(place[1])), 2 * float(away_mm.max()))
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,11 +19,11 @@ import numpy as np
 from morfax.motion.faults import CardFault
 from morfax.tracer.corrections.corrections import RUBBED, Corrections
 from morfax.tracer.corrections.on_sheet import OnSheet, SheetSize
-from morfax.tracer.corrections.rubber_and_pen import Easel, Pen
+from morfax.tracer.corrections.rubber_and_pen import DrawingPen, Easel
 from morfax.tracer.drawing.drawing import Drawing, Shapes
 
 # where no line shows how wide the pen is and how soft its edges are: a drawing pen at 300 dpi
-USUAL = Pen(0.5, 0.05)
+USUAL = DrawingPen(0.5, 0.05)
 
 
 def corrected(
@@ -54,12 +54,12 @@ def corrected(
     )
 
 
-def _pen(drawing: Drawing) -> Pen:
+def _pen(drawing: Drawing) -> DrawingPen:
     """The drawing's usual pen."""
     noise = drawing.noise
     if not (math.isfinite(noise.width_mm) and math.isfinite(noise.softness_mm)):
         return USUAL
-    return Pen(noise.width_mm, noise.softness_mm)
+    return DrawingPen(noise.width_mm, noise.softness_mm)
 
 
 def _shapes(drawing: Drawing, laid: OnSheet) -> Shapes | None:

@@ -31,7 +31,7 @@ AS_NEAR = 0.04  # of the ink's reach from its middle: distances within this are 
 LOPSIDED = 0.02  # of the ink's third moment without signs: less shows no side
 
 
-class Ink(NamedTuple):
+class InkSpread(NamedTuple):
     """Where the ink is: its middle (X, Y) mm, its reach from there (RMS, mm), and its lopsided side, rad."""
 
     middle_mm: tuple[float, float]
@@ -39,7 +39,7 @@ class Ink(NamedTuple):
     side_rad: float
 
     @classmethod
-    def of(cls, places_mm: Array, weights: Array) -> Ink:
+    def of(cls, places_mm: Array, weights: Array) -> InkSpread:
         """The ink at places (n, 2) mm of which each counts by its weight."""
         z = places_mm[:, 0] + 1j * places_mm[:, 1]
         share = weights / max(float(weights.sum()), NOT_ZERO)
@@ -55,7 +55,7 @@ class Ink(NamedTuple):
         return cls((middle.real, middle.imag), reach_mm, side)
 
 
-def longest_first(lengths_mm: Array, middles_mm: Array, ink: Ink) -> NDArray[np.int64]:
+def longest_first(lengths_mm: Array, middles_mm: Array, ink: InkSpread) -> NDArray[np.int64]:
     """The order of lines by their lengths, and by their middles (n, 2) mm where these are equal."""
     order = list[int]()
     away = middles_mm - np.array(ink.middle_mm)

@@ -30,7 +30,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.lengths import one_pen_mm
 from morfax.tracer.drawing.middles import deepest, ink_about
-from morfax.tracer.drawing.numbering import ALIKE, Ink, longest_first
+from morfax.tracer.drawing.numbering import ALIKE, InkSpread, longest_first
 from morfax.tracer.drawing.weighing import Weight, weighed_mm
 from morfax.tracer.effort import FEW_PX, MANY
 
@@ -140,7 +140,7 @@ class Sheet:
         sums = [np.bincount(runs.patch, weights * column, runs.count) for column in places_mm.T]
         middles_mm = np.column_stack(sums)[patches] / runs.areas[patches][:, None]
         lengths_mm = weighed_mm(self, patches, one_pen_mm(self)[patches])
-        return patches[longest_first(lengths_mm, middles_mm, Ink.of(places_mm, weights))]
+        return patches[longest_first(lengths_mm, middles_mm, InkSpread.of(places_mm, weights))]
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
         """The line nearest to a place; raises LineFault, with its place, if it is out of reach."""

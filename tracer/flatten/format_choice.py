@@ -36,7 +36,7 @@ PLACES_WAY = '--flatten "X,Y X,Y X,Y X,Y=200x100mm" with four places in the phot
 Sides = list[tuple[Array, Array]]  # see outline.sides
 
 
-class Choice(NamedTuple):
+class FormatChoice(NamedTuple):
     """The format of a sheet as it lies, its fit, and what about the choice is worth a word."""
 
     paper: Format
@@ -44,7 +44,7 @@ class Choice(NamedTuple):
     doubt: str = ""
 
 
-def fit_named(picture: Picture, paper: Format, focal: Focal) -> Choice:
+def fit_named(picture: Picture, paper: Format, focal: Focal) -> FormatChoice:
     """Fit a sheet of a format, upright or lying; raises DrawingFault if no edges show, or do not fit."""
     found = _sides(picture)
     if found is None:
@@ -54,13 +54,13 @@ def fit_named(picture: Picture, paper: Format, focal: Focal) -> Choice:
         )
     each, off = _likelier(picture, found, paper, focal)
     if off <= FITS_NAMED:
-        return Choice(each, _fit(picture, found, each))
+        return FormatChoice(each, _fit(picture, found, each))
     if _likeliest(outline.corners_of(found), photo_of(picture), focal)[1] > FITS_ALONE:
         doubt = (
             "no camera sees a sheet in this shape: the picture was cropped to one side or stretched, so only"
             f" --flatten says that the sheet is {paper.name}"
         )
-        return Choice(each, _fit(picture, found, each), doubt)
+        return FormatChoice(each, _fit(picture, found, each), doubt)
     fitting = _fitting(picture, found, focal)
     others = f"; {' or '.join(other.name for other in fitting)} would fit" if fitting else ""
     raise DrawingFault(
@@ -69,7 +69,7 @@ def fit_named(picture: Picture, paper: Format, focal: Focal) -> Choice:
     )
 
 
-def fit_any(picture: Picture, focal: Focal) -> Choice:
+def fit_any(picture: Picture, focal: Focal) -> FormatChoice:
     """Fit a sheet of the one known format that it can have; raises DrawingFault if none or several fit."""
     found = _sides(picture)
     if found is None:
@@ -84,7 +84,7 @@ def fit_any(picture: Picture, focal: Focal) -> Choice:
             f"morfax takes the sheet for {each.name}, {each.width_mm:g} x {each.height_mm:g} mm, by its shape"
             " alone; if it has another format, give that, such as --flatten paper=a4"
         )
-        return Choice(each, _fit(picture, found, each), doubt)
+        return FormatChoice(each, _fit(picture, found, each), doubt)
     if fitting:
         names = [each.name for each in fitting]
         can_be = f"can be {', '.join(names[:-1])} or {names[-1]}"

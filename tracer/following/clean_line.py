@@ -60,15 +60,15 @@ class Knows(NamedTuple):
         has_guards = carriage.tuning.direct_rad_s_mm == 0
         return is_alone and has_guards and not self.turns.at and not view.on_edge
 
-    def line(self, view: View, carriage: Carriage) -> Line:
+    def line(self, view: View, carriage: Carriage) -> CleanLine:
         """The same for the kernel."""
         (x_mm, y_mm), heading_rad, from_mm = self.clean_from
         clean_from = float(x_mm), float(y_mm), float(heading_rad), float(from_mm)
         memory_mm = -math.inf if self.turns.by_stations else carriage.memory_to_mm
-        return Line(self.home, *clean_from, memory_mm, self.longest_mm, view.step_mm)
+        return CleanLine(self.home, *clean_from, memory_mm, self.longest_mm, view.step_mm)
 
 
-class Line(NamedTuple):
+class CleanLine(NamedTuple):
     """The line as the head knows it when it sets out: home, and where the line begins to be clean (mm, rad,
     travel); up to which travels memory leads, and the head may go; the distance of stations, mm.
     """

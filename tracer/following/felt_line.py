@@ -19,7 +19,7 @@ from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
-from morfax.tracer.head.slow_cell import Stretch, keeps_mm, keeps_straight_mm, rough_mm
+from morfax.tracer.head.slow_cell import FeltStretch, keeps_mm, keeps_straight_mm, rough_mm
 from morfax.tracer.head.windows import shortest_lead_mm
 from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
@@ -53,7 +53,7 @@ def felt_ahead(view: View, carriage: Carriage, anchor: Anchor) -> tuple[View, Ar
     return view, seen
 
 
-def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> Stretch | None:
+def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> FeltStretch | None:
     """What the slow cell is to keep to along a plan that stations made; None along any other."""
     if plan.leader != STATIONS or len(plan.stretches) != 1 or view.on_edge:
         return None
@@ -63,7 +63,7 @@ def slow_stretch(view: View, carriage: Carriage, plan: Plan) -> Stretch | None:
     return stretch if stretch is not None and stretch.way is plan.stretches[0] else None
 
 
-def bare_stretch(view: View, carriage: Carriage, way: Array, seen: Array) -> Stretch | None:
+def bare_stretch(view: View, carriage: Carriage, way: Array, seen: Array) -> FeltStretch | None:
     """The part of a way (n, 2) mm along which nothing leaves the line; None if that is too short."""
     clear_mm = math.inf
     bare_mm = _bare_mm(view, way, seen)
@@ -73,7 +73,7 @@ def bare_stretch(view: View, carriage: Carriage, way: Array, seen: Array) -> Str
     if len(way) < 2:
         return None
     room_mm = ROOM_LEADS * carriage.tuning.lead_mm
-    return Stretch(way, keeps_mm(view, seen), room_mm, keeps_straight_mm(view), clear_mm)
+    return FeltStretch(way, keeps_mm(view, seen), room_mm, keeps_straight_mm(view), clear_mm)
 
 
 def bare_from_mm(view: View, way: Array, seen: Array) -> float | None:

@@ -23,7 +23,7 @@ from morfax.tracer.following.felt_line import nearest_station, station_before
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.choice import Asked, Choice, WayIn, is_aside, survey
-from morfax.tracer.junctions.guides import Junctions
+from morfax.tracer.junctions.guides import PassedJunctions
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.junctions.rings import fork_in
 from morfax.tracer.marks.dots import disc, dot_ahead
@@ -63,7 +63,7 @@ class WaysOut:
 
     turns: Turns
     from_reference: bool  # the head sets out from a reference point
-    junctions: Junctions = field(default_factory=Junctions)
+    junctions: PassedJunctions = field(default_factory=PassedJunctions)
     served: set[int] = field(
         default_factory=set
     )  # numbers of the corrections that the head went by

@@ -22,11 +22,11 @@ from morfax.motion.usual import MOTION_RATE_HZ
 from morfax.tracer.head import kernel, mount, screws, slow_cell, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.head.slow_cell import Stretch
+from morfax.tracer.head.slow_cell import FeltStretch
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import (
     Home,
-    Mark,
+    Moment,
     at_rest,
     field_of,
     put_on_drum,
@@ -174,7 +174,7 @@ class Carriage:
         self._positions.add(positions)
         self.trail.took(marks)
 
-    def follow_slowly(self, view: View, home: Home, stretch: Stretch) -> int | None:
+    def follow_slowly(self, view: View, home: Home, stretch: FeltStretch) -> int | None:
         """Follow a stretch that was felt by the slow cell, if it keeps to that; why it stopped."""
         tried = slow_cell.follow(view, self.state, self.tuning, home, stretch)
         if tried is None:
@@ -200,9 +200,9 @@ class Carriage:
             self._log.add(self.count + first, CELL)
         self.cell_led_mm += max(self.travel_mm - max(from_mm, self._cell_from_mm), 0.0)
 
-    def mark(self) -> Mark:
+    def mark(self) -> Moment:
         """What the carriage is known by now, so that it can be brought back here."""
-        return Mark(
+        return Moment(
             self.state.copy(),
             self.tuning,
             self.count,
@@ -210,14 +210,14 @@ class Carriage:
             self._cell_from_mm,
         )
 
-    def back_to(self, mark: Mark) -> None:
+    def back_to(self, mark: Moment) -> None:
         """Bring the carriage back to a mark, as if it had gone no further."""
         self.state, self.tuning = mark.state.copy(), mark.tuning
         self._positions.cut(mark.positions)
         self._leads, self._cell_from_mm = mark.leads, mark.cell_from_mm
         self._log.back_to(self.count)
 
-    def since(self, mark: Mark) -> Array:
+    def since(self, mark: Moment) -> Array:
         """The positions since a mark, (n, 2) mm."""
         return self._positions.since(mark.positions)
 

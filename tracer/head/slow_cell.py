@@ -31,7 +31,7 @@ from morfax.tracer.head import kernel, mount
 from morfax.tracer.head.state import HOME, MORE, Home, Tuning, field_of, put_on_drum, set_fields
 from morfax.tracer.head.windows import (
     Ahead,
-    Window,
+    CellWindow,
     most_bend_per_mm,
     narrowest,
     slowly,
@@ -74,14 +74,14 @@ class Tried(NamedTuple):
     own_mm: float = 0.0
 
 
-class Piece(NamedTuple):
+class TunedPiece(NamedTuple):
     """A piece of a way, mm, and the tuning along it."""
 
     length_mm: float
     tuning: Tuning
 
 
-class Stretch(NamedTuple):
+class FeltStretch(NamedTuple):
     """What was felt: a way (n, 2) mm from where the head stands, and how far beside it the cell may go, mm.
 
     `room_mm`: so far before the place where the cell stops the head stays, if it stops on the way.
@@ -118,7 +118,7 @@ def keeps_straight_mm(view: View) -> float:
     return KEEPS_PX * view.parted * view.pitch_mm
 
 
-def follow(view: View, state: Any, t: Tuning, home: Home, stretch: Stretch) -> Tried | None:
+def follow(view: View, state: Any, t: Tuning, home: Home, stretch: FeltStretch) -> Tried | None:
     """Follow from a state, which is not changed, along a stretch: as through a tight bend, or else with
     windows as wide as its bends allow; None if the cell keeps to it with neither. `t` is the fast cell's
     tuning.
@@ -135,14 +135,16 @@ def follow(view: View, state: Any, t: Tuning, home: Home, stretch: Stretch) -> T
     return along(view.cells, state, pieces(t, ahead, wide), home, straight)
 
 
-def pieces(t: Tuning, ahead: Ahead, windows: list[Window]) -> list[Piece]:
+def pieces(t: Tuning, ahead: Ahead, windows: list[CellWindow]) -> list[TunedPiece]:
     """The slow cell's tuning for each window of a way."""
     most_per_mm = most_bend_per_mm(t, ahead)
-    return [Piece(long_mm, slowly(t, half_mm, most_per_mm)) for long_mm, half_mm in windows]
+    return [
+        TunedPiece(long_mm, slowly(t, half_mm, most_per_mm)) for long_mm, half_mm in windows
+    ]
 
 
 def along(
-    cells: Cells, state: Any, course: list[Piece], home: Home, stretch: Stretch
+    cells: Cells, state: Any, course: list[TunedPiece], home: Home, stretch: FeltStretch
 ) -> Tried | None:
     """Follow from a state, which is not changed, along a stretch; None if the cell does not keep to it.
 
@@ -164,7 +166,7 @@ def along(
 
 
 def _through(
-    cells: Cells, begun: Any, course: list[Piece], home: Home, longest_mm: float = math.inf
+    cells: Cells, begun: Any, course: list[TunedPiece], home: Home, longest_mm: float = math.inf
 ) -> Tried:
     """Follow through the pieces of a way one after the other, for so many mm at the most."""
     state, why, parts, end_mm = begun, MORE, list[Array](), 0.0
@@ -228,7 +230,7 @@ def heads_along(tried: Tried, way: Array) -> bool:
     return abs(turn(heading_of(after - before), tried.state.heading_rad)) < HEADS_RAD
 
 
-def keeps_to(positions: Array, stretch: Stretch) -> bool:
+def keeps_to(positions: Array, stretch: FeltStretch) -> bool:
     """Whether positions (n, 2) mm stay nearer to the way of a stretch than it allows."""
     if not len(positions):
         return False

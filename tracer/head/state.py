@@ -103,7 +103,7 @@ class Tuning(NamedTuple):
     cell_noise: float  # of the cell's current, standard deviation
 
 
-class Mark(NamedTuple):
+class Moment(NamedTuple):
     """What a carriage was at a moment: the head's state and tuning, and how much it had recorded."""
 
     state: Any

@@ -43,7 +43,7 @@ BENT_WIDTHS, TOUCHING_WIDTHS = 0.7, 1.0
 BENT_FELT = 1.5  # times the bend that was felt, up to which it is led on
 
 
-class Window(NamedTuple):
+class CellWindow(NamedTuple):
     """A piece of a way, mm, and half of the slow cell's window along it, mm."""
 
     length_mm: float
@@ -73,12 +73,12 @@ def narrow_mm(t: Tuning, way: Array) -> float:
     return (WINDOW_STEADY if is_steady(way) else WINDOW) * t.narrow_mm
 
 
-def narrowest(t: Tuning, ahead: Ahead) -> list[Window]:
+def narrowest(t: Tuning, ahead: Ahead) -> list[CellWindow]:
     """One narrow window for all of a way, as for a tight bend."""
-    return [Window(length_mm(ahead.way), narrow_mm(t, ahead.way))]
+    return [CellWindow(length_mm(ahead.way), narrow_mm(t, ahead.way))]
 
 
-def widest(t: Tuning, ahead: Ahead) -> list[Window]:
+def widest(t: Tuning, ahead: Ahead) -> list[CellWindow]:
     """The widest windows over which a way hardly bends, and whose cell does not see beyond what is clear."""
     long_mm = length_mm(ahead.way)
     pieces = max(1, round(long_mm / t.narrow_mm))
@@ -98,12 +98,12 @@ def widest(t: Tuning, ahead: Ahead) -> list[Window]:
     return _joined(np.diff(ends_mm).tolist(), halves_mm.tolist())
 
 
-def _joined(lengths_mm: list[float], halves_mm: list[float]) -> list[Window]:
+def _joined(lengths_mm: list[float], halves_mm: list[float]) -> list[CellWindow]:
     """Windows along a way, neighbours of one size as one."""
-    found = list[Window]()
+    found = list[CellWindow]()
     for long_mm, half_mm in zip(lengths_mm, halves_mm, strict=True):
         before_mm = found.pop().length_mm if found and found[-1].half_mm == half_mm else 0.0
-        found.append(Window(before_mm + long_mm, half_mm))
+        found.append(CellWindow(before_mm + long_mm, half_mm))
     return found
 
 

@@ -29,7 +29,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.plane import BEND_RAD
 from morfax.tracer.ink.nib import (
     ENOUGH,
-    Ink,
+    SwellingKind,
     is_by_heading,
     like_two_lines,
     may_be_two_lines,
@@ -88,8 +88,8 @@ class Doubled(NamedTuple):
         pen_mm = beside_mm if math.isnan(pen_mm) else pen_mm
         if not pen_mm > narrowest_mm:
             return cls()
-        ink = Ink.TWO_LINES if beside_mm > 0 else _what_is(every, pen_mm)
-        if ink == Ink.NIB:
+        ink = SwellingKind.TWO_LINES if beside_mm > 0 else _what_is(every, pen_mm)
+        if ink == SwellingKind.NIB:
             return cls()
         if not beside_mm > 0:  # where all lines run in pairs no ink is one line's
             found = _of_the_pen(found, patch_of, pen_mm)
@@ -105,7 +105,7 @@ class Doubled(NamedTuple):
         if not beside_mm > 0:
             swell -= _nibs({n: found[n] for n in swell}, patch_of, onward, pen_mm)
         stations = {n: broad[n] for n in sorted(swell)}
-        if ink == Ink.EITHER:
+        if ink == SwellingKind.EITHER:
             told = {n: stations[n] for n in stations if like_two_lines(found[n], pen_mm)}
             return cls(pen_mm, told, is_sure=False)
         return cls(pen_mm, stations, _cut(felt, patch_of, swell, pen_mm))
@@ -153,11 +153,11 @@ def _nibs(
     }
 
 
-def _what_is(some: Sequence[Swelling], pen_mm: float) -> Ink:
+def _what_is(some: Sequence[Swelling], pen_mm: float) -> SwellingKind:
     """What ink is that swells. If the width of one pen stands out, what is broader is two lines."""
     if is_by_heading(some):
-        return Ink.NIB
-    return Ink.TWO_LINES if stands_out(some, pen_mm) else what_swells(some, pen_mm)
+        return SwellingKind.NIB
+    return SwellingKind.TWO_LINES if stands_out(some, pen_mm) else what_swells(some, pen_mm)
 
 
 def _broad(run: Run, averaged: Array, pen_mm: float) -> Flags | None:

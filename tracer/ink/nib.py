@@ -48,7 +48,7 @@ LEAST = 6  # thinnest widths: a shorter stretch tells nothing of its ends
 ENOUGH = 2  # places that look like two lines
 
 
-class Ink(Enum):
+class SwellingKind(Enum):
     """What swelling ink is."""
 
     NIB = auto()
@@ -56,14 +56,14 @@ class Ink(Enum):
     EITHER = auto()
 
 
-def what_swells(some: Sequence[Swelling], thin_mm: float) -> Ink:
+def what_swells(some: Sequence[Swelling], thin_mm: float) -> SwellingKind:
     """What the ink of a sheet is that no rigid nib has drawn, and whose thinnest width is given."""
     if _ends_are_blunt(some, thin_mm):
-        return Ink.NIB
+        return SwellingKind.NIB
     places = sum(len(like_two_lines(each, thin_mm)) for each in some)
     if places >= ENOUGH:
-        return Ink.TWO_LINES
-    return Ink.EITHER if places else Ink.NIB
+        return SwellingKind.TWO_LINES
+    return SwellingKind.EITHER if places else SwellingKind.NIB
 
 
 def is_by_heading(some: Sequence[Swelling]) -> bool:

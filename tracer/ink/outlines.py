@@ -23,7 +23,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.polyline import broad_mm
-from morfax.tracer.drawing.numbering import Ink, longest_first
+from morfax.tracer.drawing.numbering import InkSpread, longest_first
 from morfax.tracer.ink.areas import Edge, ways_round
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
 from morfax.tracer.sensing.leg import FACING, Leg, turn
@@ -62,7 +62,7 @@ def outlines(junctions: Junctions) -> list[Outline]:
     order = longest_first(
         np.array([each.length_mm for each in found]),
         np.array([some.mean(axis=0) for some in places]),
-        Ink.of(every, np.ones(len(every))),
+        InkSpread.of(every, np.ones(len(every))),
     )
     return [found[k] for k in order]
 

@@ -35,7 +35,7 @@ from morfax.tracer.head.leaders import STATIONS, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.slow_cell import SHORTEST_MM
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.head.state import CHANGED, MORE, Home, Mark
+from morfax.tracer.head.state import CHANGED, MORE, Home, Moment
 from morfax.tracer.head.windows import shortest_lead_mm
 from morfax.tracer.ink.chains import Chain, Junctions, Side
 from morfax.tracer.ink.partners import way_through
@@ -213,7 +213,7 @@ class InkHead:
         stretch = stretch._replace(clear_mm=min(stretch.clear_mm, to_end_mm))
         return self.carriage.follow_slowly(view, NEVER_HOME, stretch) is not None
 
-    def _strayed(self, run: Run, at: int, mark: Mark) -> bool:
+    def _strayed(self, run: Run, at: int, mark: Moment) -> bool:
         """Whether the newest positions have left what was felt."""
         newest = self.carriage.since(mark)[::LOOKED_AT]
         if not len(newest):

@@ -49,7 +49,7 @@ class _Taken:
 
 
 @dataclass(slots=True)
-class Junctions:
+class PassedJunctions:
     """The junctions that the head has come to, in order, and the guide lines that it has taken there."""
 
     places_mm: list[tuple[float, float]] = field(default_factory=list)

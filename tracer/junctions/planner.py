@@ -36,7 +36,7 @@ from morfax.tracer.junctions.line_ahead import (
     looks_mm,
     straight_on,
 )
-from morfax.tracer.junctions.width_change import Onward, another_pen
+from morfax.tracer.junctions.width_change import OtherWidth, another_pen
 from morfax.tracer.limits import LONGER_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of, turn
 from morfax.tracer.sensing.photocell import STEP_PX
@@ -85,7 +85,7 @@ class Planner:
         """The way onto the leg that was chosen, where another pen has drawn it."""
         if choice.leg is None or not another_pen(self.view, choice.leg):
             return None
-        return self.onward(incoming, Onward(self.view, choice.leg, choice.corner))
+        return self.onward(incoming, OtherWidth(self.view, choice.leg, choice.corner))
 
     def _met_first(self, incoming: Leg) -> Leg | None:
         """The line that is met first beyond the end of a leg, where the settings have one looked for."""
@@ -146,7 +146,7 @@ class Planner:
             longest = max(longest, blank)
         return longest
 
-    def onward(self, incoming: Leg, other: Onward) -> Plan | None:
+    def onward(self, incoming: Leg, other: OtherWidth) -> Plan | None:
         """The way onto a line of another width; None if there is no ink all along it."""
         leg, corner = other.leg, other.corner
         plan = self.through(incoming, leg, None)

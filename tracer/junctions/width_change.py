@@ -47,7 +47,7 @@ ASIDE = 0.4  # of what a line beside it would set the middle off: it is in line
 LEAST_ASIDE_MM = 0.015  # the way ahead is known as well as this
 
 
-class Onward(NamedTuple):
+class OtherWidth(NamedTuple):
     """A line of another width: how it is seen, its leg, and its corner with the way in; None if in line."""
 
     view: View
@@ -55,7 +55,7 @@ class Onward(NamedTuple):
     corner: Corner | None
 
 
-def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
+def of_another_pen(view: View, incoming: Leg, trail: Trail) -> OtherWidth | None:
     """The line that goes on from a leg's clean end with another width, and has not been followed; or None."""
     # 1. straight ahead
     for onward in _straight_ahead(view, incoming):
@@ -69,7 +69,7 @@ def of_another_pen(view: View, incoming: Leg, trail: Trail) -> Onward | None:
             continue
         found = replace(view, width_mm=leg.width_mm, usual_mm=None)
         far = _felt(found, leg.end_mm, leg.heading_rad, FAR_LEGS) or leg
-        return Onward(found, far, Corner.of(incoming, far))
+        return OtherWidth(found, far, Corner.of(incoming, far))
     return None
 
 
@@ -86,7 +86,7 @@ def another_pen(view: View, leg: Leg) -> bool:
     return abs(far - near) < within_mm and float(np.std(seen[:, 2])) < within_mm
 
 
-def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:
+def _straight_ahead(view: View, incoming: Leg) -> Iterator[OtherWidth]:
     """Lines of another width in line with a leg."""
     step = AHEAD_STEP * view.width_mm
     for along in np.arange(step, LONGER_WIDTHS * view.width_mm, step):
@@ -99,7 +99,7 @@ def _straight_ahead(view: View, incoming: Leg) -> Iterator[Onward]:
         other = replace(view, width_mm=left - right, usual_mm=None)
         leg = _felt(other, place, heading)
         if leg is not None and _in_line(incoming, leg):
-            yield Onward(replace(other, width_mm=leg.width_mm), leg, None)
+            yield OtherWidth(replace(other, width_mm=leg.width_mm), leg, None)
 
 
 def _felt(view: View, place: Array, heading: float, legs: float = 1.0) -> Leg | None:

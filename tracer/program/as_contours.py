@@ -28,7 +28,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.bars import THICK, bars_along
 from morfax.tracer.program.against_ink.unexplained import Unexplained
-from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.laid.line_parts import is_clear
 from morfax.tracer.program.laid.narrow_bays import explained, with_bars
 from morfax.tracer.program.lines import selection
@@ -159,7 +159,7 @@ def _is_better(sheet: Sheet, line: Line, strokes: list[Line]) -> bool:
 def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     """The ink about some places (n, 2) mm."""
     drawing, reach_mm = sheet.drawing, REACH * width_mm
-    window = Window.about(sheet.drawing, places, reach_mm)
+    window = SheetWindow.about(sheet.drawing, places, reach_mm)
     near = np.zeros(window.shape, np.uint8)
     last = np.array(window.shape) - 1  # a place on the sheet's very edge is in its last pixel
     row, column = np.clip(window.pixels(places)[:, ::-1], 0, last).T

@@ -40,7 +40,7 @@ class Stock:
     through_mm: float = 0.0
 
 
-class Rule(NamedTuple):
+class MotionRule(NamedTuple):
     """What a finding says: its kind, what was found, what is allowed, what to do."""
 
     kind: str
@@ -71,13 +71,13 @@ def check_rapids(steps: Sequence[Step], surface_mm: float, findings: Findings) -
             findings.add(_PLUNGES.at(step), _PLUNGES.what)
 
 
-_THROUGH = Rule(
+_THROUGH = MotionRule(
     "rapid",
     "a rapid (G0) goes through the work, or along its surface",
     "rapids above the work, with the tool up or off",
     "go up first, or make it G1 with a feed",
 )
-_PLUNGES = Rule(
+_PLUNGES = MotionRule(
     "rapid",
     "a rapid (G0) plunges into the work",
     "rapids down to above the work, or where the tool has been as deep",
@@ -90,7 +90,7 @@ def check_tool(steps: Sequence[Step], machine: Machine, findings: Findings) -> N
     on, off = (
         " or ".join(map(called, sorted(each))) for each in (machine.tool.on, machine.tool.off)
     )
-    rule = Rule(
+    rule = MotionRule(
         "tool",
         "cuts with the tool off" if machine.z else "a line at feed runs with the tool off",
         f"lines after {on} and before {off}",
@@ -110,11 +110,11 @@ def check_start(
     if machine.z and across is not None:
         what = "goes across before Z has been sent up"
         do = "have the tool stand above work and clamps when you start"
-        findings.add(Rule("start", what, "", do, False).at(across))
+        findings.add(MotionRule("start", what, "", do, False).at(across))
     if steps and not any(step.in_work and not step.is_rapid for step in steps):
         what = "nothing is cut: the tool is never in the work"
         do = "check the zero of Z (--surface), and that this is the program's machine"
-        findings.add(Rule("start", what, "", do, False).at(steps[-1]))
+        findings.add(MotionRule("start", what, "", do, False).at(steps[-1]))
 
 
 def check_end(steps: Sequence[Step], machine: Machine, findings: Findings) -> None:
@@ -124,7 +124,7 @@ def check_end(steps: Sequence[Step], machine: Machine, findings: Findings) -> No
     last = steps[-1]
     if machine.z and last.in_work and not (last.move.end_mm[2] > last.begin_mm[2]):
         what, do = "the program ends with the tool in the work", "send Z up before the end"
-        findings.add(Rule("end", what, "", do, False).at(last))
+        findings.add(MotionRule("end", what, "", do, False).at(last))
 
 
 def check_travel(steps: Sequence[Step], machine: Machine, findings: Findings) -> None:
@@ -146,7 +146,7 @@ def check_travel(steps: Sequence[Step], machine: Machine, findings: Findings) ->
                 what = f"the program needs {span:.1f} mm of {name}"
                 allowed = f"the machine travels {most:g} mm (travel_mm)"
                 do = "make the part smaller, or turn it"
-                findings.add(Rule("travel", what, allowed, do).at(step))
+                findings.add(MotionRule("travel", what, allowed, do).at(step))
                 break
 
 
@@ -157,13 +157,13 @@ def check_stock(steps: Sequence[Step], stock: Stock, findings: Findings) -> None
     left, bottom = stock.corner_mm
     right, top = left + stock.width_mm, bottom + stock.height_mm
     lowest_mm = stock.surface_mm - (stock.thickness_mm or 0.0) - stock.through_mm
-    beside = Rule(
+    beside = MotionRule(
         "stock",
         "cuts outside the stock",
         f"X {left:g} to {right:g}, Y {bottom:g} to {top:g} mm",
         "move the zero (--stock-at says where the stock lies), or take a larger piece",
     )
-    below = Rule(
+    below = MotionRule(
         "depth",
         "cuts below the stock",
         f"down to Z{lowest_mm:g}",

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from morfax.player.tape.bridges import Bound, Bridge, Gap, Side, bridge, filled, turned
+from morfax.player.tape.bridges import Bound, Bridge, Gap, GapEdge, bridge, filled, turned
 
 MOST = 1e-4  # cycles/row², 0.18 m/s²
 NOISE = 0.005  # six standard deviations of a row of a quiet tape, cycles
@@ -16,8 +16,8 @@ NOISE = 0.005  # six standard deviations of a row of a quiet tape, cycles
 def gap_of(places: np.ndarray, speeds: np.ndarray, beside: float = 0.0) -> Gap:
     """The gap between the first and the last of some rows, its second side so far beside its place."""
     rows = len(places) - 1
-    before = Side(float(places[0]), float(speeds[0]), 0.0, 0.0)
-    after = Side(float(places[-1]) + beside, float(speeds[-1]), 0.0, 0.0)
+    before = GapEdge(float(places[0]), float(speeds[0]), 0.0, 0.0)
+    after = GapEdge(float(places[-1]) + beside, float(speeds[-1]), 0.0, 0.0)
     found = bridge(before, after, rows, MOST)
     return Gap(0, 100, 100 + rows - 1, before, after, found, Bound(MOST, 1.0), noise=NOISE)
 
@@ -64,8 +64,8 @@ def test_a_motion_of_even_jerk_is_bridged_exactly_whatever_cycles_were_lost(
     """p = 3 + 0.05 t - 2e-4 t² + 6e-6 t³: its acceleration changes evenly."""
     place = np.polynomial.Polynomial([3.0, 0.05, -2e-4, 6e-6])
     speed, acceleration = place.deriv(), place.deriv(2)
-    before = Side(float(place(0)), float(speed(0)), float(acceleration(0)) / 2, 0.001)
-    after = Side(
+    before = GapEdge(float(place(0)), float(speed(0)), float(acceleration(0)) / 2, 0.001)
+    after = GapEdge(
         float(place(rows)) + lost, float(speed(rows)), float(acceleration(rows)) / 2, 0.002
     )
     found = bridge(before, after, rows, 0.0)
@@ -78,7 +78,7 @@ def test_how_far_a_motion_may_lie_off_is_what_its_acceleration_and_a_jump_of_spe
     None
 ):
     """A T² / 4 and dv T / 2; in the way between half of what is off and dv T / 8."""
-    before, after = Side(0.0, 0.01, 0.0, 0.0), Side(0.32, 0.014, 0.0, 0.0)
+    before, after = GapEdge(0.0, 0.01, 0.0, 0.0), GapEdge(0.32, 0.014, 0.0, 0.0)
     found = bridge(before, after, 20, 1e-3)
     # 0.24 of travel, 0.08 off
     assert found.travel == pytest.approx(0.32) and found.off == pytest.approx(0.08)
@@ -103,9 +103,9 @@ def test_a_motion_that_changes_its_acceleration_once_is_laid_where_it_changes(
     first, last, rows = 4e-4, -2e-4, 20
     times = np.linspace(0, rows, 20_001)
     speeds, places = motion_of(times, np.where(times < turn, first, last))
-    before = Side(5.0, 0.02, first / 2, 0.0)
+    before = GapEdge(5.0, 0.02, first / 2, 0.0)
     end = 5.0 + 0.02 * rows + places[-1]
-    after = Side(end + 1, 0.02 + speeds[-1], last / 2, 0.003)
+    after = GapEdge(end + 1, 0.02 + speeds[-1], last / 2, 0.003)
     found = turned(before, after, rows, 1e-3)
     assert found is not None and found.turn == pytest.approx(turn, abs=1e-2)
     assert found.travel == pytest.approx(end - 5.0, abs=1e-5)
@@ -120,18 +120,18 @@ def test_a_motion_that_changes_its_acceleration_once_is_laid_where_it_changes(
 def test_sides_of_one_acceleration_or_of_a_change_outside_of_the_gap_say_nothing_of_a_turn() -> (
     None
 ):
-    before = Side(0.0, 0.02, 2e-4, 0.0)
-    assert turned(before, Side(0.5, 0.028, 2e-4, 0.0), 20, 1e-3) is None
+    before = GapEdge(0.0, 0.02, 2e-4, 0.0)
+    assert turned(before, GapEdge(0.5, 0.028, 2e-4, 0.0), 20, 1e-3) is None
     # from 4e-4 to -2e-4: 0.008 more speed after 20 rows is a change at the last; 4 rows further on it is none
     for gained, is_told in (
         (0.008, True),
         (0.008 + 6e-4 * 2.9, True),
         (0.008 + 6e-4 * 3.1, False),
     ):
-        after = Side(0.02 * 20 + 0.08, 0.02 + gained, -1e-4, 0.0)
+        after = GapEdge(0.02 * 20 + 0.08, 0.02 + gained, -1e-4, 0.0)
         assert (turned(before, after, 20, 1e-3) is not None) == is_told
     for gained, is_told in ((-0.004 - 6e-4 * 2.9, True), (-0.004 - 6e-4 * 3.1, False)):
-        after = Side(0.02 * 20 - 0.04, 0.02 + gained, -1e-4, 0.0)
+        after = GapEdge(0.02 * 20 - 0.04, 0.02 + gained, -1e-4, 0.0)
         assert (turned(before, after, 20, 1e-3) is not None) == is_told
 
 
@@ -142,7 +142,7 @@ def test_a_turn_counts_only_where_what_was_measured_agrees_with_it(
     beside: float, agrees: bool
 ) -> None:
     """By half of what is off against a fortieth of a cycle; whole cycles apart."""
-    before, after = Side(0.0, 0.02, 2e-4, 0.0), Side(0.0, 0.023, -1e-4, 0.0)
+    before, after = GapEdge(0.0, 0.02, 2e-4, 0.0), GapEdge(0.0, 0.023, -1e-4, 0.0)
     first, last, rows = 4e-4, -2e-4, 20
     turn = (0.003 - last * rows) / (first - last)
     travel = 0.4 + first * turn * (rows - turn / 2) + last * (rows - turn) ** 2 / 2
@@ -151,7 +151,7 @@ def test_a_turn_counts_only_where_what_was_measured_agrees_with_it(
 
 
 def test_the_rows_within_have_the_place_and_the_speed_of_both_sides() -> None:
-    before, after = Side(1.0, 0.05, 0.0, 0.0), Side(2.0, -0.02, 0.0, 0.0)
+    before, after = GapEdge(1.0, 0.05, 0.0, 0.0), GapEdge(2.0, -0.02, 0.0, 0.0)
     whole = np.r_[1.0, filled(before, after, 1.0, 1000), 2.0]
     steps = np.diff(whole)
     assert steps[0] == pytest.approx(0.05, rel=0.01) and steps[-1] == pytest.approx(

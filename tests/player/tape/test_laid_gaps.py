@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.player.tape.bridges import Bound, Gap, Side, bridge, filled, freedom, turned
+from morfax.player.tape.bridges import Bound, Gap, GapEdge, bridge, filled, freedom, turned
 from morfax.player.tape.erasures import Erasures
 from morfax.player.tape.symbols import GATES, PARTS, Gates
 from morfax.recorder.tape.check_frame import Bits, CheckFrame, to_bits
 
-STILL = Side(0.0, 0.0, 0.0, 0.0)
+STILL = GapEdge(0.0, 0.0, 0.0, 0.0)
 
 
 def test_the_freedom_of_a_gap_is_the_swing_of_its_acceleration() -> None:
@@ -31,8 +31,8 @@ def test_what_is_laid_ends_where_the_axis_is(turn: float) -> None:
     """
     rows, most = 127, 2.8e-4  # 21 ms and 0.5 m/s²
     left = rows - turn
-    before = Side(0.0, 0.0, 0.0, 0.0)
-    after = Side(most * left**2 / 2, most * left, most / 2, 0.0)
+    before = GapEdge(0.0, 0.0, 0.0, 0.0)
+    after = GapEdge(most * left**2 / 2, most * left, most / 2, 0.0)
     found = turned(before, after, rows, most)
     assert found is not None
     assert found.turn == pytest.approx(turn, abs=1e-6)
@@ -49,8 +49,8 @@ def test_no_motion_within_the_bound_leaves_the_freedom(seed: int) -> None:
     acceleration = np.repeat(acceleration[:: 1 + seed], 1 + seed)[:rows]
     speed = np.concatenate([[0.0], np.cumsum(acceleration)]) + float(random.normal(0, 0.01))
     place = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2)])
-    before = Side(place[0], speed[0], 0.0, 0.0)
-    after = Side(place[-1], speed[-1], 0.0, 0.0)
+    before = GapEdge(place[0], speed[0], 0.0, 0.0)
+    after = GapEdge(place[-1], speed[-1], 0.0, 0.0)
     laid = filled(before, after, place[-1] - place[0], rows)
     off = np.abs(laid - place[1:-1]).max()
     assert off <= freedom(before, after, laid, Bound(most, np.inf)) + 1e-9
@@ -94,8 +94,8 @@ def test_a_gap_in_which_the_acceleration_changes_once_is_bridged(at: int) -> Non
     hard, rows = 10_000 / 6000**2, 72
     speed = np.cumsum(np.where(np.arange(rows) < at, hard, 0.0))
     way = np.r_[0.0, np.cumsum(speed) - hard * np.minimum(np.arange(1, rows + 1), at) / 2]
-    before = Side(0.0, 0.0, hard / 2, 0.0)
-    after = Side(float(way[-1]), float(speed[-1]), 0.0, 0.0)
+    before = GapEdge(0.0, 0.0, hard / 2, 0.0)
+    after = GapEdge(float(way[-1]), float(speed[-1]), 0.0, 0.0)
     found = turned(before, after, rows, hard)
     assert found is not None
     assert found.certain
@@ -106,10 +106,10 @@ def test_a_gap_in_which_the_acceleration_changes_once_is_bridged(at: int) -> Non
 
 def test_a_gap_that_no_single_change_of_acceleration_explains_is_not() -> None:
     hard, rows = 10_000 / 6000**2, 72
-    faster = Side(0.0, 2 * hard * rows, 0.0, 0.0)  # than the first acceleration can make it
-    assert turned(Side(0.0, 0.0, hard / 2, 0.0), faster, rows, hard) is None
+    faster = GapEdge(0.0, 2 * hard * rows, 0.0, 0.0)  # than the first acceleration can make it
+    assert turned(GapEdge(0.0, 0.0, hard / 2, 0.0), faster, rows, hard) is None
     assert turned(STILL, STILL, rows, hard) is None
-    elsewhere = Side(
+    elsewhere = GapEdge(
         0.3, hard * rows / 2, 0.0, 0.0
     )  # the speed is reached, another place is not
-    assert turned(Side(0.0, 0.0, hard / 2, 0.0), elsewhere, rows, hard) is None
+    assert turned(GapEdge(0.0, 0.0, hard / 2, 0.0), elsewhere, rows, hard) is None

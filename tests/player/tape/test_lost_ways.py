@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from morfax.player.tape.bridges import Bound, Bridge, Gap, Side
+from morfax.player.tape.bridges import Bound, Bridge, Gap, GapEdge
 from morfax.player.tape.discriminator import Phases
 from morfax.player.tape.lost_ways import LostWays, laid
 
@@ -18,7 +18,7 @@ DOUBTFUL = replace(CERTAIN, reach=2.0)
 
 def gap(first: int, last: int, found: Bridge = CERTAIN, speed: float = 0.05) -> Gap:
     """A gap of the first axis; at a bound of 1 cycle/row² any motion may lie between."""
-    still = Side(7.0, 0.0, 0.0, 0.0)
+    still = GapEdge(7.0, 0.0, 0.0, 0.0)
     return Gap(0, first, last, still, still, found, Bound(1.0, speed))
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from morfax.player.tape.bridges import Bound, Gap, Side, bridge, side
+from morfax.player.tape.bridges import Bound, Gap, GapEdge, bridge, side
 from morfax.player.tape.motion_edges import END_ROWS, furthest
 
 MOST = 10_000 / 6000**2  # cycles/row²: 0.5 m/s² at 20 cycles per mm
@@ -50,7 +50,7 @@ def test_it_is_a_swing_of_the_whole_acceleration_and_little_more() -> None:
 
 
 def test_a_gap_is_known_by_it_only_where_its_sides_are_as_smooth_as_the_tape() -> None:
-    still = Side(0.0, 0.0, 0.0, 0.004)
+    still = GapEdge(0.0, 0.0, 0.0, 0.004)
     found = replace(bridge(still, still, GAP + 1, MOST), between=0.06, misfit=0.004)
     gap = Gap(0, SIDE, SIDE + GAP, still, still, found, Bound(MOST, 1.0), noise=0.005)
     assert not gap.certain

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.player.tape.comparator import compared, track_edges
-from morfax.player.tape.drives import Drives, Reference
+from morfax.player.tape.drives import Drives, ReferenceTrack
 from morfax.player.tape.sector_wheel import (
     SectorWheel,
     Wheels,
@@ -79,7 +79,7 @@ def test_comparator_and_decoder_take_the_time_between_edges_and_the_cycles() -> 
 def followed(x_mm: np.ndarray, wheel: SectorWheel) -> np.ndarray:
     """One screw under the drives' loop, for a tape's places; without what the loop itself leaves."""
     wrong, right = (
-        Drives(1, Q_MM, MOTION_RATE_HZ, reference=Reference(1.0, one)).follow(
+        Drives(1, Q_MM, MOTION_RATE_HZ, reference=ReferenceTrack(1.0, one)).follow(
             x_mm[:, None] / Q_MM
         )
         for one in (wheel, SectorWheel())
@@ -112,14 +112,14 @@ def test_a_lamp_that_is_too_weak_costs_the_lock_within_the_decoder_s_range() -> 
     # nothing moves, yet the reference goes on: a cycle in each row, and four are allowed
     for light, rows in ((0.09, 4), (0.11, 600)):
         drives = Drives(
-            1, Q_MM, MOTION_RATE_HZ, reference=Reference(1.0, SectorWheel(light=light))
+            1, Q_MM, MOTION_RATE_HZ, reference=ReferenceTrack(1.0, SectorWheel(light=light))
         )
         assert len(drives.follow(cycles)) == rows
 
 
 def test_the_reference_sets_how_fast_the_cells_edges_come() -> None:
     for cycles_per_row in (0.5, 1.0, 400 / 6000):
-        drives = Drives(2, Q_MM, MOTION_RATE_HZ, reference=Reference(cycles_per_row))
+        drives = Drives(2, Q_MM, MOTION_RATE_HZ, reference=ReferenceTrack(cycles_per_row))
         cycles = np.linspace(0, 100, 6000)[:, None] * [1, -1]
         drives.follow(np.vstack([cycles, np.repeat(cycles[-1:], 1200, axis=0)]))
         expected = 7199 * cycles_per_row + np.array([100, -100])

@@ -17,10 +17,10 @@ from morfax.player.tape.playback import play
 from morfax.recorder.tape.check_frame import CheckFrame, from_bits, to_bits
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.tape.tape import record
-from morfax.recorder.tape.told_figures import Stated, demand_agreement, frame_of
+from morfax.recorder.tape.told_figures import StatedFigures, demand_agreement, frame_of
 from tests.player.worn import corners
 
-STATED = Stated(20.0, ("x", "y", "z"), (50.0, 20.0, 2.0))
+STATED = StatedFigures(20.0, ("x", "y", "z"), (50.0, 20.0, 2.0))
 
 
 @pytest.fixture(scope="module")

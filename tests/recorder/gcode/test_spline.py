@@ -9,14 +9,14 @@ from morfax.recorder.gcode import normal_equations, settling
 from morfax.recorder.gcode.arcs import fit
 from morfax.recorder.gcode.normal_equations import BREAK_RAD
 from morfax.recorder.gcode.pieces import longest_pieces, resample
-from morfax.recorder.gcode.spline import Spline, rows_of
+from morfax.recorder.gcode.spline import ArcSpline, rows_of
 
 TOLERANCE_MM = 0.01
 # of the largest slope: what differences over 1e-7 mm leave in double precision
 BY_DIFFERENCES = 1e-5
 
 
-def _wavy(closed: bool) -> Spline:
+def _wavy(closed: bool) -> ArcSpline:
     """A spline of some ten segments on a wavy ring of 20 mm, or on three quarters of it."""
     angle = np.linspace(0, 2 * np.pi if closed else 1.5 * np.pi, 2000)
     radius = 20 + np.sin(5 * angle)
@@ -26,10 +26,10 @@ def _wavy(closed: bool) -> Spline:
     pieces = longest_pieces(places, TOLERANCE_MM)
     curved = np.ones(len(pieces), bool)
     curved[1] = False  # a line among the arcs
-    return Spline(places, pieces, curved)
+    return ArcSpline(places, pieces, curved)
 
 
-def _seen(laid: Spline, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _seen(laid: ArcSpline, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What the spline is laid nearest to."""
     return laid.places[laid.few], laid.shares[laid.few], weights / TOLERANCE_MM
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from morfax.motion.axis import LeadScrew
 from morfax.recorder.tape import carrier
 from morfax.recorder.tape.carrier import Carrier, PickUp
-from morfax.recorder.tape.lacing import BARE, CHUNK_PERIODS, Room, words_of
+from morfax.recorder.tape.lacing import BARE, CHUNK_PERIODS, LacingRoom, words_of
 
 FULL = PickUp(level=1.0)
 SINE = 1.1e-7 + 6e-8  # of full scale: the polynomial's error, and half a step of float32 near 1
@@ -32,7 +32,7 @@ def write(
 ) -> None:
     """Fill bare frames from displacements by the kernel."""
     wave = carrier._Wave(reference_cycles, np.array([level]), False)
-    room = Room.of(frames.shape[1], len(frames) // (len(cycles) - 3))
+    room = LacingRoom.of(frames.shape[1], len(frames) // (len(cycles) - 3))
     bits, words = np.empty((0, 0)), words_of(frames)
     carrier._write(cycles, first, wave, BARE, bits, room, frames, words)
 

@@ -8,7 +8,7 @@ import pytest
 from morfax.recorder.sound.sixteen_bit import in_16_bit
 from morfax.recorder.tape import lacing
 from morfax.recorder.tape.carrier import Carrier, PickUp
-from morfax.recorder.tape.lacing import CHUNK_PERIODS, Beneath, Room, words_of
+from morfax.recorder.tape.lacing import CHUNK_PERIODS, Beneath, LacingRoom, words_of
 
 STEPS = 8
 # the last chunk of periods is no whole one
@@ -51,7 +51,7 @@ def test_the_check_signal_passes_from_symbol_to_symbol(
         for name in ("finish", "_said", "_add", "_add_in_16_bit", "rounded"):
             monkeypatch.setattr(lacing, name, getattr(lacing, name).py_func)
     random = np.random.default_rng(3)
-    room = Room.of(3, STEPS)
+    room = LacingRoom.of(3, STEPS)
     room.columns[:] = random.uniform(-0.5, 0.5, room.columns.shape)
     waves, shares = random.uniform(0, 0.1, (2, STEPS, PERIODS))
     symbols = random.integers(0, 9, (STEPS, PERIODS))
@@ -78,7 +78,7 @@ def test_columns_lie_beside_each_other_as_frames(
         lace = lace.py_func
         monkeypatch.setattr(lacing, "_pack", lacing._pack.py_func)
     for tracks in (3, 4):
-        room = Room.of(tracks, STEPS)
+        room = LacingRoom.of(tracks, STEPS)
         room.columns[:] = np.random.default_rng(4).integers(-32768, 32768, room.columns.shape)
         frames = np.empty((STEPS * count, tracks), np.int16)
         lace(room.columns, room.packed, frames, words_of(frames))

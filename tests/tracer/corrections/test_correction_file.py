@@ -23,12 +23,12 @@ from morfax.tracer.corrections.corrections import (
     TURNS,
     Correction,
     Corrections,
-    Picture,
+    PictureFile,
     Place,
     Span,
 )
 
-PICTURE = Picture("scan.png", 1200, 800, "0" * 64)
+PICTURE = PictureFile("scan.png", 1200, 800, "0" * 64)
 HUNDREDTHS = st.integers(0, 120_000).map(lambda n: n / 100)  # of a pixel: as a file has them
 PLACES = st.builds(Place, HUNDREDTHS, HUNDREDTHS, st.sampled_from(["px", "mm"]))
 

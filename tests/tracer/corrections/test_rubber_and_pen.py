@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from morfax.motion.faults import CardFault
-from morfax.tracer.corrections.corrections import Correction, Corrections, Picture, Place, Span
+from morfax.tracer.corrections.corrections import (
+    Correction,
+    Corrections,
+    PictureFile,
+    Place,
+    Span,
+)
 from morfax.tracer.corrections.on_sheet import SheetSize
 from morfax.tracer.drawing.corrected import corrected
 from morfax.tracer.drawing.drawing import Drawing
@@ -126,7 +132,7 @@ def test_what_changes_no_ink_is_known() -> None:
 
 def test_pixels_stay_where_they_are_at_another_scale_and_resolution() -> None:
     said = Corrections(
-        (Correction("stop", (Place(300, 200),)),), Picture("scan.png", 1200, 800)
+        (Correction("stop", (Place(300, 200),)),), PictureFile("scan.png", 1200, 800)
     )
     for width_mm, columns, rows in ((120, 1200, 800), (240, 1200, 800), (120, 600, 400)):
         size = SheetSize(width_mm, width_mm * 2 / 3, columns, rows)
@@ -135,7 +141,7 @@ def test_pixels_stay_where_they_are_at_another_scale_and_resolution() -> None:
 
 
 def test_another_picture_is_refused() -> None:
-    said = Corrections((), Picture("scan.png", 1200, 800), "scan.morfax.toml")
+    said = Corrections((), PictureFile("scan.png", 1200, 800), "scan.morfax.toml")
     with pytest.raises(
         CardFault, match=r"belongs to scan\.png of 1200 x 800 pixels, .* 1200 x 900"
     ):

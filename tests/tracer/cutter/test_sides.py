@@ -94,4 +94,4 @@ def test_a_curl_where_the_head_swivelled_is_no_crossing() -> None:
 def test_a_cutter_of_whole_twentieths_has_a_fortieth_to_spare(
     wide_mm: float, passes_mm: float
 ) -> None:
-    assert sides.Room((0.0, 0.0), wide_mm).passes_mm == pytest.approx(passes_mm)
+    assert sides.Clearance((0.0, 0.0), wide_mm).passes_mm == pytest.approx(passes_mm)

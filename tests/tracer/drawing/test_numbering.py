@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing.numbering import Ink, longest_first
+from morfax.tracer.drawing.numbering import InkSpread, longest_first
 
 Points = NDArray[np.float64]
 
@@ -25,30 +25,34 @@ def test_the_order_is_the_same_at_any_angle_and_size() -> None:
     for seed in range(200):
         rng = np.random.default_rng(seed)
         lengths, middles = 20 * 1.05 ** rng.integers(0, 4, 8), rng.uniform(0, 100, (8, 2))
-        first = longest_first(lengths, middles, Ink.of(middles, lengths))
+        first = longest_first(lengths, middles, InkSpread.of(middles, lengths))
         angle_rad, size = rng.uniform(0, 2 * math.pi), rng.uniform(0.3, 3.0)
         measured = size * lengths * rng.uniform(0.995, 1.005, 8)
         there = turned(middles, angle_rad, size)
-        same += list(first) == list(longest_first(measured, there, Ink.of(there, lengths)))
+        same += list(first) == list(
+            longest_first(measured, there, InkSpread.of(there, lengths))
+        )
     assert same >= 196
 
 
 def test_equal_lines_go_by_their_place_and_not_by_the_rows_of_the_picture() -> None:
     middles = np.array([[10.0, 10.0], [30.0, 12.0], [55.0, 40.0], [20.0, 44.0]])
     lengths = np.full(4, 19.0)
-    order = longest_first(lengths, middles, Ink.of(middles, lengths))
+    order = longest_first(lengths, middles, InkSpread.of(middles, lengths))
     upside_down = 100 - middles
-    again = longest_first(lengths, upside_down, Ink.of(upside_down, lengths))
+    again = longest_first(lengths, upside_down, InkSpread.of(upside_down, lengths))
     assert list(order) == list(again)
 
 
 def test_a_longer_line_comes_first_however_far_away() -> None:
     middles = np.array([[50.0, 50.0], [90.0, 90.0], [48.0, 50.0]])
-    order = longest_first(np.array([30.0, 31.0, 29.0]), middles, Ink.of(middles, np.ones(3)))
+    order = longest_first(
+        np.array([30.0, 31.0, 29.0]), middles, InkSpread.of(middles, np.ones(3))
+    )
     assert list(order) == [1, 0, 2]
 
 
 def test_the_middle_and_reach_of_ink_are_those_of_its_places() -> None:
-    ink = Ink.of(np.array([[0.0, 0.0], [10.0, 0.0]]), np.array([1.0, 1.0]))
+    ink = InkSpread.of(np.array([[0.0, 0.0], [10.0, 0.0]]), np.array([1.0, 1.0]))
     assert ink.middle_mm == pytest.approx((5.0, 0.0))
     assert ink.reach_mm == pytest.approx(5.0)

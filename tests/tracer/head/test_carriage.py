@@ -16,7 +16,7 @@ from morfax.tracer.head import slow_cell, swinging
 from morfax.tracer.head.carriage import SETTLE_LAGS, Carriage
 from morfax.tracer.head.course import ONTO_MM, along_leg, onto
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.head.slow_cell import Piece
+from morfax.tracer.head.slow_cell import TunedPiece
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Home, at_rest
 from morfax.tracer.head.tuning import LEAD_SWEEPS, tune
@@ -226,7 +226,7 @@ def test_the_mount_is_drawn_in_at_once_and_slides_out_by_itself(
     head = carriage(seen)
     head.aim(seen, Leg(PLACE, 0.0, 0.0, WIDTH_MM, NO_STATIONS))
     t, was_mm = head.tuning, head.state.lead_mm
-    piece = Piece(0.02, t._replace(lead_mm=share * was_mm))
+    piece = TunedPiece(0.02, t._replace(lead_mm=share * was_mm))
     went = slow_cell._through(seen.cells, head.state, [piece], NEVER_HOME)
     if drawn_in:
         assert went.state.lead_mm == pytest.approx(share * was_mm)

@@ -26,9 +26,9 @@ from morfax.tracer.head import slow_cell
 from morfax.tracer.head.leaders import CELL, STATIONS
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.slow_cell import (
-    Piece,
-    Stretch,
+    FeltStretch,
     Tried,
+    TunedPiece,
     along,
     heads_along,
     keeps_mm,
@@ -69,11 +69,11 @@ def ahead(head: Follower, radius_mm: float, length_mm: float = 1.5) -> Array:
 
 def tried(head: Follower, radius_mm: float, within_mm: float) -> Tried | None:
     """The slow cell along such a way."""
-    way = Stretch(ahead(head, radius_mm), within_mm)
+    way = FeltStretch(ahead(head, radius_mm), within_mm)
     return along(head.view.cells, head.carriage.state, course(head, way), NEVER_HOME, way)
 
 
-def course(head: Follower, way: Stretch) -> list[Piece]:
+def course(head: Follower, way: FeltStretch) -> list[TunedPiece]:
     """The slow cell's narrow window along a way."""
     felt = Ahead(way.way, WIDTH_MM)
     return pieces(head.carriage.tuning, felt, narrowest(head.carriage.tuning, felt))
@@ -101,7 +101,7 @@ def test_a_cell_that_has_lost_the_line_begins_on_what_was_felt(head: Follower) -
     carriage = head.carriage
     state = carriage.state.copy()
     state.middle_mm += 4.0
-    way = Stretch(ahead(head, RADIUS_MM), 20 * UM)
+    way = FeltStretch(ahead(head, RADIUS_MM), 20 * UM)
     run = course(head, way)
     went = along(head.view.cells, state, run, NEVER_HOME, way)
     tuning = run[0].tuning
@@ -217,7 +217,7 @@ def test_positions_keep_to_a_way_by_their_distance_from_its_nearest_piece(
     way = 3.0 * np.column_stack([np.cos(angle), np.sin(angle)])
     there = np.linspace(0.0, 2 * np.pi + 0.5, 9000)
     positions = (3.0 + off_mm) * np.column_stack([np.cos(there), np.sin(there)])
-    stretch = Stretch(way, within_mm=0.01)
+    stretch = FeltStretch(way, within_mm=0.01)
     expected = float(distances_mm(positions[:: slow_cell.CHECKED], [way]).max()) < 0.01
     assert keeps_to(positions, stretch) == expected == (off_mm < 0.01)
     assert (
@@ -235,7 +235,9 @@ def test_the_wide_window_is_only_sought_where_the_cell_does_not_keep_to_the_way(
     )
     view, carriage = head.view, head.carriage
     way = ahead(head, RADIUS_MM)
-    stretch = Stretch(way, keeps_mm(view, np.column_stack([way, np.full(len(way), WIDTH_MM)])))
+    stretch = FeltStretch(
+        way, keeps_mm(view, np.column_stack([way, np.full(len(way), WIDTH_MM)]))
+    )
     args = view, carriage.state, carriage.tuning, NEVER_HOME
     assert slow_cell.follow(*args, stretch) is not None and not asked
     assert slow_cell.follow(*args, stretch._replace(within_mm=0.0)) is None and len(asked) == 1

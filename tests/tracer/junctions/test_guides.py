@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.following.line import Line
-from morfax.tracer.junctions.guides import AGAIN_MM, GuideLine, Junctions, _first_near
+from morfax.tracer.junctions.guides import AGAIN_MM, GuideLine, PassedJunctions, _first_near
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.trace import trace
@@ -24,7 +24,7 @@ LEAD = polyline((4, 20), (18, 20))
 
 
 def test_a_junction_counts_once_while_the_head_is_at_it() -> None:
-    junctions = Junctions()
+    junctions = PassedJunctions()
     for place, travel_mm in ((HERE, 10.0), (HERE, 10.0 + AGAIN_MM / 2), (THERE, 20.0)):
         junctions.come_to(partial(np.asarray, place), travel_mm)
     assert junctions.places_mm == [(10.0, 0.0), (20.0, 0.0)]
@@ -32,7 +32,7 @@ def test_a_junction_counts_once_while_the_head_is_at_it() -> None:
 
 
 def test_a_guide_line_is_left_for_ends_and_is_come_back_from() -> None:
-    junctions = Junctions()
+    junctions = PassedJunctions()
     out, back = np.linspace([10, 0], [10, 5], 51), np.linspace([10, 5], [10, 0], 51)
     way = np.vstack(
         [np.linspace([0, 0], [10, 0], 101), out, back, np.linspace([10, 0], [20, 0], 101)]
@@ -62,7 +62,7 @@ def test_the_head_is_back_when_it_first_comes_by_the_junction() -> None:
 
 
 def test_the_end_of_a_line_that_is_no_guide_is_the_end() -> None:
-    assert not Junctions().turn_round(100)
+    assert not PassedJunctions().turn_round(100)
 
 
 # on drawings

@@ -22,7 +22,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.unexplained import Unexplained
-from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.tangles.seen_ink import middles_mm
 
 OF_WIDTH = 1.3  # about a way ink is the line's own
@@ -42,7 +42,7 @@ def bar_at(drawing: Drawing, lines: BoxedLines, place: Unexplained, width_mm: fl
     # 1. the ink about the place
     place_mm = np.array([place.place_mm])
     about_mm = ABOUT * place.length_mm + ABOUT_WIDTHS * width_mm
-    window = Window.about(drawing, place_mm, about_mm)
+    window = SheetWindow.about(drawing, place_mm, about_mm)
     bare = (np.asarray(window.of(drawing.darkness), float) > INK).astype(np.uint8)
     # 2. without that of the lines
     wide_px = max(1, round(OF_WIDTH * width_mm / drawing.pitch_mm))
@@ -89,7 +89,7 @@ def bars_along(sheet: Sheet, ways: Sequence[Array], width_mm: float) -> Iterator
     drawing, pitch_mm = sheet.drawing, sheet.drawing.pitch_mm
     pen_px = max(1, round(width_mm / pitch_mm))
     for together in _together(ways, width_mm):
-        window = Window.about(drawing, np.vstack(together), 2 * width_mm)
+        window = SheetWindow.about(drawing, np.vstack(together), 2 * width_mm)
         drawn = np.zeros(window.shape, np.uint8)
         for way in together:
             cv2.polylines(drawn, [window.pixels(way).reshape(-1, 1, 2)], False, 1, pen_px)
@@ -100,7 +100,7 @@ def bars_along(sheet: Sheet, ways: Sequence[Array], width_mm: float) -> Iterator
 
 
 def _bar(
-    window: Window, bar: NDArray[np.bool_], ink: NDArray[np.bool_], width_mm: float
+    window: SheetWindow, bar: NDArray[np.bool_], ink: NDArray[np.bool_], width_mm: float
 ) -> Bar:
     """A bar, by the ink in the narrowest box about it."""
     pitch_mm, (least, most) = window.pitch_mm, THICK

@@ -23,7 +23,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.felt_pen import FAR, PAPER_FROM, FeltPen
 from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
@@ -63,7 +63,7 @@ def ink_about(
 ) -> SeenInk:
     """The ink about some places (n, 2) mm of a line; other ways (m, 2) mm are drawn there anyway."""
     reach_mm = reach_widths * width_mm
-    i, j = Window.about(drawing, about, reach_mm).grid()
+    i, j = SheetWindow.about(drawing, about, reach_mm).grid()
     within = np.flatnonzero(away_from(middles_mm(drawing, i, j), about) < reach_mm)
     every = 1 + len(within) // MOST_PLACES
     i, j = i[within[::every]], j[within[::every]]
@@ -74,7 +74,7 @@ def ink_about(
     return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
 
 
-class Felt(NamedTuple):
+class UsualPen(NamedTuple):
     """The pen of some lines, and what most of their clean places leave unexplained."""
 
     pen: FeltPen
@@ -86,7 +86,7 @@ class Felt(NamedTuple):
         return max(OFF, OF_USUAL * self.usual)
 
 
-def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | None:
+def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> UsualPen | None:
     """The pen that drew clean places of some ways; None if too little of its ink is seen."""
     around = round(ALONG / STEP_WIDTHS)
     every = 1 + sum(len(clean.places) for clean in ways) // CLEAN_PLACES
@@ -110,7 +110,7 @@ def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> Felt | 
         wrong_about(pen.sees(ink), own, np.zeros(len(own), bool), STEP_WIDTHS)[around]
         for ink, own in zip(inks, owns, strict=True)
     ]
-    return Felt(pen, median(left))
+    return UsualPen(pen, median(left))
 
 
 def wrong_about(

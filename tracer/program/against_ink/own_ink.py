@@ -34,7 +34,7 @@ from morfax.motion.median import median, percentile
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.against_ink.pen_on_ink import Pen, Room, Ways, over_at
+from morfax.tracer.program.against_ink.pen_on_ink import PenOnInk, Room, Ways, over_at
 from morfax.tracer.program.against_ink.surely_on_ink import may_be_over
 
 # Limits chosen by trial on 625 right ways of parts, holes, slots, notches and tongues, none of which comes
@@ -172,12 +172,12 @@ class Part(NamedTuple):
     ways: Ways
     stations: NDArray[np.int64]
     at: NDArray[np.int64]
-    pen: Pen
+    pen: PenOnInk
     room: Room
 
 
 def parts(
-    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], side_px: int, pen: Pen
+    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], side_px: int, pen: PenOnInk
 ) -> Iterator[Part]:
     """The tiles of a side in which some of the places that stand for ways are stations."""
     tiles = _Tiles.of(ways, side_px)
@@ -215,11 +215,11 @@ def _near_ends(ways: Ways) -> NDArray[np.bool_]:
     return np.asarray((from_first < near) | (to_last < near))
 
 
-def _pen(drawing: Drawing, ways: Ways, over: float) -> Pen:
+def _pen(drawing: Drawing, ways: Ways, over: float) -> PenOnInk:
     """The pen of most lines; what it draws on paper matters above a limit."""
     half_px, noise = median(ways.half_px[ways.judged]), drawing.noise
     reach_px, paper = 2 * REACH_WIDTHS * half_px, 0.5 * noise.paper**2
-    return Pen(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, over)
+    return PenOnInk(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, over)
 
 
 def _every(ways: Ways) -> int:

@@ -25,7 +25,7 @@ from morfax.tracer.tangles.pen import ink_at
 from morfax.tracer.tangles.tangle import DARKEST
 
 
-class Pen(NamedTuple):
+class PenOnInk(NamedTuple):
     """The pen of most lines: half its width and its softness in pixels, how far from a way it is looked at,
     the variance of the paper's noise on either side, shares of the width that are tried, the widest last, and
     how much may be over for nothing else to be tried, in widths.

@@ -38,7 +38,7 @@ from morfax.tracer.limits import CLEAR_WIDTHS, PAPER
 from morfax.tracer.program.against_ink.own_ink import PLACES_PX, Part, parts
 from morfax.tracer.program.against_ink.pen_on_ink import (
     Band,
-    Pen,
+    PenOnInk,
     Ways,
     band_of,
     clear,
@@ -74,7 +74,7 @@ def strokes_off_ink(
         return []
     half_px = median(ways.half_px)
     reach_px, paper = 2 * CLEAR_WIDTHS * half_px, 0.5 * noise.paper**2
-    pen = Pen(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, OFF)
+    pen = PenOnInk(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, OFF)
     tiles = parts(drawing, ways, is_station, TILE_PX, pen)
     found = [(part.stations, _off(part)) for part in tiles]
     stations, off = (np.concatenate(column) for column in zip(*found, strict=True))
@@ -176,12 +176,12 @@ def _off(part: Part) -> Array:
     return np.array(most) / (2 * pen.half_px) ** 2
 
 
-def _side(pen: Pen) -> int:
+def _side(pen: PenOnInk) -> int:
     """The side of a box as wide as the pen, in pixels."""
     return 2 * round(pen.half_px) + 1
 
 
-def _sums(band: Band, pen: Pen, half_px: Array, spread: Array) -> tuple[Array, Array]:
+def _sums(band: Band, pen: PenOnInk, half_px: Array, spread: Array) -> tuple[Array, Array]:
     """What pens, half as wide as given for each pixel, draw on paper in the box about it, and leave."""
     drawn, sums = np.empty(len(band.dark)), (np.empty(spread.shape), np.empty(spread.shape))
     ink(band.away_px - half_px + pen.half_px, pen.half_px, pen.softness_px, drawn)

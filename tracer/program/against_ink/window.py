@@ -16,7 +16,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
 
 
-class Window(NamedTuple):
+class SheetWindow(NamedTuple):
     """A part of a sheet: its first row and column, the one after its last, and what makes pixels of mm."""
 
     top: int
@@ -27,7 +27,7 @@ class Window(NamedTuple):
     pitch_mm: float
 
     @classmethod
-    def about(cls, drawing: Drawing, places: Array, reach_mm: float) -> Window:
+    def about(cls, drawing: Drawing, places: Array, reach_mm: float) -> SheetWindow:
         """About some places (n, 2) mm, as far as that."""
         pitch_mm, (rows, columns) = drawing.pitch_mm, drawing.darkness.shape
         low, high = places.min(axis=0) - reach_mm, places.max(axis=0) + reach_mm

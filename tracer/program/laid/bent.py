@@ -34,7 +34,7 @@ from morfax.tracer.program.against_ink.off_ink import (
     OFF,
     REACH,
     Clean,
-    Felt,
+    UsualPen,
     felt_at,
     goes_on,
     ink_about,
@@ -151,14 +151,14 @@ class _Way:
             return False
         return not self.by_cell.all()
 
-    def bent(self, felt: Felt) -> Line:
+    def bent(self, felt: UsualPen) -> Line:
         """The line as it is, or along the splines that explain its ink better."""
         bays = [bay for off in self._off(felt) if (bay := self._bay(*off, felt)) is not None]
         round_mm = len(self.places) * self.step_mm
         bays = apart(bays, round_mm)
         return laid(self.setup, self.line, bays, round_mm) if bays else self.line
 
-    def _off(self, felt: Felt) -> Iterator[tuple[int, int]]:
+    def _off(self, felt: UsualPen) -> Iterator[tuple[int, int]]:
         """The stretches that are off their ink, from which place to which."""
         leg = round(LEGS[0] / STEP_WIDTHS)
         off = np.zeros(len(self.places), bool)
@@ -177,7 +177,7 @@ class _Way:
         leg = round(LEGS[0] / STEP_WIDTHS) + 1
         return chosen if self.is_closed else np.pad(chosen[leg:-leg], leg)
 
-    def _seen(self, first: int, last: int, felt: Felt) -> tuple[SeenInk, Array]:
+    def _seen(self, first: int, last: int, felt: UsualPen) -> tuple[SeenInk, Array]:
         """The ink about a stretch, as the line's pen left it, and the stretch."""
         way, drawing = self.places, self.setup.sheet.drawing
         own = way[np.arange(first, last + 1) % len(way)]
@@ -189,7 +189,7 @@ class _Way:
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_lone_pixels(ink, own, drawing.pitch_mm), own
 
-    def _bay(self, first: int, last: int, felt: Felt) -> Bay | None:
+    def _bay(self, first: int, last: int, felt: UsualPen) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""
         count, leg = len(self.places), round(LEGS[0] / STEP_WIDTHS)
         first = _off_corners(first - leg, self.corners, -1)

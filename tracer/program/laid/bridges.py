@@ -31,7 +31,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import OF_WIDTH
 from morfax.tracer.program.against_ink.off_ink import ink_about
-from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
     LEGS,
@@ -99,7 +99,9 @@ def _first_pair(setup: Setup, lines: list[Line]) -> tuple[Line, Line, Line] | No
 def _bars(drawing: Drawing, lines: Sequence[Line], closed: Sequence[Line]) -> Iterator[Array]:
     """The places (n, 2) mm of each piece of ink about closed lines along which no line runs."""
     width_mm = max(line.width_mm for line in closed)
-    window = Window.about(drawing, np.vstack([line.places_mm for line in closed]), width_mm)
+    window = SheetWindow.about(
+        drawing, np.vstack([line.places_mm for line in closed]), width_mm
+    )
     bare = (np.asarray(window.of(drawing.darkness), float) > INK).astype(np.uint8)
     for line in lines:
         wide_px = max(1, round(OF_WIDTH * line.width_mm / drawing.pitch_mm))

@@ -137,7 +137,7 @@ def _once_mended(
     return mended
 
 
-class Stretch(NamedTuple):
+class BayInk(NamedTuple):
     """A stretch of a way from one of its places to another, as places (n, 2) mm, and the ink about it."""
 
     first: int
@@ -235,7 +235,7 @@ class _Bays:
             longer = self._seen(way, step_mm, suspect, round(LEGS[1] / STEP_WIDTHS))
         return bay if longer is None else self._rim_bay(longer, step_mm, suspect)
 
-    def _seen(self, way: Array, step_mm: float, suspect: Suspect, leg: int) -> Stretch | None:
+    def _seen(self, way: Array, step_mm: float, suspect: Suspect, leg: int) -> BayInk | None:
         """The stretch of the way that may be a bay, with legs, and the ink about it; None if it is too long,
         or the ink goes on.
         """
@@ -249,9 +249,9 @@ class _Bays:
         rest = rest_of(way, first, last, self._is_closed)
         about = np.vstack([own, suspect.beyond_mm])
         ink = self._ink(about, rest)
-        return None if goes_on(ink, about, REACH) else Stretch(first, last, own, ink)
+        return None if goes_on(ink, about, REACH) else BayInk(first, last, own, ink)
 
-    def _rim_bay(self, seen: Stretch, step_mm: float, suspect: Suspect) -> Bay | None:
+    def _rim_bay(self, seen: BayInk, step_mm: float, suspect: Suspect) -> Bay | None:
         """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
         setup, ink, best = self.setup, seen.ink, None
         view = view_of(setup.sheet, setup.settings.aperture_mm, self.line.width_mm)
@@ -265,7 +265,7 @@ class _Bays:
                 best = Bay(seen.first * step_mm, seen.last * step_mm, rule, gain)
         return best
 
-    def _gain(self, seen: Stretch, rule: Rule | LaidWay, suspect: Suspect) -> float | None:
+    def _gain(self, seen: BayInk, rule: Rule | LaidWay, suspect: Suspect) -> float | None:
         """How much better a rule explains the ink than the way does; None if it does not, or badly."""
         width_mm, own, ink = self.line.width_mm, seen.own, seen.ink
         widths = rule.length_mm / width_mm

@@ -27,7 +27,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.ink.rim import felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE
-from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
@@ -71,7 +71,7 @@ def ways_within_rims(
 
 def _outlines(drawing: Drawing, about: Array, width_mm: float) -> Iterator[Array]:
     """The outlines (n, 2) mm of the ink about some places, with the ink to their left."""
-    window = Window.about(drawing, about, ABOUT_WIDTHS * width_mm)
+    window = SheetWindow.about(drawing, about, ABOUT_WIDTHS * width_mm)
     ink = np.asarray(window.of(drawing.darkness), float) > INK
     padded = np.pad(ink.astype(np.uint8), 1)
     found, tree = cv2.findContours(padded, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)

@@ -25,7 +25,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
 from morfax.tracer.ink.rim import felt_rim
 from morfax.tracer.limits import AS_WIDE
-from morfax.tracer.program.against_ink.window import Window
+from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.compass import Core
@@ -77,7 +77,7 @@ def felt_pen_mm(sheet: Sheet, aperture_mm: float | None, pen_mm: float) -> float
     reach_mm = LONG_WIDTHS * pen_mm
     x, y = stroke.middles_mm[0].tolist()
     places = places_of(stroke, (x, y), reach_mm)
-    window = Window.about(sheet.drawing, places, reach_mm)
+    window = SheetWindow.about(sheet.drawing, places, reach_mm)
     edges = window.top, window.left, window.bottom, window.right
     view = view_of(replace(sheet, window=edges), aperture_mm, pen_mm)
     stances = islice(plainest_first(view, places), FELT_PLACES)

@@ -9,7 +9,7 @@ from morfax.motion.polyline import evenly
 from morfax.tracer.program.against_ink.off_ink import (
     OFF,
     Clean,
-    Felt,
+    UsualPen,
     felt_at,
     goes_on,
     ink_about,
@@ -25,7 +25,7 @@ LINE = polyline((5.3, 6.1), (24.0, 9.0))
 ACROSS = polyline((14.0, 4.0), (15.0, 12.0))
 
 
-def felt_along(*lines: Points, seed: int | None = 1) -> tuple[Felt, Points, SeenInk]:
+def felt_along(*lines: Points, seed: int | None = 1) -> tuple[UsualPen, Points, SeenInk]:
     """The pen along the first of some lines, places along that, and the ink about them as the pen sees it."""
     drawing = inked(*lines, width_mm=WIDTH_MM, dpi=DPI, seed=seed)
     way = evenly(lines[0], STEP_WIDTHS * WIDTH_MM)[10:-10]

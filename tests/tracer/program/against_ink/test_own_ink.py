@@ -15,7 +15,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.own_ink import beside
 from morfax.tracer.program.against_ink.pen_on_ink import (
     Band,
-    Pen,
+    PenOnInk,
     Room,
     Ways,
     _nearest,
@@ -167,7 +167,7 @@ def test_a_pen_of_its_own_width_explains_its_line_and_a_bare_way_is_over() -> No
     seen = np.clip(2.5 - np.abs(rows - 10), 0, 1) * (columns <= 20)
     places = np.column_stack([np.arange(40.0), np.full(40, 10.0)]).astype(np.float32)
     ways = Ways(places, np.zeros(40, np.int32), np.array([2.0]), np.array([True]))
-    pen = Pen(2.0, 0.3, 5.0, 0.0, (0.8, 1.0), 0.05)
+    pen = PenOnInk(2.0, 0.3, 5.0, 0.0, (0.8, 1.0), 0.05)
     stations, room = np.array([(8, 10), (33, 10)]), Room.of(seen.size, 5.0)
     over = over_at.py_func(seen.astype(np.float32), ways, stations, pen, room)
     assert over[0] < 0.05

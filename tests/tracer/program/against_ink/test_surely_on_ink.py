@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.program.against_ink import surely_on_ink
-from morfax.tracer.program.against_ink.pen_on_ink import Pen, Room, Ways, over_at
+from morfax.tracer.program.against_ink.pen_on_ink import PenOnInk, Room, Ways, over_at
 from morfax.tracer.program.against_ink.surely_on_ink import _in_boxes_about, may_be_over
 from tests.tracer.inked import Points
 
@@ -17,7 +17,7 @@ NOISE = 0.03  # of the paper
 SIDE = 5
 
 
-def part(aside_px: float, seed: int) -> tuple[Points, Ways, Pen, Points]:
+def part(aside_px: float, seed: int) -> tuple[Points, Ways, PenOnInk, Points]:
     """A line of 4 px in a noisy picture along row 30, with a dot of ink beside it, and a way that leaves it
     aside over 20 px; a pen, and stations.
     """
@@ -29,7 +29,7 @@ def part(aside_px: float, seed: int) -> tuple[Points, Ways, Pen, Points]:
     beside = np.where((along > 20) & (along < 40), 30 + aside_px, 30.0)
     places = np.column_stack([along, beside]).astype(np.float32)
     ways = Ways(places, np.zeros(90, np.int32), np.array([2.0]), np.array([True]))
-    pen = Pen(2.0, 0.5, 5.0, 0.5 * NOISE**2, (0.8, 0.9, 1.0, 1.1, 1.25), 0.0)
+    pen = PenOnInk(2.0, 0.5, 5.0, 0.5 * NOISE**2, (0.8, 0.9, 1.0, 1.1, 1.25), 0.0)
     stations = np.round(places[::3]).astype(int)
     return seen.astype(np.float32), ways, pen, stations
 
