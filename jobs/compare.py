@@ -140,9 +140,7 @@ def _elsewhere(share: float, given: Zero | None, taken: Zero | None) -> str:
     lies = f"only {100 * share:.0f} % of the path lies along the drawing's ink"
     wrong = "the path leaves the ink, or belongs to another drawing"
     if taken is None:
-        wrong += (
-            ", or has another zero than the sheet's lower left corner, which --zero X,Y gives"
-        )
+        wrong += ", or has another zero than the sheet's lower left corner: --zero X,Y gives it"
     elif given is not None and given not in OF_PART:
         wrong += ", or has another zero than the --zero that was given"
     return f"{lies}: {wrong}; --picture shows where"

@@ -18,9 +18,8 @@ NEARLY_PARALLEL = 0.02  # sine of the angle between two legs that do not meet
 PAPER = 0.25  # of the ink's darkness: paler places are paper
 AS_WIDE = 0.15  # of a width: what differs by more is no line of the same pen ...
 WIDER = 1 + AS_WIDE  # ... or two lines that share their ink
-ROUND = (
-    math.pi / 4
-)  # square widths: a round of a width, as the two round ends of a line together
+# square widths: a round of a width, as the two round ends of a line together
+ROUND = math.pi / 4
 NEAR = 0.3  # widths from a line's middle: so near a place is on that line
 CLEAR_WIDTHS = 1.5  # from a place where lines meet: further on, the ink is that of one line
 ABOUT_WIDTHS = 3.0  # about a place: so far what belongs to it is looked for

@@ -107,7 +107,7 @@ def test_a_path_from_another_zero_is_compared_where_it_was_drawn(
 @pytest.mark.parametrize(
     ("zero", "said"),
     [
-        ((), "has another zero than the sheet's lower left corner, which --zero X,Y gives"),
+        ((), "has another zero than the sheet's lower left corner: --zero X,Y gives it"),
         (("--zero", "0,0"), "has another zero than the --zero that was given"),
     ],
 )

@@ -27,9 +27,8 @@ PER_PIXEL = 9.0
 PER_INKED_PIXEL = 5.0
 FIXED_BYTES = 0.3 * GB  # strips in work, libraries
 SMALL_PX = 16e6  # a sheet below this is tried in any case
-ALONE_FROM = (
-    -3
-)  # glibc's M_MMAP_THRESHOLD: larger pieces of memory are the system's own, each alone
+# glibc's M_MMAP_THRESHOLD: larger pieces of memory are the system's own, each alone
+ALONE_FROM = -3
 SHEET_BYTES = 8_000_000  # of a sheet that is worth that, 2 Mpx as floats; its pages are made anew each time
 
 

@@ -27,10 +27,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 
 TILE_PX = 32
-SHIFT, WITHIN = (
-    TILE_PX.bit_length() - 1,
-    TILE_PX - 1,
-)  # of a pixel's number: its tile, and where it is in it
+# of a pixel's number: its tile, and where it is in it
+SHIFT, WITHIN = TILE_PX.bit_length() - 1, TILE_PX - 1
 PAPER = -1  # in the place of a tile's number
 BAND_PX = 256  # rows that are looked at together
 

@@ -60,9 +60,8 @@ def trace(
         line = max(touching(found.setup, [line]), key=lambda each: each.length_mm)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
-    setup = replace(
-        setup, progress=None
-    )  # the way along the line is told, and has come to its end
+    # the way along the line is told, and has come to its end
+    setup = replace(setup, progress=None)
     lines, left = explained(setup, bent(setup, lines))
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=left)
 

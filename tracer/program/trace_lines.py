@@ -54,11 +54,8 @@ from morfax.tracer.program.trace import followed
 # shares of the work that are done, as the bar has them; by the times of a form and a page of handwriting:
 # when one line of each patch is found, when bays that show as bars are laid, of what it takes to find all ...
 ONE_OF_EACH, WITH_BARS = 0.7, 0.85
-FOUND, BENT, EXPLAINED = (
-    0.7,
-    0.8,
-    0.95,
-)  # ... lines; when all are found, bent, and held against their ink
+# ... lines; when all are found, bent, and held against their ink
+FOUND, BENT, EXPLAINED = 0.7, 0.8, 0.95
 
 
 @dataclass(frozen=True, slots=True)
