@@ -53,11 +53,18 @@ class Broad(NamedTuple):
 
 def widths_along(seen: Seen, places: Array, width_mm: float, pitch_mm: float) -> Array:
     """The width of the ink along each piece of a path through places (n, 2) mm, along ink of about a width,
-    mm; NaN where it has no edges, as where another line crosses.
+    mm; NaN where it has no edges, as where another line crosses. Gaps in the ink do not count.
     """
     rows = rows_of(seen, places, width_mm * ACROSS, pitch_mm)
-    profiles = [dark.mean(axis=1) for dark in rows]
+    profiles = [_on_ink(dark) for dark in rows]
     return width_mm * inks(np.vstack(profiles)) if profiles else np.empty(0)
+
+
+def _on_ink(dark: Array) -> Array:
+    """The profile of each piece (pieces, rows), by its stations with ink (pieces, stations, rows)."""
+    darkest = dark.max(axis=2)
+    inked = (darkest > INK * darkest.max(axis=1, keepdims=True))[:, :, None]
+    return np.asarray((dark * inked).sum(axis=1) / np.maximum(inked.sum(axis=1), 1))
 
 
 def width_of(seen: Seen, middles: Array, width_mm: float) -> float:

@@ -5,16 +5,19 @@ Broken on purpose, with `TWO` from 1.5 on, `SHORT_WIDTHS` a tenth or `WIDER` twi
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from morfax.jobs.remarks.two_lines import TwoLines
 from morfax.tracer.drawing import broad as broad_lines
+from morfax.tracer.drawing.deviation import darkness_across
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
-from tests.tracer.inked import WIDTH_MM, arc, inked, polyline, together
+from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline, together
 
 MIDDLE_MM, RADIUS_MM = (20.0, 20.0), 14.0
 ALONE = (polyline((4, 3), (30, 4)), arc(MIDDLE_MM, 5.0))  # lines of the same pen
@@ -55,6 +58,27 @@ def test_only_a_line_twice_as_wide_as_the_pen_may_be_two(times: float, told: int
     ring, others = (arc(MIDDLE_MM, RADIUS_MM), times * WIDTH_MM), [(a, WIDTH_MM) for a in ALONE]
     drawing = together(ring, *others, seed=2)
     assert len(TwoLines.along(drawing, trace_ink(drawing)).broad.of_lines) == told
+
+
+def test_gaps_in_a_line_make_its_pen_no_finer() -> None:
+    """Dashes of 6 mm with gaps of 0.9 mm, 0.35 mm wide, beside a line of 0.5 mm: it is no two of them."""
+    drawing = together((polyline((5, 25), (60, 27)), 0.5), *dashes(0.35), seed=2)
+    at_mm = polyline((5, 5), (60, 9))
+    seen = partial(darkness_across, drawing)
+    widths_mm = broad_lines.widths_along(seen, at_mm, 0.35, drawing.pitch_mm)
+    known = widths_mm[np.isfinite(widths_mm)]
+    # a sixteenth of the pen, to which its ink is told, and an eighth of a pixel, to which it is drawn
+    assert len(known) > 10 and known == pytest.approx(0.35, abs=0.035)
+    assert not tuple(TwoLines.along(drawing, trace_ink(drawing)).remarks())
+
+
+def dashes(width_mm: float) -> list[tuple[Points, float]]:
+    """The dashes of a line from 5, 5 to 60, 9 mm, with the round ends of their pen."""
+    way = np.array([55.0, 4.0]) / np.hypot(55, 4)
+    begins = np.arange(0.0, 50.0, 6.9 + width_mm)
+    return [
+        (np.array([5.0, 5.0]) + np.array([[at], [at + 6.0]]) * way, width_mm) for at in begins
+    ]
 
 
 def test_a_short_broad_stretch_is_not_told() -> None:
