@@ -32,12 +32,12 @@ from morfax.tracer.drawing.lengths import one_pen_mm
 from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.numbering import ALIKE, InkSpread, longest_first
 from morfax.tracer.drawing.weighing import Weight, weighed_mm
-from morfax.tracer.effort import FEW_PX, MANY
+from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
 
-TILE_PX = math.isqrt(FEW_PX)
+TILE_PX = 2048  # the places of a line come tile by tile, so that its size decides where the head begins
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial
 ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
