@@ -35,8 +35,8 @@ INNER_WIDTHS = 40.0  # a stretch between forks that is no longer may lie within 
 CLEAN_SHARE = 0.5  # of its length: more of it is clean line of its own
 # of a stretch: two lines run together along more of it (0.24 and more, of a letter's 0.15 and less); by trial
 STILL_SHARE = 0.2
-# of a line's width: two lines in narrower ink run within 0.3 widths of each other, and are one
-APART = 1.3
+# of a line's width: two lines in narrower ink run within a quarter of it from each other, and are one
+APART = 1.25
 MET_WIDTHS = 0.5  # at the ends of a line that is clean nowhere: the ink of what it meets
 OWN_WIDTHS = 1.2  # a shorter one has no ink that is not the junction's
 COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
