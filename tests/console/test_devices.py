@@ -11,10 +11,8 @@ import soundfile
 
 from morfax.motion.motion import join
 from morfax.player.tape.playback import play_pipe
-from morfax.recorder.sound import device as devices
-from morfax.recorder.sound import device_sink
 from tests.console.conftest import Morfax
-from tests.recorder.sound.stand_in import Cable
+from tests.recorder.sound.stand_in import Cable, plugged_in
 
 LINE = "x,y\n10,10\n20,10\n20,15\n"
 
@@ -22,11 +20,7 @@ LINE = "x,y\n10,10\n20,10\n20,15\n"
 @pytest.fixture
 def cable(monkeypatch: pytest.MonkeyPatch) -> Cable:
     """A cable; it is faster than the recorder, so all is made before it starts."""
-    made = Cable()
-    monkeypatch.setattr(devices, "sounddevice", lambda: made)
-    monkeypatch.setattr(devices, "STOPPED_S", 2.0)
-    monkeypatch.setattr(device_sink, "AHEAD_S", 60.0)
-    return made
+    return plugged_in(monkeypatch)
 
 
 @pytest.fixture

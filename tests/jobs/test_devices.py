@@ -5,10 +5,8 @@ from __future__ import annotations
 import pytest
 
 from morfax.jobs.devices import READING_S, DevicesJob, Levels, _remark
-from morfax.recorder.sound import device as devices
-from morfax.recorder.sound import device_sink
 from tests.jobs.worked import Recording
-from tests.recorder.sound.stand_in import Cable
+from tests.recorder.sound.stand_in import Cable, plugged_in
 
 DB = 0.05  # of a level: a reading ends anywhere in a period of the carrier
 
@@ -16,11 +14,7 @@ DB = 0.05  # of a level: a reading ends anywhere in a period of the carrier
 @pytest.fixture(autouse=True)
 def cable(monkeypatch: pytest.MonkeyPatch) -> Cable:
     """A cable from its outputs to its inputs, faster than the recorder."""
-    made = Cable()
-    monkeypatch.setattr(devices, "sounddevice", lambda: made)
-    monkeypatch.setattr(devices, "STOPPED_S", 2.0)
-    monkeypatch.setattr(device_sink, "AHEAD_S", 60.0)
-    return made
+    return plugged_in(monkeypatch)
 
 
 def test_a_listed_device_has_its_numbers() -> None:

@@ -42,10 +42,8 @@ def depth_of(ink: Mask) -> NDArray[np.float32]:
 def depth_at(ink: Mask, rows: Indices, columns: Indices) -> NDArray[np.float32]:
     """The same of some pixels of ink."""
     row, begin, end = runs_of(ink, 0)
-    depth, first = (
-        depth_along(row, begin, end, ink.shape),
-        np.cumsum(end - begin) - (end - begin),
-    )
+    depth = depth_along(row, begin, end, ink.shape)
+    first = np.cumsum(end - begin) - (end - begin)
     width = ink.shape[1] + 1
     begins = row.astype(np.int64) * width + begin
     run = np.searchsorted(begins, rows * width + columns, side="right") - 1

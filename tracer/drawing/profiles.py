@@ -64,9 +64,8 @@ class Profiles(NamedTuple):
 def profiles_of(darkness: Kept) -> Profiles | None:
     """Profiles across the lines; None if there are too few."""
     crossings = [_runs(darkness, across) for across in (False, True)]
-    places = np.vstack(
-        [crossings[0], crossings[1][:, ::-1, :]]
-    )  # (n, row or column, begin or end)
+    # (n, row or column, begin or end)
+    places = np.vstack([crossings[0], crossings[1][:, ::-1, :]])
     places = places[_even(len(places))]
     if len(places) < FEWEST_PROFILES:
         return None

@@ -10,6 +10,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
+
+from morfax.recorder.sound import device, device_sink
 
 COUNT = 4800  # frames to a callback
 
@@ -169,3 +172,12 @@ class Still:
     def is_set(self) -> bool:
         """It goes on."""
         return False
+
+
+def plugged_in(monkeypatch: pytest.MonkeyPatch) -> Cable:
+    """A cable in sounddevice's place; it is faster than the recorder, so all is made before it starts."""
+    made = Cable()
+    monkeypatch.setattr(device, "sounddevice", lambda: made)
+    monkeypatch.setattr(device, "STOPPED_S", 2.0)
+    monkeypatch.setattr(device_sink, "AHEAD_S", 60.0)
+    return made

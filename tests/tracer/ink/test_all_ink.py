@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import weakref
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,11 +11,8 @@ import shapely
 from morfax.motion.polyline import length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.program import trace_ink as trace_ink_module
 from morfax.tracer.program.trace_ink import trace_ink
-from morfax.tracer.sensing import photocell
 from tests.tracer.inked import UM, WIDTH_MM, Points, arc, dot, inked, polyline, together
 
 TWICE = 0.001  # of the length: what may be run more than once
@@ -41,39 +36,6 @@ def held_against(strokes: list[Line], lines: list[Points]) -> tuple[float, float
     run_mm = sum(length_mm(stroke.xy_mm) for stroke in strokes)
     away = shapely.distance(shapely.points(np.vstack([s.xy_mm for s in strokes])), truth)
     return followed / truth.length, (run_mm - followed) / truth.length, float(away.max())
-
-
-def test_what_the_cells_saw_is_gone_when_the_strokes_are_held_against_the_ink(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Each sheet behind an aperture is as large as the drawing."""
-    drawing, seen, alive = inked(SQUARE, BAR, SPUR), list[Any](), dict[str, int]()
-    behind = photocell.behind_aperture
-
-    def kept(*args: Any, **named: Any) -> photocell.Cells:
-        cells = behind(*args, **named)
-        seen.append(weakref.ref(cells.darkness))
-        return cells
-
-    def counted(name: str) -> None:
-        made = getattr(trace_ink_module, name)
-
-        def told(*args: Any) -> Any:
-            alive[name] = sum(each() is not None for each in seen)
-            if (
-                name == "as_contours"
-            ):  # a head is put down on the sheet, as on a line that is mended
-                view_of(args[0].sheet, None, WIDTH_MM)
-            return made(*args)
-
-        monkeypatch.setattr(trace_ink_module, name, told)
-
-    monkeypatch.setattr(photocell, "behind_aperture", kept)
-    for name in ("as_contours", "strokes_off_ink"):
-        counted(name)
-    lines = trace_ink(drawing).lines
-    assert len(lines) > 1 and len(seen) > 1
-    assert alive == {"as_contours": 0, "strokes_off_ink": 0}
 
 
 def test_a_bar_and_a_spur_are_followed_beside_the_outline() -> None:
