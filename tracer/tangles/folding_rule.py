@@ -116,6 +116,12 @@ def along(way: Array, half_mm: float) -> Iterator[Rule]:
             yield from _of_corners(kept[0], kept[-1], kept[1:-1], half_mm)
 
 
+def sharp(first_mm: Array, last_mm: Array, corners_mm: Array, half_mm: float) -> Rule:
+    """The rule of some corners (m, 2) mm, all sharp."""
+    rounded = np.zeros(len(corners_mm), np.bool_)
+    return Rule(first_mm, last_mm, corners_mm, rounded, 0.0, half_mm)
+
+
 def round_bar(ink: SeenInk, legs: Array) -> Iterator[Rule]:
     """Rules round the bar of ink beside a line, of which the legs (n, 2) mm on either side are known."""
     half_mm = ink.half_mm

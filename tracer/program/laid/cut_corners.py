@@ -1,40 +1,51 @@
 """Cut corners: where sides of two or three widths meet, the head may round a corner, or cut it.
 
-    ──────╮      a way that is less than a third of a width off is on its ink nearly everywhere: what is over
+    ──────╮      a way that is less than half a width off is on its ink nearly everywhere: what is over
            ╲     there is far below what tells a wrong way, but far above what the paper's noise leaves
             │
 
-There a folding rule of one to four corners is laid by the ink between clean places of the way on either
-side, as at narrow bays (see `narrow_bays`). If it explains the ink better, and lies as near to the way, the
-head runs along it from memory.
+There, and where the head ran out of a tangle, a folding rule of one to four corners is laid by the ink
+between clean places of the way on either side, as at narrow bays (see `narrow_bays`). If it explains the ink
+better, and lies as near to the way, the head runs along it from memory.
+
+    │  ╱╱        a corner within the ink of another side: the ink shows it nowhere. Where the way leaves its
+    └─╱╱──       straight legs, and the corner at which these meet explains the ink as well, it is that
 
 Signals: the sheet and lines in; the lines with their corners out.
 
-Source: our own. Questions: a corner within another line's ink is not seen to be cut.
+Source: our own; a draughtsman's sides are straight up to where they meet. Questions: none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from morfax.motion.polyline import nearest_mm
+from morfax.motion.arrays import Array
+from morfax.motion.plane import left_of
+from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
+from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, beside
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.line_parts import LEGS, is_clear, is_whole
-from morfax.tracer.program.laid.way_ink import WayInk
+from morfax.tracer.program.laid.way_ink import BayInk, WayInk
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import folding_rule, pen
 from morfax.tracer.tangles.folding_rule import Rule
-from morfax.tracer.tangles.seen_ink import GAIN, LIKE
+from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 
-OFF = 0.3  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
+OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
+LEAST_GAIN = 0.005  # for each width of its length; of teeth it is 0.01 to 0.03
+BENT = 0.05  # widths: a leg that bends by more tells no corner
+LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 # of what a way leaves where the rule draws otherwise: what leaves more explains something else
 MOST_LEFT = 0.3
 
@@ -65,38 +76,92 @@ class _Corners(WayInk):
         line = self.line
         if not self.is_closed or not is_whole(line) or line.as_told:
             return line
-        low, high = line.places_mm.min(axis=0), line.places_mm.max(axis=0)
         bays = list[Bay]()
-        for place in self.left:
-            is_in = bool(((place.place_mm >= low) & (place.place_mm <= high)).all())
-            bay = self._bay(place) if is_in and len(bays) < MANY else None
+        for first, last in [*self._beside_ink(), *self._redrawn()][:MANY]:
+            bay = self._bay(first, last)
             if bay is not None:
                 bays.append(bay)
         bays = apart(bays, self.round_mm)
         return laid(self.setup, line, bays, self.round_mm) if bays else line
 
-    def _bay(self, place: BesideInk) -> Bay | None:
-        """The rule in place of the way about a place, if it explains the ink better."""
-        away_mm = np.hypot(*(self.way - place.place_mm).T)
-        at, leg = int(np.argmin(away_mm)), round(LEGS[0] / STEP_WIDTHS)
-        if away_mm[at] > self.step_mm:
-            return None  # another line's
-        half = max(round(0.5 * place.length_mm / self.step_mm), 1)
-        seen = self.about(at - half - leg, at + half + leg, np.empty((0, 2)))
-        if seen is None:
+    def _beside_ink(self) -> Iterator[tuple[int, int]]:
+        """The stretches that run beside their ink: their first and last places."""
+        for place in self.left:
+            away_mm = np.hypot(*(self.way - place.place_mm).T)
+            at = int(np.argmin(away_mm))
+            if away_mm[at] < self.step_mm:  # else another line's
+                half = max(round(0.5 * place.length_mm / self.step_mm), 1)
+                yield at - half, at + half
+
+    def _redrawn(self) -> Iterator[tuple[int, int]]:
+        """The same of those along which the head ran out of a tangle: there a corner may be within the ink of
+        another line.
+        """
+        led, places = self.line.led, self.line.xy_mm
+        along = np.rint(lengths_mm(places) / self.step_mm).astype(int)
+        for first, last, leader in zip(
+            led.firsts, [*led.firsts[1:], len(places)], led.leaders, strict=True
+        ):
+            if leader == REDRAWN:
+                yield int(along[first]), int(along[last - 1])
+
+    def _bay(self, first: int, last: int) -> Bay | None:
+        """The rule in place of a stretch, if it explains the ink better, or as well along the legs."""
+        leg = round(LEGS[0] / STEP_WIDTHS)
+        seen = self.about(first - leg, last + leg, np.empty((0, 2)))
+        found = None if seen is None else self._by_ink(seen) or self._by_legs(seen, leg)
+        if seen is None or found is None:
             return None
-        own, ink = seen.own, seen.ink
-        rule = self.explained(ink, list(folding_rule.along(own, ink.half_mm)))
-        if rule is None or nearest_mm(rule.way, own).max() > OFF * self.line.width_mm:
-            return None
-        by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
-        gain = ink.misfit(by_own) - rule.misfit
-        is_like = rule.misfit < LIKE * self._widths(rule)
-        is_like &= ink.share_left(ink.drawn_along(rule.way, rule.half_mm), by_own) < MOST_LEFT
-        if not is_like or gain < GAIN * self._widths(rule):
-            return None
+        rule, gain = found
         return Bay(seen.first * self.step_mm, seen.last * self.step_mm, rule, gain)
 
-    def _widths(self, rule: Rule) -> float:
-        """How long a rule is, in widths of the line."""
-        return rule.length_mm / self.line.width_mm
+    def _by_ink(self, seen: BayInk) -> tuple[Rule, float] | None:
+        """The rule that explains the ink of a stretch better than the way does, and by how much."""
+        own, ink, width_mm = seen.own, seen.ink, self.line.width_mm
+        by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
+        if ink.misfit(by_own) < SURE * STEP_WIDTHS * len(own):
+            return None
+        rule = self.explained(ink, list(folding_rule.along(own, ink.half_mm)))
+        if rule is None or nearest_mm(rule.way, own).max() > OFF * width_mm:
+            return None
+        gain, widths = ink.misfit(by_own) - rule.misfit, rule.length_mm / width_mm
+        is_like = rule.misfit < LIKE * widths
+        is_like &= ink.share_left(ink.drawn_along(rule.way, rule.half_mm), by_own) < MOST_LEFT
+        return (rule, gain) if is_like and gain > LEAST_GAIN * widths else None
+
+    def _by_legs(self, seen: BayInk, leg: int) -> tuple[Rule, float] | None:
+        """The corner where both legs of a stretch meet, if the way leaves them and the corner explains the
+        ink as well; and by how much better.
+        """
+        own, ink, width_mm = seen.own, seen.ink, self.line.width_mm
+        corner = _met(own[: leg + 1], own[: -leg - 2 : -1], BENT * width_mm)
+        if corner is None or nearest_mm(corner[None], own)[0] > width_mm:
+            return None
+        rule = folding_rule.sharp(own[0], own[-1], corner[None], ink.half_mm)
+        straight = evenly(rule.way, self.step_mm)
+        off_mm = max(nearest_mm(own, straight).max(), nearest_mm(straight, own).max())
+        if not LEFT_LEGS * width_mm < off_mm < width_mm:
+            return None
+        by_own, by_rule = ink.misfit_along(own), ink.misfit_along(rule.way)
+        gain = by_own - by_rule
+        return (rule, gain) if gain > -PRICE else None
+
+
+def _met(before: Array, after: Array, bent_mm: float) -> Array | None:
+    """Where two legs (n, 2) mm, each towards a corner, meet ahead of both, (x, y) mm; None if one of them is
+    bent by more, or both lie in line.
+    """
+    middles, ways = list[Array](), list[Array]()
+    for leg in (before, after):
+        middle = leg.mean(axis=0)
+        way = np.linalg.svd(leg - middle)[2][0]
+        way = way if way @ (leg[-1] - leg[0]) > 0 else -way
+        if np.abs((leg - middle) @ left_of(way)).max() > bent_mm:
+            return None
+        middles.append(middle)
+        ways.append(way)
+    if abs(ways[0] @ left_of(ways[1])) < math.sin(STRAIGHT):
+        return None
+    on_mm = np.linalg.solve(np.column_stack([ways[0], -ways[1]]), middles[1] - middles[0])
+    half_mm = [np.ptp(leg @ way) / 2 for leg, way in zip((before, after), ways, strict=True)]
+    return np.asarray(middles[0] + on_mm[0] * ways[0]) if (on_mm > half_mm).all() else None

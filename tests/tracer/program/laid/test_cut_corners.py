@@ -20,25 +20,51 @@ PITCH_MM, HIGH_MM = (
 OFF_MM = 0.05
 
 
-def rack(turned_rad: float) -> np.ndarray:
+def turned(places: np.ndarray, by_rad: float) -> np.ndarray:
+    """Places (n, 2) mm turned, on a sheet."""
+    cosine, sine = np.cos(by_rad), np.sin(by_rad)
+    there = places @ np.array([[cosine, sine], [-sine, cosine]])
+    return np.asarray(there - there.min(axis=0) + 4)
+
+
+def rack() -> np.ndarray:
     """A rack with teeth, (n, 2) mm."""
     rise = np.array([0.1, 0.3, 0.7, 0.9]) * PITCH_MM
     along = (np.arange(TEETH)[:, None] * PITCH_MM + rise).ravel()
     up = 4.0 + HIGH_MM * np.tile([0, 1, 1, 0], TEETH)
-    places = np.vstack([[0, 0], np.column_stack([along, up]), [TEETH * PITCH_MM, 0], [0, 0]])
-    cosine, sine = np.cos(turned_rad), np.sin(turned_rad)
-    turned = places @ np.array([[cosine, sine], [-sine, cosine]])
-    return np.asarray(turned - turned.min(axis=0) + 4)
+    return np.vstack([[0, 0], np.column_stack([along, up]), [TEETH * PITCH_MM, 0], [0, 0]])
+
+
+def spanner() -> np.ndarray:
+    """A spanner with a head of 22 mm and a jaw of 12 mm, whose corners lie 0.4 mm within the head's line."""
+    turns = np.linspace(np.pi - np.arcsin(6 / 11), np.arcsin(4.5 / 11), 60)
+    head = 11 * np.column_stack([np.cos(turns), np.sin(turns)])
+    jaw = [[8.7, -6], [8.7, 6]]
+    return np.vstack([head, [[34, 4.5], [34, -4.5]], head[::-1] * [1, -1], jaw, head[:1]])
+
+
+RACK, SPANNER = rack(), spanner()
 
 
 @pytest.mark.parametrize("turned_rad", [1.7, 2.4, 3.1])
 def test_teeth_as_broad_as_two_lines_have_their_corners(turned_rad: float) -> None:
-    drawn = polyline(*map(tuple, rack(turned_rad)))
+    drawn = polyline(*map(tuple, turned(RACK, turned_rad)))
     (line,) = trace(inked(drawn, seed=3)).lines
     assert line.ending == "closed"
     truth = with_places(drawn, 0.01)
     assert nearest_mm(truth, line.places_mm).max() < OFF_MM
     assert nearest_mm(line.places_mm, truth).max() < OFF_MM
+
+
+@pytest.mark.parametrize("turned_rad", [0.3, 1.9, 4.0])
+def test_a_corner_within_the_ink_of_another_side_is_where_its_legs_meet(
+    turned_rad: float,
+) -> None:
+    """A spanner whose jaw comes to its own head: the ink alone shows the corner nowhere."""
+    drawn = polyline(*map(tuple, turned(SPANNER, turned_rad)))
+    (line,) = trace(inked(drawn, width_mm=0.7, seed=3)).lines
+    assert line.ending == "closed"
+    assert nearest_mm(line.places_mm, with_places(drawn, 0.01)).max() < OFF_MM
 
 
 def test_a_line_on_its_ink_stays_as_the_head_ran() -> None:
