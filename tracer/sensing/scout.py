@@ -85,8 +85,13 @@ def leg_mm(width_mm, pitch_mm):  # type: ignore[no-untyped-def]
 def felt(cells, pose, width_mm, along_mm):  # type: ignore[no-untyped-def]
     """Stations (n, 3) from a pose, by the step and for the length of `along_mm` (see `View.feel`)."""
     step_mm, length_mm = along_mm
-    stations = max(FEWEST, round(length_mm / step_mm) + 1)
-    return scout(cells, pose, width_mm, step_mm, stations)
+    return scout(cells, pose, width_mm, step_mm, stations_of(step_mm, length_mm))
+
+
+@njit(cache=True)
+def stations_of(step_mm, length_mm):  # type: ignore[no-untyped-def]
+    """How many stations a line is felt at for a length."""
+    return max(FEWEST, round(length_mm / step_mm) + 1)
 
 
 @njit(cache=True)
