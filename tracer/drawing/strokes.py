@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.motion.median import median
-from morfax.tracer.drawing.components import Patches
+from morfax.tracer.drawing.components import Patches, nearest_run
 from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
@@ -144,7 +144,8 @@ class Sheet:
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
         """The line nearest to a place; raises LineFault, with its place, if it is out of reach."""
-        distance_mm, (x, y), patch = self._nearest_ink(place_mm, self._long_enough())
+        here_mm = float(place_mm[0]), float(place_mm[1])
+        distance_mm, (x, y), patch = self._nearest_ink(here_mm, self._long_enough())
         if distance_mm > within_mm:
             raise LineFault(
                 f"no line within {within_mm:g} mm of {place_mm[0]:g},{place_mm[1]:g} mm:"
@@ -184,27 +185,16 @@ class Sheet:
             about_px *= 4
 
     def _nearest_of(
-        self, place_mm: tuple[float, float], runs: slice, among: NDArray[np.bool_] | None
+        self, place_mm: tuple[float, float], some: slice, among: NDArray[np.bool_] | None
     ) -> tuple[float, Array, int]:
         """The same of some runs; infinitely far, and no patch, if there is none."""
-        row, begin, end, patch = (
-            part[runs]
-            for part in (
-                self.patches.row,
-                self.patches.begin,
-                self.patches.end,
-                self.patches.patch,
-            )
-        )
-        column = np.clip(round(place_mm[0] / self.drawing.pitch_mm - 0.5), begin, end - 1)
-        places = self.places_mm(row, column)
-        distances = np.hypot(*(places - np.asarray(place_mm)).T)
-        if among is not None:
-            distances[~among[patch]] = np.inf
-        if not len(distances):
+        runs, sheet = self.patches, (self.drawing.darkness.shape[0], self.drawing.pitch_mm)
+        own = runs.row[some], runs.begin[some], runs.end[some], runs.patch[some]
+        if not len(own[0]):
             return math.inf, np.zeros(2), -1
-        best = int(np.argmin(distances))
-        return float(distances[best]), places[best], int(patch[best])
+        counts = np.ones(runs.count, bool) if among is None else among
+        away_mm, x_mm, y_mm, run = nearest_run(own, place_mm, sheet, counts)
+        return float(away_mm), np.array([x_mm, y_mm]), int(own[3][run])
 
     def middles_mm(self, patches: Pixels) -> Array:
         """The middles of the boxes of some patches, (n, 2) sheet mm."""

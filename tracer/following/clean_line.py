@@ -38,7 +38,7 @@ from morfax.tracer.limits import FOLLOWS
 from morfax.tracer.sensing.gauge import gauge
 from morfax.tracer.sensing.leg import FEWEST_STATIONS
 from morfax.tracer.sensing.photocell import Cells
-from morfax.tracer.sensing.scout import felt, leg_mm
+from morfax.tracer.sensing.scout import leg_mm, scout, stations_of
 from morfax.tracer.sensing.view import View
 
 CHUNKS = 4  # seconds of motion in one call at the most
@@ -144,7 +144,7 @@ def _felt_clean(cells, head, known, gauged):  # type: ignore[no-untyped-def]
     now = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles, cells.beyond)
     own_mm = leg_mm(width_mm, cells.pitch_mm)
     long_mm = back_mm + t.guard_lead_mm + own_mm
-    seen = felt(now, pose, width_mm, (line.step_mm, long_mm))
+    seen, more = _felt_ahead(now, pose, (width_mm, own_mm, line.step_mm), long_mm)
     here = _on_its_way(state, t, seen)
     if here < 0 or (len(seen) - here) * line.step_mm <= own_mm:
         return 0.0
@@ -153,7 +153,7 @@ def _felt_clean(cells, head, known, gauged):  # type: ignore[no-untyped-def]
         return 0.0
     if max(state.guard_left, state.guard_right) > kernel.BESIDE:
         return 0.0
-    if _turns_ahead(now, (width_mm, own_mm, line.step_mm), seen, here):
+    if 0 <= corner_at(more, here + AHEAD) <= len(seen) - LEG_STATIONS:
         return 0.0
     # 3. the cell stands on it
     clean_mm = _agreed_mm(state, t, seen, width_mm) - LEFT_LEGS * own_mm
@@ -189,14 +189,23 @@ def _nearest(seen, x, y):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _turns_ahead(cells, sizes_mm, seen, here):  # type: ignore[no-untyped-def]
-    """Whether a corner is in what is felt ahead, and a leg's length beyond (see `felt_corner`)."""
+def _felt_ahead(cells, pose, sizes_mm, long_mm):  # type: ignore[no-untyped-def]
+    """Stations of the line for a length, and those a leg's length further, in which its corners are looked
+    for (see `felt_corner`): the same ones, where none is spoilt; else felt anew from the first.
+    """
     width_mm, own_mm, step_mm = sizes_mm
+    count, further = stations_of(step_mm, long_mm), round(own_mm / step_mm) + 1
+    more = scout(cells, pose, width_mm, step_mm, count + further)
+    if len(more) == count + further:
+        return more[:count], more
+    seen = scout(cells, pose, width_mm, step_mm, count)
+    if len(seen) < FEWEST_STATIONS:
+        return seen, seen
     heading = math.atan2(seen[3, 1] - seen[0, 1], seen[3, 0] - seen[0, 0])
-    pose = seen[0, 0], seen[0, 1], heading
-    more = felt(cells, pose, width_mm, (step_mm, len(seen) * step_mm + own_mm))
-    corner = corner_at(more if len(more) > len(seen) else seen, here + AHEAD)
-    return 0 <= corner <= len(seen) - LEG_STATIONS
+    again = scout(
+        cells, (seen[0, 0], seen[0, 1], heading), width_mm, step_mm, len(seen) + further
+    )
+    return seen, again if len(again) > len(seen) else seen
 
 
 @njit(cache=True)

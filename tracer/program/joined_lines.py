@@ -104,7 +104,7 @@ def joined_to(
     view = view_of(setup.sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
     for _ in range(RUNS):
         # 1. put the head down on ink that is left, and run
-        place_mm = replace(contour, stroke=left).starts_mm()[0]
+        place_mm = replace(contour, stroke=left).starts_mm[0]
         found.tries(place_mm)
         stance = stance_near(view, left, place_mm)
         if stance is not None:

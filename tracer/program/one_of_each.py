@@ -250,7 +250,7 @@ def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
 
 def _lost(contour: Contour, fault: LineFault) -> Line:
     """The line of a patch that was never begun."""
-    place_mm = np.array(contour.starts_mm()[:1])
+    place_mm = np.array(contour.starts_mm[:1])
     return Line(place_mm, "lost", contour.stroke.width_mm, 0.0, fault, contour.number)
 
 
@@ -268,7 +268,7 @@ def _follow_from_plain_places(setup: Setup, contour: Contour) -> _Found | LineFa
     """
     in_vain, passed = list[tuple[float, float]](), list[Array]()
     fault = LineFault("no place to put the head down")
-    for start_mm in contour.starts_mm():
+    for start_mm in contour.starts_mm:
         here = np.array([start_mm])
         if any(nearest_mm(here, way)[0] < contour.stroke.width_mm for way in passed):
             continue

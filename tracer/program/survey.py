@@ -179,7 +179,7 @@ def _of_patch(
         for found in drawn
         if from_reference(found.place_mm, ends) and found.is_sure(sheet, stroke.patch)
     ]
-    starts_mm = contour.starts_mm()
+    starts_mm = contour.starts_mm
     return Entry(
         contour.number,
         "several" if len(ends) > 2 else "open" if ends else "closed",

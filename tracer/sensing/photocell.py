@@ -129,17 +129,23 @@ def nothing() -> Darkness:
 
 @njit(cache=True, inline="always")
 def darkness_at(cells, x_mm, y_mm):  # type: ignore[no-untyped-def]
-    """Darkness under a cell at a place in sheet mm; paper outside the sheet.
+    """Darkness under a cell at a place in sheet mm; paper outside the sheet."""
+    return darkness_on(cells, x_mm / cells.pitch_mm, y_mm / cells.pitch_mm)
+
+
+@njit(cache=True, inline="always")
+def darkness_on(cells, x_px, y_px):  # type: ignore[no-untyped-def]
+    """The same at a place in pixels, from the sheet's lower-left corner to the right and up.
 
     A small sheet does not name `tiles`: numba would count references to all its arrays.
     """
-    seen, pitch_mm = cells.darkness, cells.pitch_mm
+    seen = cells.darkness
     rows, columns = seen.shape
     if rows == 0:
-        return aperture.darkness_at(cells.tiles, x_mm / pitch_mm, y_mm / pitch_mm)
+        return aperture.darkness_at(cells.tiles, x_px, y_px)
     above_px, left_px, below_px, _ = cells.beyond
-    x = x_mm / pitch_mm - 0.5
-    y = (above_px + rows + below_px) - y_mm / pitch_mm - 0.5
+    x = x_px - 0.5
+    y = (above_px + rows + below_px) - y_px - 0.5
     i, j = math.floor(y), math.floor(x)
     fx, fy = x - j, y - i
     i, j = i - above_px, j - left_px

@@ -16,9 +16,11 @@ import math
 from typing import NamedTuple
 
 from morfax.motion.compiled import njit
-from morfax.tracer.sensing.photocell import STEP_PX, darkness_at
+from morfax.tracer.sensing.photocell import STEP_PX, darkness_at, darkness_on
 
 SPECK_PX, SPECK_MM = 2.2, 0.25  # no wider is a speck: one pixel seen through the aperture
+# of the darkness: of two places as dark the nearer one; less than noise over the reach of a line
+FAR_PER_MM = 1e-3
 
 
 class Ray(NamedTuple):
@@ -90,19 +92,43 @@ def edges(cells, x_mm, y_mm, heading, reach_mm):  # type: ignore[no-untyped-def]
 
     The search starts at the darkest place within half the reach.
     """
-    left = Ray(x_mm, y_mm, -math.sin(heading), math.cos(heading), 0.0)
-    step = STEP_PX * cells.pitch_mm
-    half = math.ceil(reach_mm / step)
-    best, start_mm = -1.0, 0.0
-    for k in range(-half // 2, half // 2 + 1):
-        d = seen_on(cells, left, k * step) - 1e-3 * abs(k * step)
-        if d > best:
-            best, start_mm = d, k * step
-    if best < cells.level:
+    return edges_beside(cells, (x_mm, y_mm), (math.cos(heading), math.sin(heading)), reach_mm)
+
+
+@njit(cache=True, _nrt=False)
+def edges_beside(cells, place_mm, way, reach_mm):  # type: ignore[no-untyped-def]
+    """The same of the unit vector of a heading.
+
+    Each place is looked at once, from the right to the left: the newest change before the darkest place so
+    far and the first one after it are its edges. All this is in pixels, and in steps between the looks.
+    """
+    step_mm = STEP_PX * cells.pitch_mm
+    half = math.ceil(reach_mm / step_mm)
+    first, last = -half // 2, half // 2
+    x, y = place_mm[0] / cells.pitch_mm, place_mm[1] / cells.pitch_mm
+    dx, dy = -STEP_PX * way[1], STEP_PX * way[0]
+    far, level = FAR_PER_MM * step_mm, cells.level
+    # 1. within half the reach
+    before = darkness_on(cells, x + first * dx, y + first * dy)
+    darkest, right, left, changed = before - far * abs(first), math.nan, math.nan, math.nan
+    for k in range(first + 1, last + 1):
+        now = darkness_on(cells, x + k * dx, y + k * dy)
+        if (now >= level) != (before >= level):
+            changed = k - (level - now) / (before - now)
+            if math.isnan(left):
+                left = changed
+        if now - far * abs(k) > darkest:
+            darkest, right, left = now - far * abs(k), changed, math.nan
+        before = now
+    if darkest < level:
         return math.nan, math.nan
-    right = Ray(x_mm, y_mm, -left.cosine, -left.sine, 0.0)
-    end_mm = (half + 0.5) * step  # one sample beyond the reach
-    return (
-        -crossing_mm(cells, right, -start_mm, end_mm, 0.0),
-        crossing_mm(cells, left, start_mm, end_mm, 0.0),
-    )
+    right_mm, left_mm = right * step_mm, left * step_mm
+    # 2. further out, to one sample beyond the reach
+    end_mm = (half + 0.5) * step_mm
+    if math.isnan(right):
+        ray = Ray(place_mm[0], place_mm[1], way[1], -way[0], 0.0)
+        right_mm = -crossing_mm(cells, ray, -first * step_mm, end_mm, 0.0)
+    if math.isnan(left):
+        ray = Ray(place_mm[0], place_mm[1], -way[1], way[0], 0.0)
+        left_mm = crossing_mm(cells, ray, last * step_mm, end_mm, 0.0)
+    return right_mm, left_mm

@@ -14,7 +14,7 @@ import numpy as np
 from morfax.motion.compiled import njit
 from morfax.motion.plane import heading_between
 from morfax.tracer.limits import CLEAR_WIDTHS
-from morfax.tracer.sensing.ray import edges
+from morfax.tracer.sensing.ray import edges_beside
 
 # widths and pixels from where a line is expected, within which its edges are
 REACH, REACH_PX = 0.8, 3.0
@@ -42,16 +42,17 @@ def scout(cells, pose, width_mm, step_mm, stations):  # type: ignore[no-untyped-
     reach = REACH * width_mm + REACH_PX * pitch_mm
     passed_over = int(max(SPECK_MM, SPECK_PX * pitch_mm) / step_mm)
     x, y, heading = pose
+    c, s = math.cos(heading), math.sin(heading)
     count = spoilt = 0
     before_speck, since_speck = 0, passed_over + 1
     for _ in range(stations):
-        right, left = edges(cells, x, y, heading, reach)
+        right, left = edges_beside(cells, (x, y), (c, s), reach)
         width, aside = left - right, 0.5 * (left + right)
         is_wide = abs(width - width_mm) < CLEAN * width_mm + CLEAN_PX * pitch_mm
         is_beside = abs(aside) < LEAP * width_mm + LEAP_PX * pitch_mm
         if is_wide and (count == 0 or is_beside):
-            seen[count, 0] = x - aside * math.sin(heading)
-            seen[count, 1] = y + aside * math.cos(heading)
+            seen[count, 0] = x - aside * s
+            seen[count, 1] = y + aside * c
             seen[count, 2] = width
             width_mm += FOLLOWS_PER_MM * step_mm * (width - width_mm)
             count += 1
@@ -61,6 +62,7 @@ def scout(cells, pose, width_mm, step_mm, stations):  # type: ignore[no-untyped-
             y = seen[count - 1, 1]
             if count >= 3:
                 heading = onward(seen, count)
+                c, s = math.cos(heading), math.sin(heading)
         else:
             if since_speck > passed_over:
                 before_speck = count
@@ -68,8 +70,8 @@ def scout(cells, pose, width_mm, step_mm, stations):  # type: ignore[no-untyped-
             spoilt += 1
             if spoilt > passed_over or count == 0:
                 break
-        x += step_mm * math.cos(heading)
-        y += step_mm * math.sin(heading)
+        x += step_mm * c
+        y += step_mm * s
     return seen[: count if since_speck > passed_over else before_speck].copy()
 
 
@@ -83,8 +85,13 @@ def leg_mm(width_mm, pitch_mm):  # type: ignore[no-untyped-def]
 def felt(cells, pose, width_mm, along_mm):  # type: ignore[no-untyped-def]
     """Stations (n, 3) from a pose, by the step and for the length of `along_mm` (see `View.feel`)."""
     step_mm, length_mm = along_mm
-    stations = max(FEWEST, round(length_mm / step_mm) + 1)
-    return scout(cells, pose, width_mm, step_mm, stations)
+    return scout(cells, pose, width_mm, step_mm, stations_of(step_mm, length_mm))
+
+
+@njit(cache=True)
+def stations_of(step_mm, length_mm):  # type: ignore[no-untyped-def]
+    """How many stations a line is felt at for a length."""
+    return max(FEWEST, round(length_mm / step_mm) + 1)
 
 
 @njit(cache=True)
@@ -95,5 +102,6 @@ def onward(seen, count):  # type: ignore[no-untyped-def]
     if count < 9:
         return chord
     before = heading_between(seen, back - 4, back)
-    turned = math.atan2(math.sin(chord - before), math.cos(chord - before))
+    turned = chord - before
+    turned -= math.tau * round(turned / math.tau)
     return chord + 0.625 * turned  # from the chord's middle to half a step beyond its end

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.state import Home
 from morfax.tracer.head.trail import Trail, mark_along
+from morfax.tracer.sensing.scout import scout
 from tests.tracer.inked import arc, inked, polyline
 
 CIRCLE = arc((8.0, 8.0), 3.0)
@@ -116,3 +118,25 @@ def test_stops_were_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Carriage, "follow", counted)
     follower_on(inked(CIRCLE, seed=1)).follow(LONGEST_MM, keep=lambda head: None)
     assert len(stops) > 15
+
+
+@pytest.mark.parametrize(("line", "times"), [(CIRCLE, 1), (polyline((4, 4), (6.5, 4)), 3)])
+def test_a_line_is_felt_once_for_its_corners_too_unless_a_station_is_spoilt(
+    monkeypatch: pytest.MonkeyPatch, line: Array, times: int
+) -> None:
+    """The same stations as without those further on; the second line ends before them."""
+    stance, _ = next(iter(put_down(inked(line, seed=1))))
+    view, own_mm = stance.view, stance.view.leg_mm
+    pose = float(stance.place_mm[0]), float(stance.place_mm[1]), float(stance.heading_rad)
+    asked = list[int]()
+
+    def counted(*given: Any) -> Array:
+        asked.append(int(given[-1]))
+        return np.asarray(scout(*given))
+
+    monkeypatch.setattr(clean_line, "scout", counted)
+    sizes_mm = float(view.width_mm), own_mm, view.step_mm
+    seen, more = clean_line._felt_ahead.py_func(view.cells, pose, sizes_mm, 2 * own_mm)
+    assert len(asked) == times
+    np.testing.assert_array_equal(seen, view.feel(pose[:2], pose[2], 2 * own_mm))
+    assert (len(more) > len(seen)) == (times == 1)

@@ -231,3 +231,39 @@ def test_edges_that_are_not_there_are_nan(strip: Drawing, plain: bool) -> None:
     assert math.isnan(right) and left == pytest.approx(
         0.25, abs=FINE_MM
     )  # 0.45 mm to the right is out of reach
+
+
+def test_an_edge_costs_one_look_at_each_place_across(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The line is looked for within half the reach, and its edges are in what was seen there."""
+    looks = list[tuple[float, float]]()
+
+    def counted(cells: photocell.Cells, x_px: float, y_px: float) -> float:
+        looks.append((x_px, y_px))
+        return float(photocell.darkness_on.py_func(cells, x_px, y_px))
+
+    monkeypatch.setattr(ray, "darkness_on", counted)
+    cells = photocell.Cells(analytic(0.1, 0.0), 25.4 / 300, 0.5)
+    right, left = ray.edges_beside.py_func(cells, (3.0, 3.0), (1.0, 0.0), 1.2)
+    assert left - right == pytest.approx(0.5, abs=8 * UM)
+    steps = round(0.5 * 1.2 / (photocell.STEP_PX * cells.pitch_mm))  # to either side
+    assert len(set(looks)) == len(looks) <= 2 * steps + 2
+
+
+def two_lines(darker: float) -> photocell.Cells:
+    """A line of 0.3 mm along X at (3, 3) mm, and one above it that is as far away as both are wide."""
+    lines = analytic(0.0, 0.0) * 0.8
+    return photocell.Cells(np.maximum(lines, darker * analytic(0.9, 0.0)), 25.4 / 300, 0.4)
+
+
+@COMPILED_AND_PLAIN
+@pytest.mark.parametrize(("darker", "middle_mm"), [(0.7, 0.0), (1.0, 0.9)])
+def test_edges_are_those_of_the_darkest_place(
+    plain: bool, darker: float, middle_mm: float
+) -> None:
+    height_mm = len(analytic(0, 0)) * 25.4 / 300
+    find = kernel(ray.edges, plain)
+    for heading in (0.0, math.pi):  # the other line to the left, and to the right
+        right, left = find(two_lines(darker), 3.0, height_mm - 3.0, heading, 2.2)
+        aside_mm = middle_mm * math.cos(heading)
+        assert (left + right) / 2 == pytest.approx(aside_mm, abs=20 * UM)
+        assert left - right == pytest.approx(0.5, abs=40 * UM)

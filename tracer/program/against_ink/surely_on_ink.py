@@ -52,37 +52,35 @@ def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[n
         if out[k]:
             _in_boxes_about(spread, stations[k], down, boxes)
             out[k] = boxes.max() > limit
-        if out[k] and not wrongs.size:
-            wrongs = _wrongs(band, pen)
-            on_paper = _on_paper(band, wrongs[-1], pen, seen.shape)
+        if out[k] and not on_paper.size:
+            on_paper = _on_paper(band, pen, seen.shape)
         if out[k]:
             _in_boxes_about(on_paper, stations[k], down, papers)
-            part = seen, wrongs, room
-            out[k] = papers.max() > limit and _is_over(
-                (boxes, told), part, stations[k], limit, pen
-            )
+            out[k] = papers.max() > limit
+        if out[k] and not wrongs.size:
+            wrongs = np.full((len(pen.of_width), len(band.dark)), np.nan)
+        if out[k]:
+            part = seen, (band, wrongs), room
+            out[k] = _is_over((boxes, told), part, stations[k], limit, pen)
     for k in range(len(band.dark)):
         spread[band.row[k], band.column[k]] = 0.0
     clear(seen, band, room)
 
 
 @njit(cache=True)
-def _wrongs(band, pen):  # type: ignore[no-untyped-def]
-    """What each pen draws too dark at each pixel of a band, (pens, n)."""
-    wrongs = np.empty((len(pen.of_width), len(band.dark)))
-    for n in range(len(pen.of_width)):
-        for k in range(len(band.dark)):
-            away_px = band.away_px[k] - (pen.of_width[n] - 1) * band.half_px[k]
-            wrongs[n, k] = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
-    return wrongs
+def _too_dark(band, k, share, pen):  # type: ignore[no-untyped-def]
+    """What a pen of a share of the width draws too dark at a pixel of a band."""
+    away_px = band.away_px[k] - (share - 1) * band.half_px[k]
+    return ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
 
 
 @njit(cache=True)
-def _on_paper(band, wrong, pen, shape):  # type: ignore[no-untyped-def]
-    """What a pen draws on paper, by pixels of a part of the sheet."""
+def _on_paper(band, pen, shape):  # type: ignore[no-untyped-def]
+    """What the widest pen draws on paper, by pixels of a part of the sheet."""
     on_paper = np.zeros(shape)
-    for k in range(len(wrong)):
-        on_paper[band.row[k], band.column[k]] = max(wrong[k], 0.0) ** 2 - pen.noise
+    for k in range(len(band.dark)):
+        wrong = _too_dark(band, k, pen.of_width[-1], pen)
+        on_paper[band.row[k], band.column[k]] = max(wrong, 0.0) ** 2 - pen.noise
     return on_paper
 
 
@@ -141,17 +139,21 @@ def _is_over(found, part, station, limit, pen):  # type: ignore[no-untyped-def]
 def _best_in(part, box, pen):  # type: ignore[no-untyped-def]
     """What the pen that explains the box about a pixel (column, row) best draws on paper there, and what ink
     it leaves.
+
+    What a pen draws too dark at a pixel is worked out once, for pixels of such boxes alone.
     """
-    seen, wrongs, room = part
+    seen, (band, wrongs), room = part
     number = room.number[: seen.size].reshape(seen.shape)
     half, least = round(pen.half_px), np.inf
     best_paper, best_left = 0.0, 0.0
-    for wrong in wrongs:
+    for n, wrong in enumerate(wrongs):
         paper, left = 0.0, 0.0
         for i in range(max(0, box[1] - half), min(len(seen), box[1] + half + 1)):
             for j in range(max(0, box[0] - half), min(seen.shape[1], box[0] + half + 1)):
                 k = number[i, j] - 1
                 if k >= 0:
+                    if np.isnan(wrong[k]):
+                        wrong[k] = _too_dark(band, k, pen.of_width[n], pen)
                     paper += max(wrong[k], 0.0) ** 2 - pen.noise
                     left += max(-wrong[k], 0.0) ** 2 - pen.noise
         if paper + left < least:

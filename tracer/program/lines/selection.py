@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
 
@@ -55,7 +56,7 @@ ABOUT_REFERENCE_MM = 1.0  # ink as far beyond the largest reference point is sti
 BESIDE_MM = 1.0  # a stroke further outside a followed line's bounds does not lie on it
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Contour:
     """A line that is asked for: its number, its stroke of ink, and how far it reaches in X or Y."""
 
@@ -63,6 +64,7 @@ class Contour:
     stroke: Stroke
     reach_mm: float
 
+    @cached_property
     def starts_mm(self) -> list[tuple[float, float]]:
         """A few places to put the head down, apart: furthest from corners, crossings and ends first."""
         stroke = self.stroke

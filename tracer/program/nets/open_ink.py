@@ -77,7 +77,7 @@ def can_stand(setup: Setup, contour: Contour) -> bool:
     settings, stroke = setup.settings, contour.stroke
     width_mm = settings.line_width_mm or stroke.width_mm
     view = view_of(setup.sheet, settings.aperture_mm, width_mm)
-    return any(stands_near(view, stroke, start_mm) for start_mm in contour.starts_mm())
+    return any(stands_near(view, stroke, start_mm) for start_mm in contour.starts_mm)
 
 
 def leads_on(junctions: Junctions, gap_mm: float) -> bool:

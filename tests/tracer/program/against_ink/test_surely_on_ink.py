@@ -94,6 +94,28 @@ def test_where_another_line_crosses_no_pens_are_tried(monkeypatch: pytest.Monkey
     assert max(most) > 0.2 * (2 * pen.half_px) ** 2 and not may.any()
 
 
+def test_other_pens_are_held_against_the_pixels_of_doubtful_boxes_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A way is beside its ink along 20 of 90 pixels, and near the dot; the widest pen is held against all."""
+    seen, ways, pen, stations = part(3.0, 1)
+    asked, too_dark = list[tuple[int, float]](), surely_on_ink._too_dark
+
+    def counted(band: Any, k: int, share: float, pen: PenOnInk) -> float:
+        asked.append((int(band.column[k]), share))
+        return float(too_dark.py_func(band, k, share, pen))
+
+    monkeypatch.setattr(surely_on_ink, "_too_dark", counted)
+    for plain in ("_is_over", "_best_in", "_on_paper"):
+        monkeypatch.setattr(surely_on_ink, plain, getattr(surely_on_ink, plain).py_func)
+    room, may = Room.of(seen.size, pen.reach_px), np.empty(len(stations), bool)
+    may_be_over.py_func(seen, ways, stations, np.full(len(stations), 0.05), pen, room, may)
+    others = {column for column, share in asked if share == pen.of_width[0]}
+    assert may.any() and {20, 30, 40, 70} <= others
+    assert not others & {*range(20 - 2 * SIDE), *range(51, 60), *range(81, 90)}
+    assert {column for column, share in asked if share == pen.of_width[-1]} == set(range(90))
+
+
 @pytest.mark.parametrize("pixel", [(10, 8), (0, 0), (19, 14), (2, 13)])
 def test_sums_over_the_boxes_about_the_pixels_about_one(pixel: tuple[int, int]) -> None:
     values = np.random.default_rng(1).normal(size=(15, 20))
