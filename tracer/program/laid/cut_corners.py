@@ -43,7 +43,7 @@ from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 
 OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
-LEAST_GAIN = 0.005  # for each width of its length; of teeth it is 0.01 to 0.03
+LEAST_GAIN = 0.003  # for each width of its length; of teeth it is 0.01 to 0.03
 BENT = 0.05  # widths: a leg that bends by more tells no corner
 LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 # of what a way leaves where the rule draws otherwise: what leaves more explains something else
