@@ -115,6 +115,14 @@ def test_a_mutant_meets_the_tests_that_come_by_it(tmp_path: Path) -> None:
     assert copy.finds(times, [one, other]) and not copy.finds(times, [other])
 
 
+def test_what_the_tests_said_is_kept_for_whoever_has_to_mend_them(tmp_path: Path) -> None:
+    copy = copy_of(tmp_path)
+    assert copy.passes(["test_a.py"])
+    (tmp_path / "motion" / "a.py").write_text("def twice(x): pass\nloop = twice\n")
+    assert not copy.passes(["test_a.py"])
+    assert "FAILED test_a.py::test_a" in copy.said
+
+
 def test_a_copy_has_the_vectors_that_tests_ask_for(
     tmp_path: Path, vectors: Callable[[str], Any]
 ) -> None:

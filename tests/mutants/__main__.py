@@ -48,7 +48,7 @@ def main() -> None:
         copy = Copy(Path(folder))
         tests = copy.watched(files)
         if tests is None:
-            sys.exit("the tests fail without a mutant; mend them first")
+            sys.exit(f"the tests fail without a mutant; mend them first:\n\n{copy.said}")
         print(f"{len(chosen)} of {of} mutants; {len(tests)} tests", flush=True)
         left = 0
         for mutant in chosen:

@@ -62,6 +62,7 @@ class Copy:
         self._change, self._covered = folder / "change.json", folder / "covered.json"
         kernels = {"NUMBA_CACHE_DIR": str(folder / "kernels"), "PYTHONDONTWRITEBYTECODE": "1"}
         self._environment = os.environ | kernels
+        self.said = ""  # by pytest, of the tests that were run last
 
     def passes(self, tests: list[str], limit_s: float | None = None, **more: str) -> bool:
         """Whether tests pass, in time: processor time, as the machine may have other work."""
@@ -74,15 +75,17 @@ class Copy:
                 cwd=self.root,
                 env=self._environment | more,
                 capture_output=True,
+                text=True,
                 check=False,
                 timeout=WAITS * limit_s if limit_s else None,
             )
         except subprocess.TimeoutExpired:
             return False
+        self.said = done.stdout + done.stderr
         return done.returncode == 0
 
     def watched(self, tests: list[str]) -> list[WatchedTest] | None:
-        """What each test of some files comes by, the quickest first; None if one fails."""
+        """What each test of some files comes by, the quickest first; None if one fails, see `said`."""
         if not self.passes(tests, MORFAX_COVERED=str(self._covered)):
             return None
         told = json.loads(self._covered.read_text("utf-8")).items()

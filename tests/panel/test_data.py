@@ -89,7 +89,8 @@ def test_the_lookout_shows_the_way_of_a_head_that_is_taken_up() -> None:
     began = time.monotonic()
     lookout.taken_up(TakenUp())  # type: ignore[arg-type]
     assert time.monotonic() - began < 30.0  # s; at this pace the way would take 100
-    assert len(lookout._fresh) == pytest.approx(10 / STEP_MM, abs=2)
+    assert lookout._fresh[0] == "down"  # another line than the one before
+    assert len(lookout._fresh) == pytest.approx(1 + 10 / STEP_MM, abs=2)
 
 
 def test_the_worst_places_are_apart() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -74,3 +75,25 @@ def test_a_worker_whose_server_was_killed_ends_without_a_word() -> None:
         process.stdin.flush()
         assert process.wait(60) == 0
         assert process.stderr.read() == b""
+
+
+def test_ctrl_c_is_the_servers_and_leaves_the_worker_at_work() -> None:
+    """The terminal sends it to both; the server asks the head to stop, and says what is kept."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "morfax.panel.worker"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        cwd=ROOT,
+    ) as process:
+        assert process.stdin and process.stdout
+        for number in (1, 2):
+            process.stdin.write(pipe.packed(("job", number, "lines", None)))
+            process.stdin.flush()
+            said = [pipe.read_from(process.stdout) for _ in range(2)]
+            assert [(one["say"], one["number"]) for one in said] == [
+                ("begun", number),
+                ("failed", number),
+            ]
+            process.send_signal(signal.SIGINT)
+        process.stdin.close()
+        assert process.wait(60) == 0

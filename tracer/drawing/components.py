@@ -165,6 +165,15 @@ def runs_of(mask: Mask | NDArray[np.bool_], top: int) -> tuple[Numbers, Numbers,
     return row[::2] + np.int32(top), column[::2], column[1::2]
 
 
+def run_at(
+    row: Numbers, begin: Numbers, rows: NDArray[np.int64], columns: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """The number of the run that each of some pixels of ink is in."""
+    width = int(columns.max(initial=int(begin.max(initial=0)))) + 1
+    begins = row.astype(np.int64) * width + begin
+    return np.searchsorted(begins, rows * width + columns, side="right") - 1
+
+
 @njit(cache=True)
 def _paint(mask, row, begin, end):  # type: ignore[no-untyped-def]
     """Set those parts of the runs that lie within the mask."""

@@ -30,26 +30,26 @@ ABOUT_PX = 3.0  # standard deviation of the paper about a spot against which its
 HALF_ABOVE, APART = 69.15, 0.5
 FAR_PX = 7  # from ink: its rims are no paper
 PART_PX = 96  # of the sheet: light and noise change little over it
-# percentiles a standard deviation apart on the bright side; 1.35 where pale lines cover a quarter of a part
 LEAST_PAPER = 0.2  # of a part: less paper tells no noise
 # of ink's darkness, behind a spot: half of a scan's noise. Quieter paper counts as so noisy: what differs
 # there is shade, and rims that a JPEG leaves
 QUIET = 0.005
 
 
-def noise_of_spots(darkness: Darkness) -> float:
-    """The standard deviation of the paper behind a spot, against the paper about it.
+def noise_of_spots(darkness: Darkness, *, stains: bool = False) -> float:
+    """The standard deviation of the paper behind a spot; without its stains against the paper about it.
 
     Grain, and what a camera has made of noise, is broader than pixels: a spot averages little of it. Shade
-    that is even, such as a tinted room of a plan, is none.
+    that is even, such as a tinted room of a plan, is none. Stains are noise where a slit makes strands of
+    them, which may be broader than what is about a place.
     """
     every = max(1, darkness.shape[0] // (STRIPS * PART_PX))
     seen = list[Darkness]()
     for top in range(0, darkness.shape[0], every * PART_PX):
         strip = darkness[top : top + PART_PX]
         soft = np.asarray(cv2.GaussianBlur(strip, (0, 0), SPOT_PX), np.float32)
-        differs = soft - cv2.GaussianBlur(soft, (0, 0), ABOUT_PX)
-        seen.append(differs[_is_paper(strip, soft)][::EVERY_COLUMN])
+        about = 0 if stains else cv2.GaussianBlur(soft, (0, 0), ABOUT_PX)
+        seen.append((soft - about)[_is_paper(strip, soft)][::EVERY_COLUMN])
     paper = np.concatenate(seen)
     if not len(paper):
         return 0.0
@@ -69,6 +69,7 @@ def times_as_noisy(darkness: Darkness) -> NDArray[np.float32]:
             part = slice(n * PART_PX, (n + 1) * PART_PX)
             paper = soft[:, part][is_paper[:, part]]
             if len(paper) > LEAST_PAPER * PART_PX**2:
+                # a standard deviation apart; 1.35 where pale lines cover a quarter of a part
                 low, high = (percentile(paper, percent) for percent in (TWO_BELOW, ONE_BELOW))
                 found[k, n] = high - low
     known = found[found > 0]

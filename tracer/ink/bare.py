@@ -21,6 +21,7 @@ from morfax.motion.long_array import one_in
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly, length_mm
 from morfax.motion.usual import THINNED
+from morfax.tracer.drawing.components import run_at
 from morfax.tracer.drawing.depth import depth_of
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
@@ -65,7 +66,9 @@ class Thinned(NamedTuple):
         """The thinned pixels of the ink that is left for strokes."""
         usual_mm = _usual_mm(sheet, left)
         wide_mm = np.where(left.solid_px > 0, usual_mm, np.maximum(sheet.widths_mm, usual_mm))
-        patch = _patches_at(sheet, graph.rows, graph.columns)
+        patches = sheet.patches
+        run = run_at(patches.row, patches.begin, graph.rows, graph.columns)
+        patch = np.asarray(patches.patch[np.maximum(run, 0)], np.int64)
         return cls(graph.places_mm(sheet.drawing), patch, wide_mm, usual_mm)
 
     def near(self, run: Array) -> Flags:
@@ -97,11 +100,3 @@ def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
         return max(wide_px, 1.0) * sheet.drawing.pitch_mm
     weights = np.where(sheet.are_solid, NOT_ZERO, sheet.lengths_mm)
     return float(np.average(sheet.widths_mm, weights=weights))
-
-
-def _patches_at(sheet: Sheet, rows: Indices, columns: Indices) -> Indices:
-    """The patch of each of some pixels of ink."""
-    patches, width = sheet.patches, sheet.drawing.darkness.shape[1] + 1
-    begins = patches.row.astype(np.int64) * width + patches.begin
-    runs = np.searchsorted(begins, rows * width + columns, side="right") - 1
-    return np.asarray(patches.patch[np.maximum(runs, 0)], np.int64)

@@ -87,11 +87,12 @@ class Balance(NamedTuple):
         return self.followed_mm / self.all_mm
 
 
-def balance(sheet: Sheet, felt: FeltSheet, left: InkLeft, ways: list[Array]) -> Balance:
+def balance(
+    sheet: Sheet, felt: FeltSheet, thinned: Thinned, left: InkLeft, ways: list[Array]
+) -> Balance:
     """What has been followed along some ways (n, 2) mm, and what is left."""
     # 1. which of the thinned pixels are a way's
-    graph = felt.graph
-    thinned, run = Thinned.of(sheet, graph, left), places_along(ways)
+    graph, run = felt.graph, places_along(ways)
     places, patch = thinned.places_mm, thinned.patch
     is_near = thinned.near(run)
     # 2. by patches; a burr of a line's edge is the middle of no line

@@ -21,20 +21,17 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import MIDDLE, ONE_BELOW
 from morfax.tracer.drawing.components import INK, Mask, grouped, strips
-from morfax.tracer.drawing.contrast import ABOVE_NOISE, EVERY_COLUMN
+from morfax.tracer.drawing.contrast import ABOVE_NOISE
 from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
 from morfax.tracer.drawing.deepening import LEAST, shaded
 from morfax.tracer.drawing.depth import depth_at
-from morfax.tracer.drawing.drawing import Darkness, Drawing
-from morfax.tracer.drawing.spots import PART_PX, SPOT_PX, STRIPS, of_pixels, times_as_noisy
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.spots import SPOT_PX, noise_of_spots, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 from morfax.tracer.effort import FEW_PX
 
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
-# of ink's darkness: paler are what shines through a sheet and a JPEG's rims; by trial
-# percentiles one standard deviation apart; ink and its rims are above the middle
 # pixels, and spots of the picture's softness: so near to ink is its own rim
 RIM_PX, SPOTS = 3, 3.0
 LEAST_MM = 5.0  # a shorter pale line is a smudge
@@ -68,7 +65,7 @@ def _pale(drawing: Drawing) -> Mask:
     level = max(LEAST, ABOVE_NOISE * LEFT_OF_NOISE * float(np.nan_to_num(noise.paper)))
     levels = level * times_as_noisy(drawing.darkness)
     if drawing.grainy:  # a slit makes strands of the paper's grain
-        levels[:] = max(level, STANDS_OUT * _noise_of_spots(drawing))
+        levels[:] = max(level, STANDS_OUT * noise_of_spots(drawing.darkness, stains=True))
     rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim_px + 1,) * 2)
     pale = np.zeros(drawing.darkness.shape, np.uint8)
     for top, bottom, rows in strips(
@@ -93,24 +90,6 @@ def _sides(patch: Indices, rows: Indices, columns: Indices, count: int) -> tuple
     return sides[0], sides[1]
 
 
-def _noise_of_spots(drawing: Drawing) -> float:
-    """The standard deviation of the paper behind a spot, as it is seen in some strips of the sheet.
-
-    Grain, stains and what a camera has made of noise are broader than pixels: a spot averages little of it.
-    """
-    every = max(1, drawing.darkness.shape[0] // (STRIPS * PART_PX))
-    seen = list[Darkness]()
-    for top in range(0, drawing.darkness.shape[0], every * PART_PX):
-        strip = drawing.darkness[top : top + PART_PX]
-        soft = cv2.GaussianBlur(strip, (0, 0), SPOT_PX)
-        seen.append(soft[(strip != 0) & (soft < INK)][::EVERY_COLUMN])  # bare paper is made 0
-    paper = np.concatenate(seen)
-    if not len(paper):
-        return 0.0
-    low, middle = np.percentile(paper, (ONE_BELOW, MIDDLE))
-    return float(middle - low)
-
-
 def _lines(mask: Mask, drawing: Drawing) -> Iterator[Pale]:
     """The patches of a mask that are lines."""
     rows, columns = thinned(mask)
@@ -131,7 +110,7 @@ def _lines(mask: Mask, drawing: Drawing) -> Iterator[Pale]:
     # a line of one hard pixel is ink, and pale behind the spot alone
     inked = np.bincount(patch, drawing.darkness[rows, columns] > INK, count)
     are_lines &= inked < MOSTLY * pixels
-    if ABOVE_NOISE * _noise_of_spots(drawing) > LEAST:
+    if ABOVE_NOISE * noise_of_spots(drawing.darkness, stains=True) > LEAST:
         are_lines &= np.hypot(*_sides(patch, rows, columns, count)) > STRETCHED * lengths_px
     for k in np.flatnonzero(are_lines):
         here = np.flatnonzero(patch == k)

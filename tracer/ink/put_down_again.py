@@ -1,6 +1,6 @@
 """Put down again: the head on the parts of a sheet's ink along which no stroke has run.
 
-Signals: the sheet as it was felt and its strokes in; further strokes out.
+Signals: the sheet as it was felt, its thinned ink and its strokes in; further strokes out.
 
     ════════════╗               two lines run together and part; what was felt of both was the stretch's, and
     ════════════╩────────       the rest of it had no stroke: ink that is left is one line's, as wide as it is
@@ -23,11 +23,9 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import direction, left_of_headings
-from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.bare import Bare, Thinned, places_along
 from morfax.tracer.ink.felt import judged, usual_width_mm, whole
-from morfax.tracer.ink.left_out import InkLeft
 from morfax.tracer.ink.pieces import NOTHING, Piece
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet, with_width
@@ -49,15 +47,14 @@ BESIDE_COS = 0.5  # ... and there it turns by no more than 60 degrees
 
 
 def put_down_again(
-    sheet: Sheet, felt: FeltSheet, left: InkLeft, strokes: list[InkStroke], settings: Settings
+    felt: FeltSheet, thinned: Thinned, strokes: list[InkStroke], settings: Settings
 ) -> Iterator[InkStroke]:
     """The strokes along what ink the strokes have left."""
     if not strokes:
         return
-    graph, run = felt.graph, places_along(stroke.way_mm for stroke in strokes)
-    thinned = Thinned.of(sheet, graph, left)
+    run = places_along(stroke.way_mm for stroke in strokes)
     there = _There(felt, run, Neighbours(run), settings)
-    for part in thinned.bare(graph, thinned.near(run)):
+    for part in thinned.bare(felt.graph, thinned.near(run)):
         if (stroke := there.stroke(part)) is not None:
             yield stroke
 

@@ -22,6 +22,7 @@ from morfax.tracer.drawing.shapes_among_lines import has_lines
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.bare import Thinned
 from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import InkLeft, ink_left
@@ -81,7 +82,8 @@ def _of_strokes(
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt, _told_of(progress)), settings, progress)
     strokes = struck_off(sheet.drawing, _long_enough(_kept(_mended(loops, run))))
-    strokes += put_down_again(sheet, felt, left, strokes, settings)
+    thinned = Thinned.of(sheet, felt.graph, left)
+    strokes += put_down_again(felt, thinned, strokes, settings)
     felt = felt.without_cells()
     give_back()
     if not strokes:
@@ -101,7 +103,7 @@ def _of_strokes(
     off = strokes_off_ink(left.drawing, lines, settings.gap_mm)
     broad += [place for place in off if not is_about(place, beside, lines)]
     left_over = sorted((*beside, *broad), key=lambda place: -place.length_mm)
-    ink = balance(sheet, felt, left, [line.xy_mm for line in lines])
+    ink = balance(sheet, felt, thinned, left, [line.xy_mm for line in lines])
     in_order = tuple(_in_order(lines))
     return Trace(
         in_order, Operator(), left_out_mm=ink.left_mm, ink=ink, unexplained=tuple(left_over)

@@ -14,6 +14,7 @@ from morfax.jobs.tracing.trace_figures import ink as figures_of
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.bare import Thinned
 from morfax.tracer.ink.both_lines import strands
 from morfax.tracer.ink.felt import FEWEST_STATIONS
 from morfax.tracer.ink.ledger import balance
@@ -140,7 +141,8 @@ def test_the_ledger_counts_the_line_that_no_second_stroke_follows() -> None:
     left = ink_left(drawing.sheet)
     felt = FeltSheet.of(left.drawing, Settings(), left.ink)
     ways = [polyline((10, 20), (50, 20)), CLEAR]  # once through the middle of both
-    counted = balance(drawing.sheet, felt, left, ways)
+    thinned = Thinned.of(drawing.sheet, felt.graph, left)
+    counted = balance(drawing.sheet, felt, thinned, left, ways)
     assert counted.followed_share < 0.9
     ((x, y, long_mm),) = counted.single
     assert abs(x - 30) < 12 and abs(y - 20) < 1 and 10 < long_mm < LONG_MM

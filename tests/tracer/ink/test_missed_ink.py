@@ -9,6 +9,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.bare import Thinned
 from morfax.tracer.ink.ledger import Balance, balance
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.missed_ink import Missed, missed_ink
@@ -68,7 +69,8 @@ def ledger(*ways: Points) -> Balance:
     sheet = inked(UPPER, LOWER, BAR, width_mm=WIDTH_MM, seed=1).sheet
     left = ink_left(sheet)
     felt = FeltSheet.of(left.drawing, Settings(), left.ink, None, are_strokes=True)
-    return balance(sheet, felt, left, [evenly(way, STEP_MM) for way in ways])
+    thinned = Thinned.of(sheet, felt.graph, left)
+    return balance(sheet, felt, thinned, left, [evenly(way, STEP_MM) for way in ways])
 
 
 def test_the_ledger_counts_missed_ink_as_left_and_lists_its_place() -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.bare import Thinned
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.put_down_again import put_down_again
 from morfax.tracer.ink.stretches import FeltSheet
@@ -27,7 +28,8 @@ def put_down(lines: list[Points], ways: list[Points]) -> list[InkStroke]:
         InkStroke(way := evenly(points, STEP_MM), len(way) * STEP_MM, False, WIDTH_MM)
         for points in ways
     ]
-    return list(put_down_again(sheet, felt, left, strokes, Settings()))
+    thinned = Thinned.of(sheet, felt.graph, left)
+    return list(put_down_again(felt, thinned, strokes, Settings()))
 
 
 def test_a_line_that_was_left_is_followed_from_the_line_it_leaves_to_its_end() -> None:
