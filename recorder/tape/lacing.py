@@ -125,14 +125,14 @@ def _said(symbols, bits, now, turns):  # type: ignore[no-untyped-def]
         turns[i] = bits[symbols[i] + 1] - now[i]
 
 
-@njit(cache=True, nogil=True, _nrt=False)
+@njit(cache=True, nogil=True, _nrt=False, fastmath={"contract"})
 def _add(column, wave, share, now, turns, out):  # type: ignore[no-untyped-def]
     """A column with the check signal, full scale 1."""
     for i in range(len(column)):
         out[i] = column[i] + wave[i] * (now[i] + turns[i] * share[i])
 
 
-@njit(cache=True, nogil=True, _nrt=False)
+@njit(cache=True, nogil=True, _nrt=False, fastmath={"contract"})
 def _add_in_16_bit(column, wave, share, now, turns, out):  # type: ignore[no-untyped-def]
     """A column with the check signal, in steps of 16 bit."""
     for i in range(len(column)):
