@@ -113,19 +113,17 @@ def held_bytes() -> int:
 
 
 def test_the_parent_holds_no_more_of_many_drawings_than_of_few(tmp_path: Path) -> None:
-    held = dict[int, int]()
+    held = list[int]()
     tracemalloc.start(8)
     try:
-        for count, _ in enumerate(crew_of(tmp_path).rows(f"well-{k}" for k in range(1801))):
-            if count in (
-                800,
-                1800,
-            ):  # what is made once and kept is all there after some hundred
-                held[count] = held_bytes()
+        for count, _ in enumerate(crew_of(tmp_path).rows(f"well-{k}" for k in range(2801))):
+            if count in (800, 1800, 2800):
+                held.append(held_bytes())
     finally:
         tracemalloc.stop()
+    # what is made once and kept, 11 000 bytes now and then, may come after 800 as well, but only once
     # a name of each drawing alone would be 50 000 bytes more
-    assert held[1800] - held[800] < 10_000
+    assert min(held[1] - held[0], held[2] - held[1]) < 10_000
 
 
 def test_names_are_asked_for_as_workers_are_free(tmp_path: Path) -> None:

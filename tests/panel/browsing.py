@@ -132,9 +132,13 @@ def settled(page: Any, selector: str) -> dict[str, float]:
 
 
 def ran(page: Any) -> None:
-    """Wait until a run is done."""
+    """Wait until a run is done; one without a result fails with the words of the page."""
     page.wait_for_selector("#run-button:not([disabled])", timeout=RUN_MS)
-    page.wait_for_selector("#result-card:not([hidden])", timeout=RUN_MS)
+    try:
+        page.wait_for_selector("#result-card:not([hidden])")
+    except api.TimeoutError:
+        told = page.inner_text("#messages")
+        pytest.fail(f"the run has no result; the page says {told!r}")
 
 
 def on_screen(page: Any, x_px: float, y_px: float) -> tuple[float, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,9 @@ from morfax.tracer.following.knots import Memory, remembering
 from morfax.tracer.head import watched
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.following.test_knots import COMB, START, same
+from tests.tracer.inked import inked, polyline
 
 
 class CutOff(Exception):
@@ -42,18 +45,23 @@ class Cuts:
         pass
 
 
-def cut_off(folder: Path, monkeypatch: pytest.MonkeyPatch) -> KeptKnots:
-    """A run that was cut off after 40 mm, with its knots in a folder."""
+def cut_off(
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    run: Callable[[], object] = lambda: trace(COMB, START),
+    after_mm: float = 40.0,
+) -> KeptKnots:
+    """A run that was cut off after so much of a line, with its knots in a folder."""
     monkeypatch.setattr("morfax.panel.kept_knots.EVERY_S", 0.0)
-    monkeypatch.setattr("morfax.panel.kept_knots.SHARE", 1.0)
+    monkeypatch.setattr("morfax.panel.kept_knots.SHARE", np.inf)
     kept = KeptKnots(folder)
     kept.begin("as set")
     with (
         pytest.raises(CutOff),
         remembering(Memory(kept.keep)),
-        watched.watching(Cuts(40.0)),
+        watched.watching(Cuts(after_mm)),
     ):
-        trace(COMB, START)
+        run()
     return kept
 
 
@@ -71,6 +79,23 @@ def test_a_run_that_was_cut_off_goes_on_and_comes_to_the_same(
     assert same(went_on, trace(COMB, START))
     again.end()
     assert not (tmp_path / "knots").exists()
+
+
+def test_a_line_beside_one_that_was_cut_goes_on_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plate = inked(  # the hole of 36 mm is cut first, and the head goes onto its ink no more
+        polyline((6, 6), (60, 6), (60, 30), (6, 30), (6, 6)),
+        polyline((20, 14), (30, 14), (30, 22), (20, 22), (20, 14)),
+        seed=6,
+    )
+    cut_off(tmp_path / "knots", monkeypatch, lambda: trace_lines(plate), 100.0)
+    again, memory = KeptKnots(tmp_path / "knots"), Memory()
+    assert again.take_up("as set", memory) > 90.0  # mm; the outline's, and the hole's
+    with remembering(memory):
+        went_on = trace_lines(plate)
+    assert memory.replayed_mm > 90.0
+    assert same(went_on, trace_lines(plate))
 
 
 def test_what_is_kept_calls_nothing_when_it_is_read(

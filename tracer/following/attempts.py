@@ -124,9 +124,9 @@ class Attempts:
             return None, None
         view, place = stance.view, tuple(stance.place_mm.tolist())
         cells = view.cells
-        seen = view.width_mm, view.usual_mm, view.level, cells.shape, cells.beyond
+        seen = view.width_mm, view.usual_mm, view.level, cells.shape, cells.beyond, view.others
         start = place, stance.heading_rad, stance.reference_mm, seen, repr(self.settings)
-        return memory.head(self.drawing, start, turns, cells.darkness)
+        return memory.head(self.drawing, start, turns, view)
 
     def asked_for(
         self,

@@ -25,7 +25,7 @@ from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import cv2
 import numpy as np
@@ -38,6 +38,7 @@ from morfax.tracer.drawing.tiles import Tiles
 if TYPE_CHECKING:
     from morfax.tracer.following.follower import Follower
     from morfax.tracer.following.ways_out import Turns
+    from morfax.tracer.sensing.view import View
 
 APART_MM = 6.0  # of travel between two knots: to keep them takes 3 % of the head's time
 MOST_KNOTS = 64  # of a run, some 60 kB each; beyond, every second one is dropped
@@ -83,14 +84,15 @@ class _Run:
         self.knots.append(_Knot(travel_mm, copied(head), head.carriage.trail.places()))
         return True
 
-    def on(self, darkness: Darkness, count: int) -> list[_Knot]:
-        """The first knots, with heads that see other ink, which is the same up to there."""
-        if darkness is self.darkness:
-            return self.knots[:count]
-        return [
-            replace(knot, head=copied(knot.head, {id(self.darkness): darkness}))
-            for knot in self.knots[:count]
-        ]
+    def on(self, view: View, count: int) -> list[_Knot]:
+        """The first knots, with heads that look at another sheet, which is the same up to there."""
+        knots = self.knots[:count]
+        before = self.darkness, knots[-1].head.view.others
+        now = view.cells.darkness, view.others
+        changed = {id(old): new for old, new in zip(before, now, strict=True) if old is not new}
+        if not changed:
+            return knots
+        return [replace(knot, head=copied(knot.head, changed)) for knot in knots]
 
     def cut_off(self, changed_mm: Array) -> None:
         """Forget the knots from where the head came near to changed ink: boxes (n, 4) mm, x, y to x, y."""
@@ -133,15 +135,15 @@ class Memory:
         self._cut_off[key] = _Run(at, head.view.cells.darkness, [knot])
 
     def head(
-        self, drawing: Drawing, start: Hashable, turns: Turns, darkness: Darkness
+        self, drawing: Drawing, start: Hashable, turns: Turns, view: View
     ) -> tuple[Follower | None, Callable[[Follower], None]]:
         """The head of an earlier run at the last knot that is the same, if there is one; and what keeps the
-        knots of the run that begins now. `darkness` is what the head sees.
+        knots of the run that begins now. `view` is what the head sees.
         """
         self._lay_on(drawing)
         key = start, turns._replace(at=())
         before = self._cut_off.pop(key, None) or self._runs.pop(key, None)
-        run = _Run(turns.at, darkness)
+        run = _Run(turns.at, view.cells.darkness)
         self._runs[key] = run
         while len(self._runs) > MOST_RUNS:
             del self._runs[next(iter(self._runs))]
@@ -153,7 +155,7 @@ class Memory:
         count = 0 if before is None else before.last_before(turns.at)
         if before is None or not count:
             return None, keep
-        run.knots, run.apart_mm = before.on(darkness, count), before.apart_mm
+        run.knots, run.apart_mm = before.on(view, count), before.apart_mm
         head = copied(run.knots[-1].head)
         head.take_up(turns)
         self.replayed_mm += head.carriage.travel_mm
@@ -218,9 +220,9 @@ def _reach_mm(head: Follower) -> float:
     return turns_mm + REACHES * view.leg_mm + head.carriage.tuning.guard_lead_mm
 
 
-def copied(head: Follower, other: dict[int, Darkness] | None = None) -> Follower:
+def copied(head: Follower, other: dict[int, Any] | None = None) -> Follower:
     """A head that can be moved without moving the first; what it sees and where it was are shared, but for
-    `other` ink by the id of the first's.
+    `other` ink, and ink of other lines, by the id of the first's.
     """
     shared = [head.view.cells.darkness, *head.carriage.shared()]
     return copy.deepcopy(head, {**{id(each): each for each in shared}, **(other or {})})

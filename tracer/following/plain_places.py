@@ -30,7 +30,7 @@ from morfax.tracer.sensing.parabola import bend_at
 from morfax.tracer.sensing.photocell import LEVEL, Cells, darkness_at, ring
 from morfax.tracer.sensing.ray import edges
 from morfax.tracer.sensing.scout import felt, leg_mm
-from morfax.tracer.sensing.view import View
+from morfax.tracer.sensing.view import OtherInk, View
 
 # All limits below were chosen by trial on the test drawings.
 APERTURE = 0.3  # of the line's width, within bounds that a scan's noise and a corner set
@@ -61,8 +61,7 @@ def view_of(sheet: Sheet, aperture_mm: float | None, width_mm: float) -> View:
         cells = photocell.behind_aperture(sheet.drawing, aperture_mm, window=sheet.window)
         sheet.seen[aperture_mm] = cells
     cells, drawing = sheet.seen[aperture_mm], sheet.drawing
-    # a function: a head that is copied takes no copy of the sheet along
-    others = (lambda place: sheet.patch_at(place) in sheet.taken) if sheet.taken else None
+    others = OtherInk(sheet.taken, sheet.patch_at) if sheet.taken else None
     return View(cells, width_mm, parted=drawing.finer, grainy=drawing.grainy, others=others)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -39,6 +39,27 @@ GRAIN_STATIONS = 20
 STEP_WIDTHS = 0.1  # between the places that stand for a way where it is held against another
 
 
+@dataclass(frozen=True)
+class OtherInk:
+    """The ink of other lines, onto which the head does not go: patches of the sheet by their numbers, and
+    what finds the patch at a place. A head that is copied or kept on disk takes no copy of the sheet along.
+    """
+
+    patches: frozenset[int]
+    patch_at: Callable[[Array], int] | None = field(default=None, compare=False, repr=False)
+
+    def holds(self, place_mm: Array) -> bool:
+        """Whether the ink at a place (2,) mm of the sheet is that of another line."""
+        assert self.patch_at is not None
+        return self.patch_at(place_mm) in self.patches
+
+    def __deepcopy__(self, memo: dict[int, object]) -> OtherInk:
+        return self
+
+    def __getstate__(self) -> dict[str, object]:
+        return {"patches": self.patches, "patch_at": None}
+
+
 @dataclass(frozen=True, slots=True)
 class View:
     """What the head knows of the line it is on: what the cells see, and the line's width.
@@ -46,8 +67,8 @@ class View:
     `usual_mm` is the line's width as a rule, where the width here differs. What the head sees is `enlarged`
     times as large as on the drawing. `on_edge`: it is the edge of a filled shape, dark to one side, and the
     width is that of a line which would be as fine. `parted`: so many of the sheet's pixels lie side by side
-    in one of the scan's. `grainy`: the ink is that of a pencil or a dry pen, seen through a slit. `others`
-    tells of a place on the sheet whether its ink is that of another line.
+    in one of the scan's. `grainy`: the ink is that of a pencil or a dry pen, seen through a slit. `others` is
+    the ink of other lines.
     """
 
     cells: Cells
@@ -57,7 +78,7 @@ class View:
     on_edge: bool = False
     parted: int = 1
     grainy: bool = False
-    others: Callable[[Array], bool] | None = None
+    others: OtherInk | None = None
 
     @property
     def pitch_mm(self) -> float:
@@ -120,7 +141,7 @@ class View:
 
     def is_others(self, place: Array) -> bool:
         """Whether the ink at a place is that of another line, onto which the head does not go."""
-        return self.others is not None and self.others(place / self.enlarged)
+        return self.others is not None and self.others.holds(place / self.enlarged)
 
     def edges(self, place: Array, heading: float, reach_mm: float) -> tuple[float, float]:
         """Where the line under a place ends to the right and to the left of a heading, mm (see `ray`)."""
