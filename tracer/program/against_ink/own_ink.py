@@ -39,9 +39,6 @@ from morfax.tracer.program.against_ink.surely_on_ink import may_be_over
 
 # Limits chosen by trial on 625 right ways of parts, holes, slots, notches and tongues, none of which comes
 # above them. Of 25 wrong ones 12 do, and of those that are more than 0.4 mm off all but two.
-OVER = 0.05
-MOST_SPECKS = 2.2  # the same in pixels: so much is left by specks, which a scan has
-OF_MOST = 6.0  # times what is over on most of the line
 MOST = 60.0  # percent of the line
 REACH_WIDTHS = 1.25  # from a way: ink further away is another line's
 OF_WIDTH = (0.8, 0.9, 1.0, 1.1, 1.25)  # of the line's: pens that are tried
@@ -54,9 +51,30 @@ TILE_PX = 128  # of what is judged in one
 QUICK_PX = 256  # of what is looked through first
 
 
+class OverLimits(NamedTuple):
+    """What may be over on a right way: so much, as much in squared pixels, and so many times what is over on
+    most of the line.
+    """
+
+    over: float
+    specks_px2: float
+    of_most: float
+
+    def of(self, half_px: Array) -> Array:
+        """The limits for lines of half a width in pixels."""
+        return np.maximum(self.over, self.specks_px2 / (2 * half_px) ** 2)
+
+
+SURE = OverLimits(0.05, specks_px2=2.2, of_most=6.0)  # specks, which a scan has, leave so much
+DOUBT = OverLimits(0.015, specks_px2=0.66, of_most=1.8)  # it may be wrong
+NEARLY = OverLimits(
+    0.0075, specks_px2=0.0, of_most=1.8
+)  # a corner cut by a tenth of a width is over by more
+
+
 class BesideInk(NamedTuple):
     """A stretch of a way beside its ink: the place furthest beside it, how long it is, mm, and whether
-    it is above the whole limit.
+    that is sure.
     """
 
     place_mm: tuple[float, float]
@@ -93,37 +111,34 @@ class _Tiles(NamedTuple):
 
 
 def beside(
-    drawing: Drawing, lines: Sequence[Line], of_limit: float = 1.0
+    drawing: Drawing, lines: Sequence[Line], limits: OverLimits = SURE
 ) -> Iterator[BesideInk]:
-    """Where lines that closed or ended run beside their ink, by so much of the limit; nothing where no pen
+    """Where lines that closed or ended run beside their ink, by more than some limits; nothing where no pen
     can be told.
     """
     if not drawing.noise.softness_px > 0 or drawing.grainy:
         return
     ways = _ways(drawing, lines)
-    doubtful = _doubtful(drawing, ways, of_limit) if ways.judged.any() else ways.judged
-    judged = list(_judged(drawing, ways, of_limit, doubtful)) if doubtful.any() else []
+    doubtful = _doubtful(drawing, ways, limits) if ways.judged.any() else ways.judged
+    judged = list(_judged(drawing, ways, limits, doubtful)) if doubtful.any() else []
     if not judged:
         return
     line, station, over = (np.concatenate(column) for column in zip(*judged, strict=True))
     for number in np.flatnonzero(doubtful):
         own = np.flatnonzero(line == number)
         order = own[np.argsort(station[own], kind="stable")]
-        least = float(_least(ways.half_px[number]))
-        if len(order):
-            least = max(least, OF_MOST * percentile(over[order], MOST))
-        for first, last in _stretches(over[order] > of_limit * least):
+        usual = percentile(over[order], MOST) if len(order) else 0.0
+        least, sure = (
+            max(float(each.of(ways.half_px[number])), each.of_most * usual)
+            for each in (limits, SURE)
+        )
+        for first, last in _stretches(over[order] > least):
             stretch = order[first:last]
             worst = stretch[int(np.argmax(over[stretch]))]
             places = 1 + station[stretch[-1]] - station[stretch[0]]
             place_mm = _mm(drawing, ways.places_px[station[worst]])
             long_mm = float(places * PLACES_PX * drawing.pitch_mm)
-            yield BesideInk(place_mm, long_mm, bool(over[worst] > least))
-
-
-def _least(half_px: Array) -> Array:
-    """What is over by no more is noise or specks; of lines of half a width in pixels."""
-    return np.maximum(OVER, MOST_SPECKS / (2 * half_px) ** 2)
+            yield BesideInk(place_mm, long_mm, bool(over[worst] > sure))
 
 
 def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
@@ -139,25 +154,25 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
     )
 
 
-def _doubtful(drawing: Drawing, ways: Ways, of_limit: float) -> NDArray[np.bool_]:
+def _doubtful(drawing: Drawing, ways: Ways, limits: OverLimits) -> NDArray[np.bool_]:
     """Which lines are not surely on their ink: most are, and need not be judged."""
     doubtful = np.zeros(len(ways.judged), bool)
-    limits = of_limit * _least(ways.half_px)
-    pen = _pen(drawing, ways, of_limit * OVER)
+    least = limits.of(ways.half_px)
+    pen = _pen(drawing, ways, limits.over)
     for part in parts(drawing, ways, _are_stations(ways, ways.judged), QUICK_PX, pen):
         asked = ~doubtful[ways.line[part.stations]]
         line = ways.line[part.stations[asked]]
         is_over, at = np.empty(len(line), bool), part.at[asked]
-        may_be_over(part.seen, part.ways, at, limits[line], part.pen, part.room, is_over)
+        may_be_over(part.seen, part.ways, at, least[line], part.pen, part.room, is_over)
         doubtful[line[is_over]] = True
     return doubtful
 
 
 def _judged(
-    drawing: Drawing, ways: Ways, of_limit: float, which: NDArray[np.bool_]
+    drawing: Drawing, ways: Ways, limits: OverLimits, which: NDArray[np.bool_]
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
     """The stations of some lines, tile by tile: line, number of the place, and what is over."""
-    pen = _pen(drawing, ways, of_limit * OVER)
+    pen = _pen(drawing, ways, limits.over)
     for part in parts(drawing, ways, _are_stations(ways, which), TILE_PX, pen):
         over = over_at(part.seen, part.ways, part.at, part.pen, part.room)
         yield ways.line[part.stations], part.stations, over

@@ -38,7 +38,7 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER, TIP_RAD
-from morfax.tracer.program.against_ink.own_ink import beside
+from morfax.tracer.program.against_ink.own_ink import SURE, OverLimits, beside
 from morfax.tracer.program.against_ink.pointed import points_of
 from morfax.tracer.program.against_ink.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
@@ -81,11 +81,11 @@ class Unexplained(NamedTuple):
 
 
 def unexplained(
-    setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
+    setup: Setup, lines: Sequence[Line], limits: OverLimits = SURE
 ) -> tuple[Unexplained, ...]:
     """What some lines leave unexplained, the longest first: of closed ones all, of lines that ran into
     themselves only ink, for there the head may have turned off its line, of open ones only where they run
-    beside their ink, from so much of the limit on.
+    beside their ink, by more than some limits.
 
     Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
     """
@@ -95,7 +95,7 @@ def unexplained(
     # ink that was missed by little may lie in a bay that was cut short
     reach_mm = (0.5 + CLEAR_WIDTHS) * max(line.width_mm for line in lines)
     other = [place for place in found if place.kind != "ink" or place.length_mm > reach_mm]
-    bays = list(_beside_ink(sheet.drawing, lines, other, of_limit))
+    bays = list(_beside_ink(sheet.drawing, lines, other, limits))
     sure = [place for place in bays if place.is_sure]
     found = [place for place in found if not is_about(place, sure, lines)] + bays
     return tuple(sorted(found, key=lambda place: -place.length_mm))
@@ -114,18 +114,18 @@ def _of_closed(setup: Setup, lines: Sequence[Line]) -> list[Unexplained]:
 
 
 def beside_ink(
-    setup: Setup, lines: Sequence[Line], of_limit: float = 1.0
+    setup: Setup, lines: Sequence[Line], limits: OverLimits = SURE
 ) -> tuple[Unexplained, ...]:
-    """Where lines run beside their ink, from so much of the limit on; the longest first."""
-    found = _beside_ink(setup.sheet.drawing, lines, (), of_limit) if lines else ()
+    """Where lines run beside their ink, by more than some limits; the longest first."""
+    found = _beside_ink(setup.sheet.drawing, lines, (), limits) if lines else ()
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
 def _beside_ink(
-    drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained], of_limit: float
+    drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained], limits: OverLimits
 ) -> Iterator[Unexplained]:
     """Stretches of lines beside their ink, but for those about what was found otherwise."""
-    for place_mm, long_mm, is_sure in beside(drawing, lines, of_limit):
+    for place_mm, long_mm, is_sure in beside(drawing, lines, limits):
         place = Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
         if not is_about(place, found, lines):
             yield place

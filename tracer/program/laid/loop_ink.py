@@ -19,7 +19,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.limits import FADES
-from morfax.tracer.program.against_ink.own_ink import MOST_SPECKS, OVER
+from morfax.tracer.program.against_ink.own_ink import SURE
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.compass import Core
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -65,7 +65,7 @@ def is_drawn(ink: SeenInk, core: Core) -> bool:
     that goes round but for its last side is no loop.
     """
     paper = _most_about(ink, core, ABOUT_STATION, lambda drawn: drawn - ink.darkness)
-    return paper < max(OVER, MOST_SPECKS * ink.area_mm2 / ink.width_mm**2)
+    return paper < max(SURE.over, SURE.specks_px2 * ink.area_mm2 / ink.width_mm**2)
 
 
 def leaves_none(ink: SeenInk, core: Core) -> bool:

@@ -18,6 +18,7 @@ from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.laid import narrow_bays
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import REACH
+from morfax.tracer.program.laid.way_ink import BayInk
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed, trace
@@ -159,5 +160,5 @@ def test_of_the_ways_within_the_rims_the_one_counts_that_explains_the_ink_best(
     monkeypatch.setattr(narrow_bays._Bays, "_gain", lambda *_: next(told))
     bays = narrow_bays._Bays(Setup(drawing.sheet), line, [line], ())
     suspect = narrow_bays.Suspect(0, len(own) - 1, np.empty((0, 2)), True)
-    bay = bays._rim_bay(narrow_bays.BayInk(0, len(own) - 1, own, ink), 0.05, suspect)
+    bay = bays._rim_bay(BayInk(0, len(own) - 1, own, ink), suspect)
     assert (None if bay is None else bay.gain) == best

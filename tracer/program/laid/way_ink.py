@@ -1,0 +1,104 @@
+"""The ink about a stretch of a way, and the folding rule that explains it best.
+
+Signals: the sheet, a line and all lines in boxes, and a stretch of the line's way in; the ink about it, in
+which the rest of the way and all other lines are known, and the best of some rules, out.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha1
+from typing import NamedTuple
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.following.line import Line
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
+from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH, rest_of
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.tangles import folding_rule, pen
+from morfax.tracer.tangles.folding_rule import Rule
+from morfax.tracer.tangles.seen_ink import SeenInk
+
+LONGEST = 80.0  # widths of the line: a longer stretch is no bay; by trial on plates with notches and tongues
+
+
+class BayInk(NamedTuple):
+    """A stretch of a way from one of its places to another, as places (n, 2) mm, and the ink about it."""
+
+    first: int
+    last: int
+    own: Array
+    ink: SeenInk
+
+
+@dataclass(frozen=True)
+class WayInk:
+    """The way of one of some lines, and the ink about it."""
+
+    setup: Setup
+    line: Line
+    lines: BoxedLines
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the line comes round."""
+        return self.line.ending == "closed"
+
+    @property
+    def step_mm(self) -> float:
+        """The distance of the way's places."""
+        return STEP_WIDTHS * self.line.width_mm
+
+    @cached_property
+    def way(self) -> Array:
+        """Places (n, 2) mm along the line."""
+        line = self.line
+        return evenly(line.loop_mm if self.is_closed else line.places_mm, self.step_mm)
+
+    @property
+    def round_mm(self) -> float:
+        """How long the way is."""
+        return len(self.way) * self.step_mm
+
+    def about(self, first: int, last: int, beyond_mm: Array) -> BayInk | None:
+        """The ink about a stretch from one place to another and about some places (n, 2) mm beside it; None
+        if the stretch is too long, or that ink goes on.
+        """
+        way, long = self.way, last - first
+        if long > OF_LOOP * len(way) or long * self.step_mm > LONGEST * self.line.width_mm:
+            return None
+        if not self.is_closed and not 0 < first < last < len(way) - 1:
+            return None
+        own = way[np.arange(first, last + 1) % len(way)]
+        about = np.vstack([own, beyond_mm])
+        ink = self._ink(about, rest_of(way, first, last, self.is_closed))
+        return None if goes_on(ink, about, REACH) else BayInk(first, last, own, ink)
+
+    def explained(self, ink: SeenInk, rules: list[Rule]) -> Rule | None:
+        """The rule that explains an ink best. A bay is looked at again when another was mended; the same
+        rules are fitted to the same ink once.
+        """
+        kept, key = self.setup.rules, sha1(pickle.dumps((ink, rules))).digest()
+        if key not in kept:
+            kept[key] = folding_rule.explained(ink, rules)
+        return kept[key]
+
+    def _ink(self, about: Array, rest: Sequence[Array]) -> SeenInk:
+        """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
+        ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm, REACH)
+        reach_mm = REACH * self.line.width_mm
+        low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
+        known_mm = np.min([pen.away_from(ink.places_mm, part) for part in rest], axis=0)
+        for line in self.lines.reaching(low, high, self.line):
+            known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, line.places_mm))
+        return ink._replace(known_mm=known_mm)
