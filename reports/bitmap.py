@@ -135,7 +135,9 @@ class _Field:
         corners = np.array([[left, high], [right, low]])
         ends = np.round(self._px(corners) + 0.5).astype(int)
         (first, top), (last, bottom) = ends
-        if last <= first or bottom <= top:
+        rows, columns = self.canvas.shape[:2]
+        is_beside = last <= 0 or bottom <= 0 or first >= columns or top >= rows
+        if last <= first or bottom <= top or is_beside:
             return
         is_smaller = last - first < ground.grey.shape[1]
         how = cv2.INTER_AREA if is_smaller else cv2.INTER_NEAREST
@@ -145,7 +147,8 @@ class _Field:
         to = self.canvas[max(top, 0) : bottom, max(first, 0) : last]
         high_px, wide_px = to.shape[:2]
         above, before = max(-top, 0), max(-first, 0)
-        to[:] = grey[above : above + high_px, before : before + wide_px, None]
+        part = grey[above : above + high_px, before : before + wide_px]
+        to[:] = cv2.cvtColor(part, cv2.COLOR_GRAY2BGR)
 
     def _line(self, at_px: Array, line: Polyline) -> None:
         """A line with its gaps."""

@@ -18,6 +18,7 @@ from functools import cache
 from pathlib import Path as FilePath
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
@@ -115,7 +116,7 @@ def written(
     scale: Colours | None,
 ) -> NDArray[np.uint8]:
     """Write all words onto a page (rows, columns, BGR); gives the page."""
-    image = Image.fromarray(np.ascontiguousarray(pixels[:, :, ::-1]))
+    image = Image.fromarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2RGB))
     pen = _Pen(image, page)
     for box, plate in plates:
         pen.axes(box, plate)
@@ -123,7 +124,7 @@ def written(
         pen.words(box, plate)
     if scale is not None and page.bar is not None:
         pen.scale(page.bar, scale)
-    return np.ascontiguousarray(np.asarray(image)[:, :, ::-1])
+    return np.asarray(cv2.cvtColor(np.asarray(image), cv2.COLOR_RGB2BGR), np.uint8)
 
 
 class _Pen:

@@ -234,11 +234,13 @@ class CheckReader:
         """Read the next frame of all tracks."""
         self._put_right()
         held = (self._turns, self._zero_turns)
-        quiet = self._quiet.read(self._points, self._theta)
+        quiet = self._quiet.read(self._points, self._theta, self._number)
         if quiet is not None:
             self._clock_lost = False
             rows = self._rows_of(quiet.frames)
-            return frame_report(self._number, rows, quiet.said, quiet.figures)
+            return frame_report(
+                self._number, rows, quiet.said, quiet.figures, is_calm=quiet.is_calm
+            )
         gates = self._quiet.gates
         said = self._erasures.read(gates, self._number)
         is_read = np.array([frame is not None for frame in said])
@@ -251,8 +253,8 @@ class CheckReader:
         rows = self._rows(self._theta + MOMENTS)
         read = tuple(one if sure else None for one, sure in zip(said, is_read, strict=True))
         weak = [self._rows(self._theta + CYCLES_PER_SYMBOL * at) for at in self._erasures.weak]
-        damaged = tuple(self._erasures.damaged)
-        return frame_report(self._number, rows, read, figures.tolist(), damaged, weak)
+        hurt = tuple(self._erasures.damaged), weak
+        return frame_report(self._number, rows, read, figures.tolist(), hurt=hurt)
 
     def _put_right(self) -> None:
         """Put right what was miscounted of the reference while it failed, at the first frame behind that."""

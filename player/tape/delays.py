@@ -64,12 +64,18 @@ class Delay:
         """The last row at which the delay was told."""
         return self._rows[-1] if self._rows else 0.0
 
-    def add(self, rows: list[float], delays_s: list[float], error_s: float) -> None:
-        """Take the next rows at which the delay is told, with the standard error of each."""
+    def add(
+        self, rows: list[float], delays_s: list[float], error_s: float, *, is_calm: bool = False
+    ) -> None:
+        """Take the next rows at which the delay is told, with the standard error of each.
+
+        `is_calm`: none is above the dead zone.
+        """
         self._errors_s.append(error_s)
         self._rows += rows
         self._told += delays_s
-        self.moves = self.moves or max(map(abs, delays_s)) > DEAD_ZONE_S
+        if not (self.moves or is_calm):
+            self.moves = max(map(abs, delays_s)) > DEAD_ZONE_S
         settled = len(self._told) - HALF if len(self._told) >= WINDOW else 0
         if not self.moves:
             self._used += [0.0] * (settled - len(self._used))

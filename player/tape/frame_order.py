@@ -45,6 +45,9 @@ class FrameOrder:
         self._told: list[list[float]] = [[] for _ in range(fmt.tracks)]  # delays of a frame, s
         self._missing, self._is_last = [0] * fmt.tracks, [False] * fmt.tracks
         self._number: int | None = None  # of the next frame
+        self._is_calm = (
+            True  # whether the frames so far leave nothing to hold the next one against
+        )
 
     @property
     def ended(self) -> bool:
@@ -55,6 +58,11 @@ class FrameOrder:
         """Take the next frame; the fault of the first track in which it is not as it should be."""
         expected = report.number if self._number is None else self._number
         self._number = report.number + 1
+        was_calm, self._is_calm = self._is_calm, report.is_calm
+        if was_calm and report.is_calm and expected == report.number:
+            self._missing, self._told = [0] * len(report.said), report.delay_s
+            self._is_last = [said is not None and said.last for said in report.said]
+            return None
         found: Fault | None = None
         for track, said in enumerate(report.said):
             if said is None:

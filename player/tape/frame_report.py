@@ -19,7 +19,8 @@ class FrameReport(NamedTuple):
     reference, `delay_s` (tracks, parts) against track 1, and that of track 1 against its own carrier; nan
     where a track says nothing. `error_s` is the standard error of each told delay of a track, and `swing_s`
     how far a delay swings within its parts, RMS; `damaged` are tracks that say nothing though their level is
-    right, `weak_rows` where each is weak.
+    right, `weak_rows` where each is weak. `is_calm`: each track says that it is itself and this frame, is in
+    time, does not swing, and has no delay above the dead zone.
     """
 
     number: int
@@ -33,6 +34,7 @@ class FrameReport(NamedTuple):
     swing_s: list[float]
     damaged: tuple[int, ...]
     weak_rows: list[list[float]]
+    is_calm: bool = False
 
 
 def frame_report(
@@ -40,10 +42,12 @@ def frame_report(
     rows: list[float],
     said: tuple[CheckFrame | None, ...],
     figures: list[list[float]],
-    damaged: tuple[int, ...] = (),
-    weak_rows: list[list[float]] | None = None,
+    *,
+    is_calm: bool = False,
+    hurt: tuple[tuple[int, ...], list[list[float]]] | None = None,
 ) -> FrameReport:
-    """The report of a frame, from what `count_on` tells of its times."""
+    """The report of a frame, from its times as `count_on` tells them; `hurt`: damaged tracks, weak rows."""
+    damaged, weak_rows = ((), [[]] * len(said)) if hurt is None else hurt
     return FrameReport(
         number,
         rows[0],
@@ -55,5 +59,6 @@ def frame_report(
         [told[-2] for told in figures],
         [told[-1] for told in figures],
         damaged,
-        [[]] * len(said) if weak_rows is None else weak_rows,
+        weak_rows,
+        is_calm,
     )

@@ -18,7 +18,7 @@ Source: our own. Questions: none.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -62,10 +62,15 @@ class LostWays:
         """Whether an axis has a gap that no count has settled yet."""
         return bool(self._open[axis])
 
-    def covers(self, axis: int, row: float) -> bool:
-        """Whether a row lies within a gap."""
-        gaps = self._open[axis]  # nearly always none, and asked twice a frame
-        return bool(gaps) and any(gap.first - 1 <= row <= gap.last for gap in gaps)
+    def uncovered(self, axes: Iterable[int], row: float) -> list[int]:
+        """Those of some axes for which a row lies in no gap."""
+        if not any(self._open):  # as nearly always, and it is asked twice a frame
+            return list(axes)
+        return [
+            axis
+            for axis in axes
+            if not any(gap.first - 1 <= row <= gap.last for gap in self._open[axis])
+        ]
 
     def bare(self, axis: int, rows: Sequence[float]) -> float | None:
         """The first of some rows that lies in no gap, nor close beside one."""

@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import keeps_kinds, lasting, njit
+from morfax.player.tape.delays import DEAD_ZONE_S
 from morfax.player.tape.erasures import Erasures, weigh
+from morfax.player.tape.frame_order import LARGEST_LATE_S, LARGEST_SWING_S
 from morfax.player.tape.subcarrier import Subcarrier, interpolate
 from morfax.player.tape.symbols import (
     FIGURES,
@@ -33,6 +35,7 @@ from morfax.recorder.tape.check_frame import (
     SYMBOLS,
     TABLES,
     CheckFrame,
+    is_of,
     said_by,
     tell,
 )
@@ -46,11 +49,15 @@ _FIXED = lasting((WORD, *TABLES, MOMENTS))
 
 
 class QuietFrame(NamedTuple):
-    """A frame that is quiet: what each track says, and its rows and times as `count_on` fills them."""
+    """A frame that is quiet: what each track says, and its rows and times as `count_on` fills them.
+
+    `is_calm` as that of its report.
+    """
 
     said: tuple[CheckFrame | None, ...]
     frames: list[float]
     figures: list[list[float]]
+    is_calm: bool
 
 
 class _Fields(NamedTuple):
@@ -95,34 +102,50 @@ class QuietFrames:
             np.empty((tracks, FIGURES)),
         )
 
-    def read(self, points: Subcarrier, begins: float) -> QuietFrame | None:
-        """Read the frame that begins at a count of the reference; None where it is not quiet."""
+    def read(self, points: Subcarrier, begins: float, number: int) -> QuietFrame | None:
+        """Read the frame of a number that begins at a count of the reference; None where it is not quiet."""
         clock, room = (points.first, points.hop, points.cycles_per_frame), self._room
-        seen = (points.points, points.theta, begins)
-        if not _read_quiet(seen, clock, self._cycle_s, _FIXED, room):
+        seen = (points.points, points.theta, begins, number)
+        is_quiet, is_calm = _read_quiet(seen, clock, self._cycle_s, _FIXED, room)
+        if not is_quiet:
             return None
         said = tuple([said_by(told) for told in room.told.view(np.uint64).tolist()])
-        return QuietFrame(said, room.frames.tolist(), room.figures.tolist())
+        return QuietFrame(said, room.frames.tolist(), room.figures.tolist(), is_calm)
 
 
 @njit(cache=True, nogil=True)
 def _read_quiet(seen, clock, cycle_s, fixed, room):  # type: ignore[no-untyped-def]
-    """Fill the gates of a frame and, if it is quiet, all else; whether it is."""
-    points, theta, begins = seen
+    """Fill the gates of a frame and, if it is quiet, all else; whether it is, and whether it is calm."""
+    points, theta, begins, number = seen
     word, white, byte_crcs, moments = fixed
     gates, is_read, counts, weights = room.gates, room.is_read, room.counts, room.weights
     # 1. the symbols, what they tell, and how strong they are
     read_gates(points, theta, begins, word, gates)
     tell(gates.bits, white, byte_crcs, room.told, is_read)
     if not is_read.all():
-        return False
+        return False, False
     strong = (gates.strengths, gates.sizes, gates.shares)
     weigh(strong, (room.usual, room.size), weights[1], weights[0], counts)
     if counts.any() or not np.isfinite(gates.turns).all():
-        return False
+        return False, False
     # 2. the phases
     count_on(gates, is_read, room.held, cycle_s, room.figures)
     room.usual[:], room.size[:] = weights[1, :, 0], weights[1, :, 1]
     # 3. where it lies
     interpolate(begins + moments, theta, clock, room.frames)
+    return True, _is_calm(room.told, number, room.figures)
+
+
+@njit(cache=True, nogil=True)
+def _is_calm(told, number, figures):  # type: ignore[no-untyped-def]
+    """Whether nothing is to be said of a quiet frame: see `FrameReport`."""
+    for track in range(len(told)):
+        in_time = abs(figures[track, 0]) <= LARGEST_LATE_S
+        if not (is_of(told[track], track, number) and in_time):
+            return False
+        if not figures[track, -1] <= LARGEST_SWING_S:
+            return False
+        for part in range(PARTS):
+            if not abs(figures[track, 1 + part]) <= DEAD_ZONE_S:
+                return False
     return True

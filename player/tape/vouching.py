@@ -202,7 +202,7 @@ class Vouching:
         error_s = report.error_s[axis + 1]
         self._counts.tell(axis, said, error_s * self._format.reference_hz)
         self._bounds[axis].add(report, axis + 1)
-        self._delays[axis].add(report.part_rows, delays_s, error_s)
+        self._delays[axis].add(report.part_rows, delays_s, error_s, is_calm=report.is_calm)
         off_s = self._delays[axis].off_s()
         if off_s > LARGEST_OFF_S and self._fault is None:
             time_s = report.row / self._rate_hz
@@ -216,7 +216,7 @@ class Vouching:
             if due is None:
                 return
             row = due.row
-            open_ = [axis for axis in due.told if not self._ways.covers(axis, row)]
+            open_ = self._ways.uncovered(due.told, row)
             places = self._places(row)
             off = {axis: self._counts.off(axis, places[axis], due) for axis in open_}
             if due.is_middle:

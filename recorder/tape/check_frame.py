@@ -197,6 +197,14 @@ def tell(bits, white, byte_crcs, told, is_right):  # type: ignore[no-untyped-def
         is_right[row] = own == crc ^ 0xFFFFFFFF
 
 
+@njit(cache=True, inline="always")
+def is_of(told, track, number):  # type: ignore[no-untyped-def]
+    """Whether told bits are those of a track's frame of this number, of a version that is known."""
+    is_known = 0 < told >> 61 & 7 <= VERSION
+    is_its_own = told >> 56 & (MOST_TRACKS - 1) == track
+    return is_known and is_its_own and told >> 40 & (NUMBERS - 1) == number % NUMBERS
+
+
 def said_by(told: int) -> CheckFrame | None:
     """What the told bits say, behind a right check sum."""
     version = told >> 61

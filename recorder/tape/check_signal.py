@@ -106,7 +106,7 @@ class CheckWriter:
         begun = done * self._step - self._number * CYCLES_PER_FRAME, skip
         periods = -(-end // steps) - done // steps
         if begun != self._begun or periods > self._table.waves.shape[1]:
-            waves, shares = np.empty((2, steps, periods))
+            waves, shares = np.empty((2, steps, periods), np.float32)
             symbols = np.empty((steps, periods), np.int64)
             _fill(begun, (self._step, self._amplitude), waves, shares, symbols)
             same = (symbols == symbols[0]).all()

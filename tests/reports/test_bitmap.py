@@ -92,6 +92,21 @@ def test_an_area_shines_through_to_the_drawing_below() -> None:
     assert seen == pytest.approx(np.array([[50, 100], [100, 200]]), abs=1)
 
 
+@pytest.mark.parametrize("aside_mm", [(-400, 0), (400, 0), (0, -400), (0, 400), (400, 400)])
+def test_a_drawing_beside_the_page_is_not_seen_and_one_across_its_edge_is_in_part(
+    aside_mm: tuple[float, float],
+) -> None:
+    grey = np.full((30, 30), 100, np.uint8)
+    beside, across = (
+        tuple(VIEW[end] + share * aside_mm[end // 2] for end in range(4)) for share in (1, 0.5)
+    )
+    seen = page_of(Plate(VIEW, ground=Ground(grey, beside)))  # type: ignore[arg-type]
+    assert np.array_equal(seen, page_of(Plate(VIEW)))
+    seen = page_of(Plate(VIEW, ground=Ground(grey, across)))  # type: ignore[arg-type]
+    parts = [1 - 0.5 * abs(aside) / 300 for aside in aside_mm]
+    assert (seen == 100).all(axis=2).mean() == pytest.approx(9 / 16 * np.prod(parts), abs=0.01)
+
+
 def test_words_stand_beside_their_place_and_a_legend_in_its_corner() -> None:
     plate = Plate(VIEW, marks=[Caption((150.0, 150.0), "M", 30, RED, (20.0, 10.0))])
     found = places_mm(is_red(page_of(plate)))

@@ -34,8 +34,8 @@ def test_a_row_lies_within_a_gap_from_the_row_before_it_to_the_first_behind_it(
     row: int,
 ) -> None:
     ways = open_ways(gap(100, 120))
-    assert ways.covers(0, row) and not ways.covers(1, row)
-    assert not ways.covers(0, 98) and not ways.covers(0, 121)
+    assert ways.uncovered((0, 1), row) == [1]
+    assert ways.uncovered((0, 1), 98) == ways.uncovered((0, 1), 121) == [0, 1]
     assert ways.any_open(0) and not ways.any_open(1)
 
 
@@ -81,7 +81,7 @@ def test_doubtful_gaps_before_a_count_are_one_from_the_first_to_the_last() -> No
 def test_what_is_settled_is_dropped_and_all_behind_it_moves_on() -> None:
     ways = open_ways(gap(100, 120), gap(600, 610))
     ways.settle(0, 500.0, 2.0)
-    assert ways.shift_cycles.tolist() == [2.0, 0.0] and not ways.covers(0, 110)
+    assert ways.shift_cycles.tolist() == [2.0, 0.0] and ways.uncovered((0,), 110) == [0]
     later = ways.lost(0, 1000.0, 1.0)
     assert later is not None and later.before.place == 9.0
     ways.take([gap(800, 810)])

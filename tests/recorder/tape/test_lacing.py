@@ -8,7 +8,7 @@ import pytest
 from morfax.recorder.sound.sixteen_bit import in_16_bit
 from morfax.recorder.tape import lacing
 from morfax.recorder.tape.carrier import Carrier, PickUp
-from morfax.recorder.tape.lacing import CHUNK_PERIODS, Beneath, LacingRoom, words_of
+from morfax.recorder.tape.lacing import BARE, CHUNK_PERIODS, Beneath, LacingRoom, words_of
 
 STEPS = 8
 # the last chunk of periods is no whole one
@@ -53,7 +53,9 @@ def test_the_check_signal_passes_from_symbol_to_symbol(
     random = np.random.default_rng(3)
     room = LacingRoom.of(3, STEPS)
     room.columns[:] = random.uniform(-0.5, 0.5, room.columns.shape)
-    waves, shares = random.uniform(0, 0.1, (2, STEPS, PERIODS))
+    # eight at a time where doubles are four
+    assert room.said.dtype == BARE.waves.dtype == np.float32
+    waves, shares = random.uniform(0, 0.1, (2, STEPS, PERIODS)).astype(np.float32)
     symbols = random.integers(0, 9, (STEPS, PERIODS))
     bits = np.sign(random.normal(size=(10, 3)))
     first, count = 40, CHUNK_PERIODS - 3
