@@ -31,6 +31,7 @@ Numbers = NDArray[np.int32]
 
 INK = 0.5  # of the darkest: what is darker is ink
 SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
+ROW_BITS = 32  # a row is worth so many bits more than a column, in one number for both
 STRIP_PX = 1 << 24  # pixels that are worked on at a time
 FRINGE_PX = 4  # beyond ink its soft edge ends
 
@@ -162,6 +163,15 @@ def runs_of(mask: Mask | NDArray[np.bool_], top: int) -> tuple[Numbers, Numbers,
     edges = np.flatnonzero(padded[:, 1:] != padded[:, :-1])
     row, column = (part.astype(np.int32) for part in np.divmod(edges, columns + 1))
     return row[::2] + np.int32(top), column[::2], column[1::2]
+
+
+def runs_at(
+    row: Numbers, begin: Numbers, rows: NDArray[np.integer], columns: NDArray[np.integer]
+) -> NDArray[np.int64]:
+    """Of each of some pixels the number of the last run that begins there or before, by rows; -1: none."""
+    begins = (row.astype(np.int64) << ROW_BITS) + begin
+    asked = (rows.astype(np.int64) << ROW_BITS) + columns
+    return np.searchsorted(begins, asked, side="right") - 1
 
 
 @njit(cache=True)

@@ -21,6 +21,7 @@ from morfax.motion.long_array import one_in
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly, length_mm
 from morfax.motion.usual import THINNED
+from morfax.tracer.drawing.components import runs_at
 from morfax.tracer.drawing.depth import depth_of
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
@@ -91,7 +92,7 @@ def places_along(ways: Iterable[Array]) -> Array:
 
 def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
     """The usual width of a sheet's lines, mm; a patch with a solid area is broader than its lines."""
-    if left.solid_px.any() and left.ink.any():
+    if left.solid_px.any() and left.packed_ink.any():
         # as of a patch, see `drawing.strokes`
         wide_px = 4 * float(depth_of(left.ink).mean()) - 2
         return max(wide_px, 1.0) * sheet.drawing.pitch_mm
@@ -101,7 +102,6 @@ def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
 
 def _patches_at(sheet: Sheet, rows: Indices, columns: Indices) -> Indices:
     """The patch of each of some pixels of ink."""
-    patches, width = sheet.patches, sheet.drawing.darkness.shape[1] + 1
-    begins = patches.row.astype(np.int64) * width + patches.begin
-    runs = np.searchsorted(begins, rows * width + columns, side="right") - 1
+    patches = sheet.patches
+    runs = runs_at(patches.row, patches.begin, rows, columns)
     return np.asarray(patches.patch[np.maximum(runs, 0)], np.int64)
