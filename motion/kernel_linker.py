@@ -4,6 +4,8 @@ numba's object code needs little of numba to run: the C functions of its three e
 loaded by themselves here, and the names of the built-in exceptions. Where these are not as they were with the
 version that this was written for (numba 0.68), no linker can be made, and numba runs the kernels.
 
+Object code for the usual kind of machine is placed here (`placed_code`); llvmlite is loaded only for others.
+
 Signals in: a kernel and what is kept of it (`machine_code`). Signals out: a Python function.
 
 Source: numba's own `core.runtime`, `core.base` and `_helperlib`; llvmlite's MCJIT. Questions: none.
@@ -16,16 +18,18 @@ import ctypes
 import pickle
 import sys
 from collections.abc import Callable
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from morfax.motion import processor
 from morfax.motion.extension import extension, folder_of
+from morfax.motion.placed_code import placed
 
 if TYPE_CHECKING:
     from morfax.motion.compiled import Kernel
+    from morfax.motion.llvm_linker import LlvmLinker
 
 # an entry: object code, name of the function in it, environments: name, module, pickled dtypes
 Entry = tuple[bytes, str, list[tuple[str, str, list[bytes]]]]
@@ -38,26 +42,15 @@ def in_process(name: str) -> bool:
 
 
 class Linker:
-    """llvmlite's linker, with the C functions of numba that object code asks for."""
+    """A linker with the C functions of numba that object code asks for."""
 
     def __init__(self) -> None:
-        import llvmlite.binding as llvm
-
-        self._llvm = llvm
-        llvm.initialize_native_target()
-        llvm.initialize_native_asmprinter()
-        self.target = processor.target(llvm)
-        self.triple = llvm.get_process_triple()
-        self.names: set[str] = set()
+        self.triple, self.target = processor.here()
+        self.addresses: dict[str, int] = {}  # of what object code asks for, by names
         dynfunc, helpers, runtime = (extension("numba", name) for name in EXTENSIONS)
         self._make_function, self._environment = dynfunc.make_function, dynfunc.Environment
         self._name_all(dynfunc.c_helpers, helpers.c_helpers, runtime.c_helpers)
         _serve_pickles(helpers.c_helpers["unpickle"])
-        machine = llvm.Target.from_triple(self.triple).create_target_machine(
-            jit=True, cpu=llvm.get_host_cpu_name()
-        )
-        empty = llvm.parse_assembly(f'target triple = "{self.triple}"')
-        self._engine = llvm.create_mcjit_compiler(empty, machine)
         self._environments: dict[str, Any] = {}
 
     def function(self, kernel: Kernel, entry: Entry) -> Callable[..., Any]:
@@ -65,19 +58,19 @@ class Linker:
         code, name, environments = entry
         if b"numba_xx" in code or b"numba_xgesv" in code or b"numba_ez_" in code:
             _load_algebra()
-        self._engine.add_object_file(self._llvm.ObjectFileRef.from_data(code))
-        self._engine.finalize_object()
+        address_of = self._placed(code)
         for held in environments:
-            self._set_environment(*held)
+            self._set_environment(address_of, *held)
         own = self._environments[environments[0][0]]
         plain = kernel.py_func
-        address = self._engine.get_function_address(name)
         module = sys.modules[plain.__module__]
         return self._make_function(
-            module, plain.__name__, plain.__doc__ or "", address, own, (kernel,)
+            module, plain.__name__, plain.__doc__ or "", address_of(name), own, (kernel,)
         )
 
-    def _set_environment(self, name: str, module: str, constants: list[bytes]) -> None:
+    def _set_environment(
+        self, address_of: Callable[[str], int], name: str, module: str, constants: list[bytes]
+    ) -> None:
         """Give compiled code the names of the module that it was written in, as numba does."""
         if name not in self._environments:
             # code of numba's own modules looks nothing up: they need not be there
@@ -86,9 +79,31 @@ class Linker:
             self._environments[name].consts.extend(
                 pickle.loads(constant) for constant in constants
             )
-        address = self._engine.get_global_value_address(name)
+        address = address_of(name)
         if address:
             ctypes.c_void_p.from_address(address).value = id(self._environments[name])
+
+    def _placed(self, code: bytes) -> Callable[[str], int]:
+        """Put object code where it can run; give what tells addresses in it by names."""
+        try:
+            return placed(code, self._address).__getitem__
+        except (NotImplementedError, OSError):
+            return self._by_llvm.placed(code)
+
+    @cached_property
+    def _by_llvm(self) -> LlvmLinker:
+        """llvmlite's linker, which knows the same names."""
+        from morfax.motion.llvm_linker import LlvmLinker
+
+        return LlvmLinker(self.addresses)
+
+    def _address(self, name: str) -> int:
+        """Where a C function is that object code asks for."""
+        if name in self.addresses:
+            return self.addresses[name]
+        if not in_process(name):
+            raise NotImplementedError(f"no {name} in this process")
+        return ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p).value or 0
 
     def _name_all(
         self, dynfunc: dict[str, int], helpers: dict[str, int], runtime: dict[str, int]
@@ -106,8 +121,7 @@ class Linker:
                 self._name(f"PyExc_{kind.__name__}", id(kind))
 
     def _name(self, name: str, address: int) -> None:
-        self._llvm.add_symbol(name, address)
-        self.names.add(name)
+        self.addresses[name] = address
 
 
 def _load_algebra() -> None:

@@ -1,7 +1,7 @@
 """Machine code of kernels on disk: kept once numba has compiled a kernel, and read by later processes.
 
     first process    numba compiles -> object code, as numba's own cache has it -> NAME.kernel
-    every other one  NAME.kernel -> llvmlite links the object code -> a Python function (`kernel_linker`)
+    every other one  NAME.kernel -> the object code is linked -> a Python function (`kernel_linker`)
 
 What a kernel was made with is kept beside it (versions, processor, numba's settings, sources of all kernels
 in it, values of constants); a kernel whose makings have changed is compiled anew, and so is one whose file is
@@ -109,7 +109,7 @@ def can_be_kept() -> bool:
 def entry(compiled: Any, code: bytes) -> Entry | None:
     """What is kept of numba's result and its object code; None if it needs more than these to run."""
     module = compiled.library._final_module
-    known = linker().names
+    known = linker().addresses
     for function in module.functions:
         name = function.name
         if function.is_declaration and not (

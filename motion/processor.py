@@ -5,7 +5,8 @@
 
 So a wheel can bring kernels along, and a path is the same to the bit on all machines of the first line.
 
-Signals in: llvmlite's name and features of the processor; `NUMBA_CPU_NAME`, which goes before all of this.
+Signals in: Linux's features of the processor; if it lacks one of the level, or of another system, llvmlite's
+name and features; `NUMBA_CPU_NAME`, which goes before all of this.
 Signals out: a name and features as numba's settings `CPU_NAME` and `CPU_FEATURES` take them.
 
 Source: x86-64 psABI, 3.1.1, micro-architecture levels. Questions: on other processors there is no such level
@@ -15,6 +16,8 @@ that all of a kind have, and kernels are compiled on the machine itself.
 from __future__ import annotations
 
 import os
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
 from typing import Any, NamedTuple
 
 LEVEL = "x86-64-v3"
@@ -24,6 +27,11 @@ LEVEL_HAS = frozenset(
     | {"cx16", "sahf", "popcnt", "sse3", "sse4.1", "sse4.2", "ssse3"}
     | {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe", "xsave"}
 )
+# those that Linux calls otherwise
+IN_LINUX = {"sahf": "lahf_lm", "sse3": "pni", "sse4.1": "sse4_1", "sse4.2": "sse4_2"}
+IN_LINUX |= {"bmi": "bmi1", "lzcnt": "abm"}
+CPUINFO = Path("/proc/cpuinfo")
+LINUX = "x86_64-unknown-linux-gnu"  # the kind of machine, in LLVM's words
 
 
 class Processor(NamedTuple):
@@ -33,10 +41,35 @@ class Processor(NamedTuple):
     features: str  # what it has beyond its name; empty: nothing
 
 
+def here() -> tuple[str, Processor]:
+    """The kind of machine, and the processor to compile for on it; llvmlite is loaded where it must tell."""
+    if "x86_64-linux-gnu" in EXTENSION_SUFFIXES[0] and has_level(CPUINFO):
+        return LINUX, given() or Processor(LEVEL, "")
+    import llvmlite.binding as llvm
+
+    return llvm.get_process_triple(), target(llvm)
+
+
+def has_level(cpuinfo: Path) -> bool:
+    """Whether Linux says that the processor has all of the level."""
+    try:
+        lines = cpuinfo.read_text().splitlines()
+    except OSError:
+        return False
+    has = next((set(line.split()) for line in lines if line.startswith("flags")), set[str]())
+    return has >= {IN_LINUX.get(name, name) for name in LEVEL_HAS}
+
+
+def given() -> Processor | None:
+    """The processor that numba's settings ask for; None if they ask for none."""
+    name = os.environ.get("NUMBA_CPU_NAME")
+    return Processor(name, os.environ.get("NUMBA_CPU_FEATURES", "")) if name else None
+
+
 def target(llvm: Any) -> Processor:
     """The processor to compile for on this machine; `llvm` is `llvmlite.binding`."""
-    if given := os.environ.get("NUMBA_CPU_NAME"):
-        return Processor(given, os.environ.get("NUMBA_CPU_FEATURES", ""))
+    if (asked := given()) is not None:
+        return asked
     features = llvm.get_host_cpu_features()
     has = {name for name, there in features.items() if there}
     if llvm.get_process_triple().startswith("x86_64-") and has >= LEVEL_HAS:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from morfax.motion import polyline
 from morfax.motion.crossings import crossings
 from morfax.motion.polyline import (
     APART_MM,
+    STEPS_AT_A_TIME,
     WITHIN_MM,
     Nearest,
     area_mm2,
@@ -21,6 +23,7 @@ from morfax.motion.polyline import (
     lengths_mm,
     nearest_mm,
     plain,
+    steps_mm,
     with_places,
 )
 
@@ -43,6 +46,17 @@ def test_a_crossing_in_a_place_of_a_line_counts_once() -> None:
     across, along = np.array([[1.0, -1.0], [1.0, 1.0]]), np.array([[0.0, 0], [1, 0], [2, 0]])
     assert crossings(along, across).tolist() == [[1.0, 0.5]]
     assert crossings(across, along).tolist() == [[0.5, 1.0]]
+
+
+def test_steps_of_a_long_line_are_those_of_its_places_and_take_their_own_memory_alone() -> None:
+    line_mm = np.random.default_rng(2).normal(size=(6 * STEPS_AT_A_TIME + 7, 2))
+    tracemalloc.start()
+    steps = steps_mm(line_mm)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert np.array_equal(steps, np.hypot(*np.diff(line_mm, axis=0).T))
+    assert most < 2.0 * steps.nbytes  # all differences at once take as much as the line
+    assert len(steps_mm(line_mm[:1])) == len(steps_mm(line_mm[:0])) == 0
 
 
 def test_lengths_add_up_along_the_line() -> None:

@@ -4,10 +4,20 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from morfax.motion.processor import LEVEL, LEVEL_HAS, Processor, target
+from morfax.motion.processor import (
+    CPUINFO,
+    IN_LINUX,
+    LEVEL,
+    LEVEL_HAS,
+    Processor,
+    has_level,
+    here,
+    target,
+)
 
 OLDER = "sse2 avx"
 
@@ -87,3 +97,22 @@ def test_code_made_for_another_processor_is_not_kept_as_the_level_s() -> None:
         [sys.executable, "-c", NUMBA_FIRST], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_linux_tells_whether_a_processor_has_the_level(tmp_path: Path) -> None:
+    names = sorted(IN_LINUX.get(name, name) for name in LEVEL_HAS)
+    file = tmp_path / "cpuinfo"
+    file.write_text(f"processor\t: 0\nflags\t\t: fpu {' '.join(names)} avx512f\n")
+    assert has_level(file)
+    for missing in names:
+        file.write_text(f"flags\t\t: fpu {' '.join(n for n in names if n != missing)}\n")
+        assert not has_level(file)
+    assert not has_level(tmp_path / "none")
+
+
+@pytest.mark.skipif(not CPUINFO.exists(), reason="no Linux")
+def test_linux_and_llvm_tell_the_same() -> None:
+    import llvmlite.binding as llvm
+
+    kind, processor = here()
+    assert (kind, processor) == (llvm.get_process_triple(), target(llvm))

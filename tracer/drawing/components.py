@@ -32,6 +32,7 @@ Numbers = NDArray[np.int32]
 
 INK = 0.5  # of the darkest: what is darker is ink
 SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
+ROW_BITS = 32  # a row is worth so many bits more than a column, in one number for both
 STRIP_PX = 1 << 24  # pixels that are worked on at a time
 FRINGE_PX = 4  # beyond ink its soft edge ends
 
@@ -165,13 +166,13 @@ def runs_of(mask: Mask | NDArray[np.bool_], top: int) -> tuple[Numbers, Numbers,
     return row[::2] + np.int32(top), column[::2], column[1::2]
 
 
-def run_at(
-    row: Numbers, begin: Numbers, rows: NDArray[np.int64], columns: NDArray[np.int64]
+def runs_at(
+    row: Numbers, begin: Numbers, rows: NDArray[np.integer], columns: NDArray[np.integer]
 ) -> NDArray[np.int64]:
-    """The number of the run that each of some pixels of ink is in."""
-    width = int(columns.max(initial=int(begin.max(initial=0)))) + 1
-    begins = row.astype(np.int64) * width + begin
-    return np.searchsorted(begins, rows * width + columns, side="right") - 1
+    """Of each of some pixels the number of the last run that begins there or before, by rows; -1: none."""
+    begins = (row.astype(np.int64) << ROW_BITS) + begin
+    asked = (rows.astype(np.int64) << ROW_BITS) + columns
+    return np.searchsorted(begins, asked, side="right") - 1
 
 
 @njit(cache=True)

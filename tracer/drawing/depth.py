@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
-from morfax.tracer.drawing.components import Mask, Numbers, painted, run_at, runs_of
+from morfax.tracer.drawing.components import Mask, Numbers, painted, runs_at, runs_of
 from morfax.tracer.drawing.thinning import Indices
 
 MOST_LOOKS_EACH = 40  # to a pixel of ink; by trial on sheets with lines and with filled squares
@@ -44,7 +44,7 @@ def depth_at(ink: Mask, rows: Indices, columns: Indices) -> NDArray[np.float32]:
     row, begin, end = runs_of(ink, 0)
     depth = depth_along(row, begin, end, ink.shape)
     first = np.cumsum(end - begin) - (end - begin)
-    run = run_at(row, begin, rows, columns)
+    run = runs_at(row, begin, rows, columns)
     return depth[first[run] + columns - begin[run]]
 
 

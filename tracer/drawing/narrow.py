@@ -13,6 +13,7 @@ Source: our own. Questions: large sheets (see `large`) are not looked at; their 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -22,7 +23,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.tracer.drawing.components import INK
+from morfax.tracer.drawing import components
+from morfax.tracer.drawing.components import INK, Numbers, Patches
+from morfax.tracer.effort import FEW_PX
 from morfax.tracer.limits import NEAR
 
 if TYPE_CHECKING:
@@ -31,6 +34,8 @@ if TYPE_CHECKING:
 Mask = NDArray[np.uint8]
 Pixels = NDArray[np.int64]
 
+BRIDGE_PX = 1  # so far from each other pixels of one strip may lie
+HALO_PX = 2  # beyond its reach OpenCV's measure of distances looks at pixels
 NARROW_PX = 2  # so wide a strip is bridged by noise; one of three pixels is not
 # widths of the usual line: shorter ones are where letters crowd, and two lines meet; on 53 real sheets paths
 # run over longer ones on eight, and most of these paths are astray there
@@ -60,17 +65,26 @@ class Strips(NamedTuple):
         if not isinstance(drawing.darkness, np.ndarray) or drawing.edges_mm:
             none = np.empty(0, np.int64)
             return cls(none, none, np.empty(0))
-        # 1. paper that is gone where ink is spread by a pixel, and shrunk again
-        ink = np.asarray(drawing.darkness > INK, np.uint8)
         wide = NARROW_PX * drawing.finer + 1
-        closed = cv2.morphologyEx(ink, cv2.MORPH_CLOSE, np.ones((wide, wide), np.uint8))
-        thin: Mask = np.asarray(closed > ink, np.uint8)
-        # 2. what lies together, but for a bridge of a pixel
-        together = cv2.dilate(thin, np.ones((3, 3), np.uint8))
-        _, numbers, boxes, _ = cv2.connectedComponentsWithStats(together, connectivity=8)
-        lengths_mm = drawing.pitch_mm * np.hypot(*boxes[:, 2:4].T)
-        rows, columns = np.nonzero(thin)
-        return cls(rows, columns, lengths_mm[numbers[rows, columns]])
+        pixels, runs = list[tuple[Pixels, Pixels]](), list[tuple[Numbers, Numbers, Numbers]]()
+        shape, halo = drawing.darkness.shape, wide + BRIDGE_PX
+        for top, bottom, strip in components.strips(shape, halo=halo, pixels=FEW_PX):
+            # 1. paper that is gone where ink is spread by a pixel, and shrunk again
+            ink = np.asarray(drawing.darkness[strip] > INK, np.uint8)
+            closed = cv2.morphologyEx(ink, cv2.MORPH_CLOSE, np.ones((wide, wide), np.uint8))
+            thin: Mask = np.asarray(closed > ink, np.uint8)
+            # 2. what lies together, but for a bridge of a pixel
+            together = cv2.dilate(thin, np.ones((2 * BRIDGE_PX + 1,) * 2, np.uint8))
+            own = slice(top - strip.start, bottom - strip.start)
+            row, column = np.nonzero(thin[own])
+            pixels.append((row + top, column))
+            runs.append(components.runs_of(np.asarray(together[own], np.uint8), top))
+        patches = Patches.of(runs)
+        rows, columns = (np.concatenate(of) for of in zip(*pixels, strict=True))
+        high, wide_px = patches.boxes[:, 1::2].T - patches.boxes[:, ::2].T
+        lengths_mm = drawing.pitch_mm * np.hypot(wide_px, high)
+        run = components.runs_at(patches.row, patches.begin, rows, columns)
+        return cls(rows, columns, lengths_mm[patches.patch[run]])
 
     def long_for(self, width_mm: float) -> Strips:
         """Those that are long for lines of a width."""
@@ -113,27 +127,55 @@ def narrow_gaps(
     strips = drawing.narrow_strips.long_for(usual_mm)
     if not lines or not len(strips.rows):
         return [None] * len(lines)
-    at = strips.rows, strips.columns
-    paper = np.ones(drawing.darkness.shape, np.uint8)
-    paper[at] = 0
-    away_px, nearest = cv2.distanceTransformWithLabels(
-        paper, cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    length_mm_of = np.zeros(int(nearest.max()) + 1)
-    length_mm_of[nearest[at]] = strips.lengths_mm
-    found = list[NarrowGap | None]()
-    for places, width_mm in lines:
-        row, column = _pixels(drawing, places)
-        over_mm = NEAR * min(width_mm, usual_mm)
-        there = np.flatnonzero(away_px[row, column] * drawing.pitch_mm < over_mm)
-        if not len(there):
-            found.append(None)
-            continue
-        lengths_mm = length_mm_of[nearest[row[there], column[there]]]
-        longest = int(np.argmax(lengths_mm))
-        x, y = places[there[longest]].tolist()
-        found.append(NarrowGap((x, y), float(lengths_mm[longest])))
-    return found
+    over_mm = [NEAR * min(width_mm, usual_mm) for _, width_mm in lines]
+    pixels = [_pixels(drawing, places) for places, _ in lines]
+    lengths_mm = [np.zeros(len(places)) for places, _ in lines]
+    halo = math.ceil(max(over_mm) / drawing.pitch_mm) + HALO_PX
+    for top, bottom, rows in components.strips(
+        drawing.darkness.shape, halo=halo, pixels=FEW_PX
+    ):
+        near = _Near.of(strips, rows, drawing.darkness.shape[1])
+        of_lines = zip(pixels, over_mm, lengths_mm, strict=True)
+        for (row, column), within_mm, length_mm in of_lines:
+            own = np.flatnonzero((row >= top) & (row < bottom))
+            at = row[own] - rows.start, column[own]
+            there = near.away_px[at] * drawing.pitch_mm < within_mm
+            length_mm[own[there]] = near.lengths_mm[near.numbers[at][there]]
+    ways = [places for places, _ in lines]
+    return [_longest(*of) for of in zip(ways, lengths_mm, strict=True)]
+
+
+def _longest(places: Array, lengths_mm: Array) -> NarrowGap | None:
+    """The longest strip of those at some places (n, 2) mm; None if there is none."""
+    if not lengths_mm.any():
+        return None
+    longest = int(np.argmax(lengths_mm))
+    x, y = places[longest].tolist()
+    return NarrowGap((x, y), float(lengths_mm[longest]))
+
+
+class _Near(NamedTuple):
+    """Of each pixel of some rows of a sheet, how far the nearest strip is, pixels, and its number; of each
+    number, how long that strip is, mm.
+    """
+
+    away_px: NDArray[np.float32]
+    numbers: NDArray[np.int32]
+    lengths_mm: Array
+
+    @classmethod
+    def of(cls, strips: Strips, rows: slice, columns: int) -> _Near:
+        """Those of some rows."""
+        own = (strips.rows >= rows.start) & (strips.rows < rows.stop)
+        at = strips.rows[own] - rows.start, strips.columns[own]
+        paper = np.ones((rows.stop - rows.start, columns), np.uint8)
+        paper[at] = 0
+        away_px, numbers = cv2.distanceTransformWithLabels(
+            paper, cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+        )
+        lengths_mm = np.zeros(int(numbers.max()) + 1)
+        lengths_mm[numbers[at]] = strips.lengths_mm[own]
+        return cls(np.asarray(away_px, np.float32), np.asarray(numbers, np.int32), lengths_mm)
 
 
 def _pixels(drawing: Drawing, places: Array) -> tuple[Pixels, Pixels]:

@@ -30,7 +30,7 @@ from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
 from morfax.tracer.drawing.shapes import outlined, shade_of
-from morfax.tracer.drawing.solids import usual_width_px
+from morfax.tracer.drawing.solids import ridge_of, usual_width_px
 
 BLACK = 255.0  # grey levels between paper and shape
 BROADEST_MM = 2.0  # of a line: the broadest of ISO 128-2
@@ -83,10 +83,9 @@ def has_lines(drawing: Drawing) -> bool:
     usual_px = usual_width_px(depth)
     if usual_px * drawing.pitch_mm > BROADEST_MM:
         return False
-    ridge = (depth > 0) & (depth >= cv2.dilate(depth, np.ones((3, 3), np.uint8)))
-    if not ridge.any():
+    widths_px = 2 * ridge_of(depth) - 1
+    if not len(widths_px):
         return False
-    widths_px = 2 * depth[ridge] - 1
     return bool(np.mean(np.abs(widths_px - usual_px) < ONE_PEN * usual_px + 1) > MOST)
 
 

@@ -73,15 +73,20 @@ class Solids(NamedTuple):
 
 def usual_width_px(depth: NDArray[np.float32]) -> float:
     """The usual width of the lines of some ink by its depth, pixels."""
+    ridge = ridge_of(depth, float(SHALLOWER))
+    return max(FINEST_PX, 2 * float(np.median(ridge)) - 1) if len(ridge) else FINEST_PX
+
+
+def ridge_of(depth: NDArray[np.float32], shallower_px: float = 0.0) -> NDArray[np.float32]:
+    """The depths of ink that is nowhere about a pixel deeper by more, by rows, pixels."""
     ridges = list[NDArray[np.float32]]()
     # strip by strip: of a sheet as floats there is one at a time
     for top, bottom, rows in strips(depth.shape, halo=1, pixels=FEW_PX):
         inner = slice(top - rows.start, bottom - rows.start)
         deepest = cv2.dilate(depth[rows], np.ones((3, 3), np.uint8))[inner]
         own = depth[top:bottom]
-        ridges.append(own[(own > 0) & (own >= deepest - SHALLOWER)])
-    ridge = np.concatenate(ridges)
-    return max(FINEST_PX, 2 * float(np.median(ridge)) - 1) if len(ridge) else FINEST_PX
+        ridges.append(own[(own > 0) & (own >= deepest - shallower_px)])
+    return np.concatenate(ridges)
 
 
 def _without_specks(ink: Mask, usual_px: float) -> Mask:

@@ -21,7 +21,7 @@ from morfax.motion.long_array import one_in
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly, length_mm
 from morfax.motion.usual import THINNED
-from morfax.tracer.drawing.components import run_at
+from morfax.tracer.drawing.components import runs_at
 from morfax.tracer.drawing.depth import depth_of
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
@@ -67,7 +67,7 @@ class Thinned(NamedTuple):
         usual_mm = _usual_mm(sheet, left)
         wide_mm = np.where(left.solid_px > 0, usual_mm, np.maximum(sheet.widths_mm, usual_mm))
         patches = sheet.patches
-        run = run_at(patches.row, patches.begin, graph.rows, graph.columns)
+        run = runs_at(patches.row, patches.begin, graph.rows, graph.columns)
         patch = np.asarray(patches.patch[np.maximum(run, 0)], np.int64)
         return cls(graph.places_mm(sheet.drawing), patch, wide_mm, usual_mm)
 
@@ -94,7 +94,7 @@ def places_along(ways: Iterable[Array]) -> Array:
 
 def _usual_mm(sheet: Sheet, left: InkLeft) -> float:
     """The usual width of a sheet's lines, mm; a patch with a solid area is broader than its lines."""
-    if left.solid_px.any() and left.ink.any():
+    if left.solid_px.any() and left.packed_ink.any():
         # as of a patch, see `drawing.strokes`
         wide_px = 4 * float(depth_of(left.ink).mean()) - 2
         return max(wide_px, 1.0) * sheet.drawing.pitch_mm

@@ -25,6 +25,7 @@ from morfax.tracer.drawing.components import INK, SOFTENED_PX, Mask, strips
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.large import HALO_PX
 from morfax.tracer.drawing.lettering import lettering, lower_than
+from morfax.tracer.drawing.packed import PackedMask
 from morfax.tracer.drawing.solids import Solids
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.effort import FEW_PX
@@ -57,16 +58,26 @@ class InkLeft(NamedTuple):
     """The ink of a sheet's lines, the drawing as it was read, and what was left out.
 
     Which patches are lettering, which of them are left out, the pixels of each patch that are solid areas,
-    these, and where they are.
+    these, and where they are. Masks are packed: they last as long as the trace.
     """
 
-    ink: Mask
+    packed_ink: PackedMask
     read: Drawing
     lettering: NDArray[np.bool_]
     letters: NDArray[np.bool_]
     solid_px: NDArray[np.float64]
     areas: tuple[Area, ...]
-    solid: Mask
+    packed_solid: PackedMask
+
+    @property
+    def ink(self) -> Mask:
+        """The ink of lines, a mask that is made when it is asked for."""
+        return self.packed_ink.mask()
+
+    @property
+    def solid(self) -> Mask:
+        """The solid areas, a mask that is made when it is asked for."""
+        return self.packed_solid.mask()
 
     @property
     def drawing(self) -> Drawing:
@@ -106,8 +117,9 @@ def ink_left(sheet: Sheet, letters_from_mm: float = 0.0) -> InkLeft:
     for patch in np.flatnonzero(letters):
         box_mm = _box_mm(patches.boxes[patch].tolist(), rows, pitch_mm)
         areas.append(Area("letter", float(patches.areas[patch]) * pitch_mm**2, box_mm))
+    masks = PackedMask.of(ink), PackedMask.of(solids.mask)
     read = sheet.drawing
-    return InkLeft(ink, read, is_lettering, letters, solid_px, tuple(areas), solids.mask)
+    return InkLeft(masks[0], read, is_lettering, letters, solid_px, tuple(areas), masks[1])
 
 
 def _ink(drawing: Drawing) -> Mask:

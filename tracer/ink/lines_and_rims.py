@@ -49,7 +49,7 @@ def lines_and_areas(drawing: Drawing) -> tuple[Drawing, tuple[Area, ...]]:
 
 def _rims_px(drawing: Drawing, left: InkLeft) -> list[Array]:
     """The edges (n, 2) of the solid areas, rows and columns."""
-    if not left.solid.any():
+    if not left.packed_solid.any():
         return []
     try:
         edges_mm = edges_of(drawing, left.solid).edges_mm

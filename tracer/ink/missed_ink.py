@@ -90,7 +90,7 @@ def _far(sheet: Sheet, left: InkLeft, run: Array, widths_mm: Array) -> _Far:
         places = sheet.places_mm(rows, columns)
         width_mm = np.repeat(widths_mm[patches.patch[some]], counts)
         away_mm, nearest = near.nearest(places)
-        at = np.flatnonzero((away_mm > REACH * width_mm) & (left.ink[rows, columns] > 0))
+        at = np.flatnonzero((away_mm > REACH * width_mm) & left.packed_ink.at(rows, columns))
         at = at[~_at_rim(left, rows[at], columns[at])]
         found.append(_Far(rows[at], columns[at], places[at], run[nearest[at]], width_mm[at]))
     return _Far(*(np.concatenate(column) for column in zip(*found, strict=True)))
@@ -98,16 +98,17 @@ def _far(sheet: Sheet, left: InkLeft, run: Array, widths_mm: Array) -> _Far:
 
 def _at_rim(left: InkLeft, rows: Indices, columns: Indices) -> NDArray[np.bool_]:
     """Whether some pixels lie at the rim of a solid area."""
-    last, found = np.array(left.solid.shape) - 1, np.zeros(len(rows), bool)
+    solid, found = left.packed_solid, np.zeros(len(rows), bool)
+    last = np.array(solid.shape) - 1
     for aside in RIM_PX:
         at = np.clip(np.column_stack([rows, columns]) + aside, 0, last)
-        found |= left.solid[at[:, 0], at[:, 1]] > 0
+        found |= solid.at(at[:, 0], at[:, 1])
     return found
 
 
 def _is_ink(sheet: Sheet, left: InkLeft, places: Array) -> NDArray[np.bool_]:
     """Whether places (n, 2) mm are on ink."""
-    last = np.array(left.ink.shape) - 1
+    last = np.array(left.packed_ink.shape) - 1
     x, y = np.floor(places / sheet.drawing.pitch_mm).astype(int).T
     at = np.clip(np.column_stack([last[0] - y, x]), 0, last)
-    return np.asarray(left.ink[at[:, 0], at[:, 1]] > 0)
+    return left.packed_ink.at(at[:, 0], at[:, 1])

@@ -64,6 +64,7 @@ def trace_ink(
     if drawing.both and not has_lines(drawing):
         return of_silhouettes(drawing, settings, operator, progress)
     left = ink_left(drawing.sheet, operator.letters_from_mm)
+    give_back()
     trace = _of_strokes(drawing.sheet, left, settings, progress)
     if drawing.both:
         trace = with_outlines(trace, drawing, left, settings)
@@ -82,6 +83,7 @@ def _of_strokes(
     loops = SmallLoops(sheet, settings)
     run = _strokes(solved(felt, _told_of(progress)), settings, progress)
     strokes = struck_off(sheet.drawing, _long_enough(_kept(_mended(loops, run))))
+    give_back()
     thinned = Thinned.of(sheet, felt.graph, left)
     strokes += put_down_again(felt, thinned, strokes, settings)
     felt = felt.without_cells()
@@ -114,7 +116,7 @@ def _letters(sheet: Sheet, left: InkLeft) -> Mask | None:
     """The lettering of a sheet; None if there is none."""
     if not left.lettering.any():
         return None
-    rows, columns = left.ink.shape
+    rows, columns = left.packed_ink.shape
     return sheet.patches.painted(left.lettering, 0, rows, 0, columns)
 
 
@@ -185,6 +187,7 @@ def _kept(strokes: Iterable[InkStroke]) -> list[InkStroke]:
             ways = filed([each.way_mm for each in newest])
             kept += [each._replace(way_mm=way) for each, way in zip(newest, ways, strict=True)]
             newest.clear()
+            give_back()
     return kept + newest
 
 

@@ -45,7 +45,7 @@ def with_outlines(trace: Trace, drawing: Drawing, left: InkLeft, settings: Setti
     assert trace.ink is not None
     ink = trace.ink._replace(outlines_asked=True)
     trace = replace(trace, ink=ink)
-    if not left.solid.any():
+    if not left.packed_solid.any():
         return trace
     try:
         solid = edges_of(drawing, left.solid)

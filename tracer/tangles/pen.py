@@ -168,6 +168,13 @@ def away_from(places: Array, way: Array) -> Array:
     return distance
 
 
+def are_within(places: Array, way: Array, reach_mm: float) -> NDArray[np.bool_]:
+    """Whether places (n, 2) are nearer to a way (m, 2) than a reach, mm; one far off meets no piece of it."""
+    distance = np.full(len(places), reach_mm)
+    _away_by_boxes(places, np.ascontiguousarray(np.hstack([way[:-1], way[1:]]).T), distance)
+    return np.asarray(distance < reach_mm)
+
+
 @njit(cache=True, fastmath=True)
 def _away_by_boxes(places, lines, out):  # type: ignore[no-untyped-def]
     """The same as `away` of a long way: a place meets only those pieces in whose box it may be nearer."""

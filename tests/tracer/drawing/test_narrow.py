@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from morfax.jobs.remarks.narrow_gaps import NarrowGaps
+from morfax.tracer.drawing import narrow
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.narrow import Strips, narrow_gaps
 from morfax.tracer.program.trace_ink import trace_ink
@@ -96,3 +97,17 @@ def _off_mm(way: Points, apart_mm: float) -> float:
     """How far a way is from the nearer of the two rings, at most."""
     from_middle = np.abs(np.hypot(*(way - MIDDLE_MM).T) - RADIUS_MM)
     return float(np.abs(from_middle - apart_mm / 2).max())
+
+
+@pytest.mark.parametrize("strip_px", [3_000, 20_000])
+def test_strips_of_a_sheet_are_looked_at_some_rows_at_a_time(
+    strip_px: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Gaps that go on from some rows to the next are one, as on the whole sheet."""
+    drawing = inked(*rings(APART_MM), *rings(3.0), dpi=DPI, seed=1)
+    whole = Strips.of(drawing)
+    lines = [(rings(APART_MM)[0], WIDTH_MM), (going_over(), WIDTH_MM)]
+    found = narrow_gaps(drawing, lines)
+    monkeypatch.setattr(narrow, "FEW_PX", strip_px)
+    assert all(map(np.array_equal, Strips.of(drawing), whole))
+    assert narrow_gaps(drawing, lines) == found

@@ -27,3 +27,13 @@ def test_a_way_is_as_far_off_as_its_nearest_piece_however_long_it_is(pieces: int
     nearest = way[None, :-1] + share[..., None] * steps
     true_mm = np.hypot(*(places[:, None] - nearest).transpose(2, 0, 1)).min(axis=1)
     assert np.abs(pen.away_from(places, way) - true_mm).max() < 0.001 * UM
+
+
+@pytest.mark.parametrize("reach_mm", [0.01, 0.3, 2.0, 100.0])
+def test_places_within_a_reach_are_those_whose_distance_is_less(reach_mm: float) -> None:
+    way = spiral(4 * pen.BOXED)
+    places = np.random.default_rng(4).uniform(-20, 60, (4000, 2))
+    expected = pen.away_from(places, way) < reach_mm
+    assert np.array_equal(pen.are_within(places, way, reach_mm), expected)
+    # one that is just as far off is not within
+    assert not pen.are_within(places[:1], way, float(pen.away_from(places[:1], way)[0])).any()

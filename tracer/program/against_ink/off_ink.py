@@ -26,7 +26,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.felt_pen import FAR, PAPER_FROM, FeltPen
-from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
+from morfax.tracer.tangles.pen import NOWHERE_MM, are_within, away_from
 from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
 from morfax.tracer.tangles.spline import nearest_pieces, wrong_at
 
@@ -64,7 +64,7 @@ def ink_about(
     """The ink about some places (n, 2) mm of a line; other ways (m, 2) mm are drawn there anyway."""
     reach_mm = reach_widths * width_mm
     i, j = SheetWindow.about(drawing, about, reach_mm).grid()
-    within = np.flatnonzero(away_from(middles_mm(drawing, i, j), about) < reach_mm)
+    within = np.flatnonzero(are_within(middles_mm(drawing, i, j), about, reach_mm))
     every = 1 + len(within) // MOST_PLACES
     i, j = i[within[::every]], j[within[::every]]
     places, known_mm = middles_mm(drawing, i, j), np.full(len(i), NOWHERE_MM)
