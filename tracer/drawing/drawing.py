@@ -37,6 +37,7 @@ from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
 from morfax.tracer.drawing.tiles import Tiles
+from morfax.tracer.drawing.two_levels import with_rims
 
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
@@ -257,8 +258,11 @@ class Drawing:
         behind = None if slit is None else grain.mended(slit, np.asarray(darkness), drawn_grain)
         if slit is not None and behind is not None:
             darkness, notes = behind, (*notes, grain.note(slit, pitch_mm))
-        # 4. too large pixels
+        # 4. steps of pixels, and too large pixels
         finer = coarse.times_finer(darkness, lines.width_px)
+        has_steps = hard and behind is None and finer == 1
+        if has_steps:
+            darkness = with_rims(np.asarray(darkness))
         if finer > 1:
             darkness = coarse.finer(np.asarray(darkness), finer, lines.seen_px)
             if reading.pale_is_ink:  # a line of a pixel is paler now
@@ -272,11 +276,11 @@ class Drawing:
             notes=notes,
             finer=finer,
             seen_px=lines.seen_px,
-            is_hard=hard,
+            is_hard=hard and not has_steps,
             grainy=behind is not None,
             paper_noise=paper_noise,
         )
-        if behind is None and finer == 1:  # the darkness that was measured
+        if behind is None and finer == 1 and not has_steps:  # the darkness that was measured
             vars(drawing)["noise"] = lines.found.noise(pitch_mm)
         return drawing
 

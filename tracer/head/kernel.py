@@ -40,11 +40,11 @@ from __future__ import annotations
 import math
 
 from morfax.motion.compiled import njit
+from morfax.motion.moments import NO_PLACES, bend_of, parabola_of, with_place
 from morfax.tracer.head.screws import move, owed_s
 from morfax.tracer.head.state import CHANGED, DRUM, HOME, JUNCTION, MORE, TIGHT
 from morfax.tracer.head.swinging import detect, seen, swing, way_of
 from morfax.tracer.limits import AHEAD_RAD, FOLLOWS
-from morfax.tracer.sensing.moments import NO_PLACES, bend_of, parabola_of, with_place
 
 # Shares of the line's ink; all chosen by trial on the test drawings.
 LOST = 0.2  # less over a sweep: the line has gone from under a head without guard cells

@@ -15,15 +15,15 @@ import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
-from morfax.tracer.head.course import FELT_LEGS
-from morfax.tracer.sensing.leg import Leg, leg_of
-from morfax.tracer.sensing.moments import (
+from morfax.motion.moments import (
     NO_PLACES,
     bend_of,
     parabola_of,
     straight_of,
     with_place,
 )
+from morfax.tracer.head.course import FELT_LEGS
+from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.view import View
 
 LEAST_PLACES = 5  # for a parabola of their own; by trial

@@ -17,10 +17,10 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST, median
+from morfax.motion.moments import LEAST_WEIGHT, bend_of
 from morfax.motion.plane import CORNER_RAD, direction, heading_of, left_of
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.limits import AHEAD_RAD, BACK_RAD, NEARLY_PARALLEL
-from morfax.tracer.sensing.moments import LEAST_WEIGHT, bend_of
 from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, leg_through, parabola
 from morfax.tracer.sensing.scout import FEWEST
 

@@ -18,9 +18,9 @@ from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.arrays import median as median_of
 from morfax.motion.compiled import njit
 from morfax.motion.median import OUTLIERS, ROBUST
+from morfax.motion.moments import LEAST_WEIGHT, bend_of
 from morfax.motion.plane import heading_between, length_between
 from morfax.motion.usual import INCREMENT_MM
-from morfax.tracer.sensing.moments import LEAST_WEIGHT, bend_of
 
 BITTEN = 0.06  # of the width: more than a scan's noise
 FEWEST = 8  # stations: a parabola through fewer follows their noise

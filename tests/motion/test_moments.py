@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.tracer.sensing.moments import (
+from morfax.motion.moments import (
     NO_PLACES,
     Moments,
     parabola_of,
