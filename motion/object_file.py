@@ -1,6 +1,6 @@
 """Object files: what a compiler wrote, and where in it everything lies (ELF of 64 bits, for x86-64).
 
-Signals in: the bytes of an object file. Signals out: its sections, symbols and gaps.
+Signals in: the bytes of an object file. Signals out: its sections, symbols and gaps (relocations).
 
 Source: System V ABI, chapter 4, and its AMD64 supplement. Questions: none.
 """
@@ -48,7 +48,7 @@ class Symbol(NamedTuple):
     size_bytes: int
 
 
-class Gap(NamedTuple):
+class Relocation(NamedTuple):
     """A place in a section into which an address is filled."""
 
     at: int  # bytes from the beginning of the section
@@ -80,12 +80,12 @@ class ObjectFile:
         """What is in a section."""
         return self._code[section.at : section.at + section.size_bytes]
 
-    def gaps(self) -> Iterator[tuple[int, Gap]]:
+    def gaps(self) -> Iterator[tuple[int, Relocation]]:
         """All gaps, each with the number of its section."""
         for section in self.sections:
             if section.kind == GAPS:
                 for fields in GAP_FIELDS.iter_unpack(self.content(section)):
-                    yield section.about, Gap(*fields)
+                    yield section.about, Relocation(*fields)
 
     def _symbols(self) -> Iterator[Symbol]:
         """All symbols, in the order of their numbers."""
