@@ -25,16 +25,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.plane import left_of
+from morfax.motion.plane import cross, left_of, meeting
 from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, beside
-from morfax.tracer.program.laid.bay_run import Bay, apart, laid
-from morfax.tracer.program.laid.line_parts import LEGS, is_clear, is_whole
-from morfax.tracer.program.laid.way_ink import BayInk, WayInk
+from morfax.tracer.program.laid.bay_run import Bay
+from morfax.tracer.program.laid.line_parts import LEGS, is_clear, is_plain
+from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -46,8 +46,6 @@ OFF = 0.45  # widths: a rule that lies further off the head's way runs out along
 LEAST_GAIN = 0.003  # for each width of its length; of teeth it is 0.01 to 0.03
 BENT = 0.05  # widths: a leg that bends by more tells no corner
 LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
-# of what a way leaves where the rule draws otherwise: what leaves more explains something else
-MOST_LEFT = 0.3
 
 
 def with_corners(setup: Setup, lines: Sequence[Line]) -> list[Line]:
@@ -73,16 +71,10 @@ class _Corners(WayInk):
 
     def mended(self) -> Line:
         """The line as it is, or along the rules that explain what was cut."""
-        line = self.line
-        if not self.is_closed or not is_whole(line) or line.as_told:
-            return line
-        bays = list[Bay]()
-        for first, last in [*self._beside_ink(), *self._redrawn()][:MANY]:
-            bay = self._bay(first, last)
-            if bay is not None:
-                bays.append(bay)
-        bays = apart(bays, self.round_mm)
-        return laid(self.setup, line, bays, self.round_mm) if bays else line
+        if not is_plain(self.line) or self.line.as_told:
+            return self.line
+        stretches = [*self._beside_ink(), *self._redrawn()][:MANY]
+        return self.along([bay for each in stretches if (bay := self._bay(*each)) is not None])
 
     def _beside_ink(self) -> Iterator[tuple[int, int]]:
         """The stretches that run beside their ink: their first and last places."""
@@ -90,14 +82,15 @@ class _Corners(WayInk):
             away_mm = np.hypot(*(self.way - place.place_mm).T)
             at = int(np.argmin(away_mm))
             if away_mm[at] < self.step_mm:  # else another line's
-                half = max(round(0.5 * place.length_mm / self.step_mm), 1)
-                yield at - half, at + half
+                yield self.stretch(at, place.length_mm)
 
     def _redrawn(self) -> Iterator[tuple[int, int]]:
         """The same of those along which the head ran out of a tangle: there a corner may be within the ink of
         another line.
         """
         led, places = self.line.led, self.line.xy_mm
+        if REDRAWN not in led.leaders:
+            return
         along = np.rint(lengths_mm(places) / self.step_mm).astype(int)
         for first, last, leader in zip(
             led.firsts, [*led.firsts[1:], len(places)], led.leaders, strict=True
@@ -110,10 +103,7 @@ class _Corners(WayInk):
         leg = round(LEGS[0] / STEP_WIDTHS)
         seen = self.about(first - leg, last + leg, np.empty((0, 2)))
         found = None if seen is None else self._by_ink(seen) or self._by_legs(seen, leg)
-        if seen is None or found is None:
-            return None
-        rule, gain = found
-        return Bay(seen.first * self.step_mm, seen.last * self.step_mm, rule, gain)
+        return None if seen is None or found is None else self.as_bay(seen, *found)
 
     def _by_ink(self, seen: BayInk) -> tuple[Rule, float] | None:
         """The rule that explains the ink of a stretch better than the way does, and by how much."""
@@ -151,7 +141,7 @@ def _met(before: Array, after: Array, bent_mm: float) -> Array | None:
     """Where two legs (n, 2) mm, each towards a corner, meet ahead of both, (x, y) mm; None if one of them is
     bent by more, or both lie in line.
     """
-    middles, ways = list[Array](), list[Array]()
+    middles, ways, half_mm = list[Array](), list[Array](), list[float]()
     for leg in (before, after):
         middle = leg.mean(axis=0)
         way = np.linalg.svd(leg - middle)[2][0]
@@ -160,8 +150,10 @@ def _met(before: Array, after: Array, bent_mm: float) -> Array | None:
             return None
         middles.append(middle)
         ways.append(way)
-    if abs(ways[0] @ left_of(ways[1])) < math.sin(STRAIGHT):
+        half_mm.append(0.5 * float(np.ptp(leg @ way)))
+    if abs(cross(*ways)) < math.sin(STRAIGHT):
         return None
-    on_mm = np.linalg.solve(np.column_stack([ways[0], -ways[1]]), middles[1] - middles[0])
-    half_mm = [np.ptp(leg @ way) / 2 for leg, way in zip((before, after), ways, strict=True)]
-    return np.asarray(middles[0] + on_mm[0] * ways[0]) if (on_mm > half_mm).all() else None
+    corner = meeting(middles[0], ways[0], middles[1], ways[1])
+    parts = zip(middles, ways, half_mm, strict=True)
+    is_ahead = all((corner - middle) @ way > half for middle, way, half in parts)
+    return corner if is_ahead else None

@@ -35,7 +35,7 @@ from morfax.tracer.program.against_ink.unexplained import (
     ink_beside,
     unexplained,
 )
-from morfax.tracer.program.laid.bay_run import Bay, apart, laid
+from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.cut_corners import with_corners
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
@@ -48,7 +48,7 @@ from morfax.tracer.program.laid.line_parts import (
 )
 from morfax.tracer.program.laid.news import News, near_box
 from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays
-from morfax.tracer.program.laid.way_ink import BayInk, WayInk
+from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
@@ -57,9 +57,6 @@ from morfax.tracer.tangles.seen_ink import GAIN, LIKE
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
 FURTHER = 0.01  # as much more must be left for each width more of a way that runs out and back on one line
-# of what a way leaves that does not come beside itself, where the rule draws otherwise: less is a blot,
-# or what a rubber left
-MOST_LEFT = 0.3
 
 
 LeftBy = Callable[[Setup, Sequence[Line], OverLimits], tuple[Unexplained, ...]]
@@ -152,8 +149,7 @@ class _Bays(WayInk):
         bays = [bay for each in suspects if (bay := self._bay(each)) is not None]
         if line.as_told:  # it begins where it is told to
             bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < self.round_mm]
-        bays = apart(bays, self.round_mm)
-        return laid(self.setup, line, bays, self.round_mm) if bays else line
+        return self.along(bays)
 
     def _suspects(self) -> Iterator[Suspect]:
         """Where the way may have passed a bay by or cut it short."""
@@ -167,8 +163,7 @@ class _Bays(WayInk):
             away_mm = np.hypot(*(way - place.place_mm).T)
             at = int(np.argmin(away_mm))
             if place.kind == "beside" and away_mm[at] < width_mm:
-                half = max(round(0.5 * place.length_mm / self.step_mm), 1)
-                yield Suspect(at - half, at + half, nothing)
+                yield Suspect(*self.stretch(at, place.length_mm), nothing)
             elif place.kind == "ink" and away_mm[at] < place.length_mm + width_mm:
                 yield from self._round_bar(place, beside)
 
@@ -206,7 +201,7 @@ class _Bays(WayInk):
         rule = self.explained(seen.ink, rules)
         gain = self._gain(seen, rule, suspect) if rule is not None else None
         if rule is not None and gain is not None:
-            return self._as_bay(seen, rule, gain)
+            return self.as_bay(seen, rule, gain)
         if not suspect.is_beside_itself and not len(suspect.beyond_mm):
             return None
         bay = self._rim_bay(seen, suspect)
@@ -219,10 +214,6 @@ class _Bays(WayInk):
         """The stretch of the way that may be a bay, with legs, and the ink about it."""
         return self.about(suspect.first - leg, suspect.last + leg, suspect.beyond_mm)
 
-    def _as_bay(self, seen: BayInk, rule: Rule | LaidWay, gain: float) -> Bay:
-        """What is laid in place of a stretch."""
-        return Bay(seen.first * self.step_mm, seen.last * self.step_mm, rule, gain)
-
     def _rim_bay(self, seen: BayInk, suspect: Suspect) -> Bay | None:
         """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
         setup, ink, best = self.setup, seen.ink, None
@@ -234,7 +225,7 @@ class _Bays(WayInk):
             if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rule.way)):
                 continue
             if gain is not None and (best is None or gain > best.gain):
-                best = self._as_bay(seen, rule, gain)
+                best = self.as_bay(seen, rule, gain)
         return best
 
     def _gain(self, seen: BayInk, rule: Rule | LaidWay, suspect: Suspect) -> float | None:

@@ -22,6 +22,8 @@ from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
+from morfax.tracer.program.laid.bay_run import Bay, apart, laid
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH, rest_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -29,6 +31,8 @@ from morfax.tracer.tangles import folding_rule, pen
 from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import SeenInk
 
+# of what a way leaves where a rule draws otherwise: what leaves more explains a blot, or what a rubber left
+MOST_LEFT = 0.3
 LONGEST = 80.0  # widths of the line: a longer stretch is no bay; by trial on plates with notches and tongues
 
 
@@ -83,6 +87,20 @@ class WayInk:
         about = np.vstack([own, beyond_mm])
         ink = self._ink(about, rest_of(way, first, last, self.is_closed))
         return None if goes_on(ink, about, REACH) else BayInk(first, last, own, ink)
+
+    def stretch(self, at: int, long_mm: float) -> tuple[int, int]:
+        """The first and the last place of a stretch of a length about a place."""
+        half = max(round(0.5 * long_mm / self.step_mm), 1)
+        return at - half, at + half
+
+    def as_bay(self, seen: BayInk, rule: Rule | LaidWay, gain: float) -> Bay:
+        """What is laid in place of a stretch."""
+        return Bay(seen.first * self.step_mm, seen.last * self.step_mm, rule, gain)
+
+    def along(self, bays: list[Bay]) -> Line:
+        """The line with the head run along those of some bays that lie apart."""
+        bays = apart(bays, self.round_mm)
+        return laid(self.setup, self.line, bays, self.round_mm) if bays else self.line
 
     def explained(self, ink: SeenInk, rules: list[Rule]) -> Rule | None:
         """The rule that explains an ink best. A bay is looked at again when another was mended; the same
