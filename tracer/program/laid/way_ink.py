@@ -95,9 +95,11 @@ class WayInk:
 
     def as_bay(self, seen: BayInk, rule: Rule | LaidWay, gain: float) -> Bay:
         """What is laid in place of a stretch."""
-        count, step_mm, round_mm = len(self.way), self.step_mm, self.round_mm
-        ends = (along_mm(place, count, step_mm, round_mm) for place in (seen.first, seen.last))
-        return Bay(*ends, rule, gain)
+        first_mm, last_mm = (
+            along_mm(place, len(self.way), self.step_mm, self.round_mm)
+            for place in (seen.first, seen.last)
+        )
+        return Bay(first_mm, last_mm, rule, gain)
 
     def along(self, bays: list[Bay]) -> Line:
         """The line with the head run along those of some bays that lie apart."""
