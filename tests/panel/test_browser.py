@@ -212,6 +212,7 @@ def _killed_in_mid_run(server: Server, page: Any, chromium: Any) -> None:
     said = second.locator("#messages")
     api.expect(said).to_contain_text("the server was ended in the middle", timeout=RUN_MS)
     api.expect(said).to_contain_text("the head goes on where it was", timeout=RUN_MS)
+    second.select_option("#pace", label="fast")
     second.select_option("#command-kind", "run")
     api.expect(second.locator("#command")).to_have_text(command, timeout=WAIT_MS)
     ran(second)
