@@ -37,7 +37,6 @@ from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
 from morfax.tracer.drawing.tiles import Tiles
-from morfax.tracer.drawing.two_levels import with_rims
 
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
@@ -244,29 +243,22 @@ class Drawing:
             larger = speckled.on_larger_pixels(np.asarray(grey), times)
             return cls._of_lines(file, larger, times * pitch_mm, notes, reading)
         # 2. pale lines
-        notes += cleared
         drawn_grain = lines.grain
         is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
             pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
-        if pale_mm:
-            lines = within(darkness, paper_noise)
-        notes += grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm)
+            lines = within(darkness, paper_noise) if pale_mm else lines
+        notes = (*notes, *cleared, *grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm))
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
         # 3. grain, of lines as they are drawn
-        slit = grain.slit_for(drawn_grain, lines.width_px, pitch_mm)
-        behind = None if slit is None else grain.mended(slit, np.asarray(darkness), drawn_grain)
-        if slit is not None and behind is not None:
-            darkness, notes = behind, (*notes, grain.note(slit, pitch_mm))
+        averaged = grain.averaged(darkness, drawn_grain, lines.width_px, pitch_mm)
+        if averaged is not None:
+            darkness, notes = averaged.darkness, (*notes, averaged.note)
         # 4. steps of pixels, and too large pixels
-        finer = coarse.times_finer(darkness, lines.width_px)
-        has_steps = hard and behind is None and finer == 1
-        if has_steps:
-            darkness = with_rims(np.asarray(darkness))
-        if finer > 1:
-            darkness = coarse.finer(np.asarray(darkness), finer, lines.seen_px)
-            if reading.pale_is_ink:  # a line of a pixel is paler now
-                pale_mm += deepened(darkness, pitch_mm / finer, None, shapes)
+        steps = hard and averaged is None
+        darkness, finer, has_rims = coarse.without_steps(darkness, lines, steps)
+        if finer > 1 and reading.pale_is_ink:  # a line of a pixel is paler now
+            pale_mm += deepened(darkness, pitch_mm / finer, None, shapes)
         notes = (*notes, deepened_note(pale_mm)) if pale_mm else notes
         drawing = cls(
             darkness,
@@ -276,11 +268,11 @@ class Drawing:
             notes=notes,
             finer=finer,
             seen_px=lines.seen_px,
-            is_hard=hard and not has_steps,
-            grainy=behind is not None,
+            is_hard=hard and not has_rims,
+            grainy=averaged is not None,
             paper_noise=paper_noise,
         )
-        if behind is None and finer == 1 and not has_steps:  # the darkness that was measured
+        if averaged is None and finer == 1 and not has_rims:  # the darkness that was measured
             vars(drawing)["noise"] = lines.found.noise(pitch_mm)
         return drawing
 
