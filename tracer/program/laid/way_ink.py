@@ -122,5 +122,9 @@ class WayInk:
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = np.min([pen.away_from(ink.places_mm, part) for part in rest], axis=0)
         for line in self.lines.reaching(low, high, self.line):
-            known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, line.places_mm))
+            # a known line is as wide as it was felt, and drawn by this line's pen
+            wider_mm = 0.5 * (line.width_mm - self.line.width_mm)
+            known_mm = np.minimum(
+                known_mm, nearest_mm(ink.places_mm, line.places_mm) - wider_mm
+            )
         return ink._replace(known_mm=known_mm)
