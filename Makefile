@@ -42,9 +42,12 @@ bench-long: $(VENV)/installed
 figures: $(VENV)/installed
 	$(BIN)/python -m docs.figures
 
-# the site of the documentation, in site/; any warning is an error
-docs: $(VENV)/installed
+$(VENV)/documented: $(VENV)/installed
 	$(BIN)/pip install --quiet --disable-pip-version-check -e '.[docs]'
+	touch $@
+
+# the site of the documentation, in site/; any warning is an error
+docs: $(VENV)/documented
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 # the tests of trust at full length: every pair of wear, ten thousand dropouts, tapes of three and six hours; 12 GB, about an hour.

@@ -69,7 +69,7 @@ class Result(click.ParamType):
         return [CompletionItem(incomplete, type="file")]
 
 
-class Report(Result):
+class ReportFile(Result):
     """The name for a report; a picture is refused with the option that draws it."""
 
     def convert(

@@ -10,7 +10,7 @@ import click
 from morfax.console.options.cutting import KERF, kerf_is_cutter
 from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT, drawing_options
-from morfax.console.options.files import FILE, PICTURES, Report, Result
+from morfax.console.options.files import FILE, PICTURES, ReportFile, Result
 from morfax.console.options.groups import Verb, given, option, renamed
 from morfax.console.options.output import FORCE
 from morfax.console.options.systems import Systems
@@ -67,7 +67,7 @@ Examples:
     "Output",
     "-o",
     "report",
-    type=Report(".html"),
+    type=ReportFile(".html"),
     help="With --systems: write a report with all pictures, in one file (.html).",
 )
 @FORCE
