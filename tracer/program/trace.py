@@ -25,6 +25,7 @@ from morfax.tracer.following.start import ends_of, put_down
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.against_ink.unexplained import bare_ways
 from morfax.tracer.program.best_run import Target, best_of
 from morfax.tracer.program.laid.bent import bent
 from morfax.tracer.program.laid.narrow_bays import explained
@@ -89,7 +90,7 @@ def followed(
     other_turns: bool = True,
 ) -> Line:
     """The head's best run along the line at a place, or along the longest line; of ink that closes, and on
-    which the head is lost, the way round that its junctions show.
+    which the head is lost, the way round that its junctions show, unless that leads over bare paper.
 
     With `other_turns` it tries other turns than straight on if the line does not come back.
     """
@@ -99,7 +100,9 @@ def followed(
     if others:
         raise _several_lead([best, *others])
     found = round_ring(setup, best) if best.ending in ("lost", "joined") else None
-    return best if found is None else replace(found, number=number)
+    if found is None or any(bare_ways(setup.sheet, [found], setup.settings.gap_mm)):
+        return best
+    return replace(found, number=number)
 
 
 def followed_from_an_end(setup: Setup, stroke: Stroke, number: int = 1) -> Line | None:

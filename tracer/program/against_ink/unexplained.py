@@ -28,7 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import lengths_mm, nearest_mm, with_places
+from morfax.motion.plane import heading_of
+from morfax.motion.polyline import WITHIN_MM, at_lengths, lengths_mm, nearest_mm, with_places
 from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.drawing import Drawing
@@ -57,6 +58,8 @@ ASTRAY = 0.2
 # finer, ink looks broader at corners
 MISSED, MISSED_COARSE = 1.25, 2.0
 
+AHEAD = np.radians(np.linspace(-80.0, 80.0, 17))  # of a line's end: where its ink would go on
+
 Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale", "off"]
 
 
@@ -84,8 +87,8 @@ def unexplained(
     setup: Setup, lines: Sequence[Line], limits: OverLimits = SURE
 ) -> tuple[Unexplained, ...]:
     """What some lines leave unexplained, the longest first: of closed ones all, of lines that ran into
-    themselves only ink, for there the head may have turned off its line, of open ones only where they run
-    beside their ink, by more than some limits.
+    themselves only ink, for there the head may have turned off its line, and of open ones where ink goes on
+    beyond an end, of others only where they run beside their ink, by more than some limits.
 
     Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
     """
@@ -102,12 +105,10 @@ def unexplained(
 
 
 def _of_closed(setup: Setup, lines: Sequence[Line]) -> list[Unexplained]:
-    """What those of some lines that came round leave unexplained, but for stretches beside their ink."""
-    if not _come_round(lines):
-        return []
-    closed = [line for line in lines if line.ending == "closed"]
+    """What those of some lines that should leave none of their ink leave, but for stretches beside it."""
     sheet, gap_mm = setup.sheet, setup.settings.gap_mm
-    found = [*ink_beside(sheet, lines), *_bare_ways(sheet, closed, gap_mm)]
+    closed = [line for line in lines if line.ending == "closed"]
+    found = [*ink_beside(sheet, lines), *bare_ways(sheet, closed, gap_mm)]
     found += _tips_cut(sheet.drawing.edges_mm, closed)
     found += _once(_off_edges(sheet.drawing, closed))
     return found or list(_astray(sheet, closed))
@@ -137,26 +138,46 @@ def is_about(place: Unexplained, others: Sequence[Unexplained], lines: Sequence[
     return any(math.dist(place.place_mm, other.place_mm) < about_mm for other in others)
 
 
-def _come_round(lines: Sequence[Line]) -> list[Line]:
-    """Those of some lines that came round."""
-    return [line for line in lines if line.ending in ("closed", "joined")]
+def _leave_none(sheet: Sheet, lines: Sequence[Line]) -> list[Line]:
+    """Those of some lines that leave none of their ink: that came round, or ended where ink goes on."""
+    return [
+        line
+        for line in lines
+        if line.ending in ("closed", "joined")
+        or (line.ending == "ended" and _ends_in_ink(sheet, line))
+    ]
+
+
+def _ends_in_ink(sheet: Sheet, line: Line) -> bool:
+    """Whether ink that is no other part's goes on ahead beyond an end of an open line, farther than the round
+    end of its pen.
+    """
+    places, reach_mm = line.places_mm, MISSED * line.width_mm
+    for way in (places, places[::-1]):
+        end, before = at_lengths(way, np.array([0.0, line.width_mm]))
+        headings = heading_of(end - before) + AHEAD
+        ahead_mm = end + reach_mm * np.column_stack([np.cos(headings), np.sin(headings)])
+        is_no_others = nearest_mm(ahead_mm, places) > reach_mm - WITHIN_MM
+        if (_darkness(sheet, ahead_mm[is_no_others]) > PALE).any():
+            return True
+    return False
 
 
 def ink_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Unexplained]:
-    """Ink of the patches of those of some lines that came round, beside all ways."""
-    patches, come_round = sheet.patches, _come_round(lines)
-    if not come_round:
+    """Ink of the patches of those of some lines that leave none of theirs, beside all ways."""
+    patches, whole = sheet.patches, _leave_none(sheet, lines)
+    if not whole:
         return
     # 1. the patches on which they run, and how wide the widest of them is
     widths_mm = np.zeros(patches.count)
-    for line in come_round:
+    for line in whole:
         patch = sheet.patch_at(line.loop_mm[0])
         widths_mm[patch] = max(widths_mm[patch], line.width_mm)
     runs = np.flatnonzero((widths_mm > 0)[patches.patch] & ~sheet.are_solid[patches.patch])
     if not len(runs):
         return
     # 2. how far both ends of their runs are from the ways
-    tips = [side for line in come_round if line.ending == "closed" for side in points_of(line)]
+    tips = [side for line in whole if line.ending == "closed" for side in points_of(line)]
     ways = np.vstack([*(line.places_mm for line in lines), *tips])
     ends = np.vstack([sheet.run_begins_mm(runs), sheet.run_ends_mm(runs)])
     away_mm = nearest_mm(ends, ways).reshape(2, -1)
@@ -174,8 +195,8 @@ def ink_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Unexplained]:
         yield Unexplained((float(x), float(y)), float(away_mm[:, mine].max()), "ink")
 
 
-def _bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[Unexplained]:
-    """Stretches of closed lines over bare paper."""
+def bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[Unexplained]:
+    """Stretches of closed lines over bare paper, longer than a gap that the head may cross."""
     for line in closed:
         places = line.loop_mm
         come_mm, dark = lengths_mm(places), _darkness(sheet, places)

@@ -64,6 +64,26 @@ def test_ink_beside_a_line_that_ran_into_itself_is_told_too() -> None:
     assert "1 piece of ink joined to the line beside its way" in said
 
 
+def slanting(first_mm: float, last_mm: float) -> Points:
+    """A straight line from one place to another along one at 45 degrees."""
+    first, last = (10 + math.sqrt(0.5) * mm for mm in (first_mm, last_mm))
+    return polyline((first, first), (last, last))
+
+
+@pytest.mark.parametrize("ends_mm", [(0.0, 15.0), (15.0, 30.0), (5.0, 20.0), (0.0, 30.0)])
+def test_an_open_line_that_ends_where_its_ink_goes_on_leaves_the_rest(
+    ends_mm: tuple[float, float],
+) -> None:
+    """The line drawn is 30 mm long, and the head ran along a part of it, or all."""
+    setup = Setup(Sheet.of(inked(slanting(0.0, 30.0), seed=1)))
+    line = replace(closed(slanting(*ends_mm)), ending="ended")
+    left_mm = [mm for mm in (ends_mm[0], 30 - ends_mm[1]) if mm > 0]
+    found = unexplained(setup, [line])
+    assert [place.kind for place in found] == ["ink"] * len(left_mm)
+    for place, mm in zip(found, sorted(left_mm, reverse=True), strict=True):
+        assert place.length_mm == pytest.approx(mm + WIDTH_MM / 2, abs=2 * PIXEL_MM)
+
+
 def test_a_burr_of_half_a_width_is_not_told() -> None:
     drawing = inked(with_tip(0.5 * WIDTH_MM), seed=1)
     assert unexplained(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))]) == ()
