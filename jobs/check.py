@@ -92,7 +92,8 @@ class CheckJob:
             made = machine(self.machine)
         if not medium.is_gcode(FilePath(f"program{made.suffix}")):
             raise WrongUse(
-                f"--machine {made.name} takes no G-code; check is for machines that do"
+                f"--machine {made.name} takes no G-code, and check reads G-code alone; give a machine that "
+                "takes it, `morfax machines` lists them"
             )
         return made
 

@@ -55,7 +55,7 @@ class CorrectJob:
 
         if not self.drawing.corrections.used:
             raise WrongUse(
-                "corrections cannot be made without corrections; leave --no-corrections out"
+                "correct makes corrections, and --no-corrections reads none; leave --no-corrections out"
             )
         file = self.drawing.corrections.file_of(self.drawing.file)
         scan = self.drawing.scanned(listener)

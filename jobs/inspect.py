@@ -53,7 +53,9 @@ class InspectJob:
         is_program = medium.kind_of(self.tape) == "program"
         if self.picture is not None:
             if not is_program or self.tape.suffix.lower() != ".steps":
-                raise WrongUse(f"{self.tape} has no punched tape to draw; -o is for .steps")
+                raise WrongUse(
+                    f"{self.tape} has no punched tape to draw; --picture is for .steps, leave it out"
+                )
             medium.outgoing(self.picture, self.tape)
         if not is_program:
             return self._of_tape(listener)

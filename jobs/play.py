@@ -173,9 +173,8 @@ class PlayJob:
         }
         if not fault and not passage.worked:
             listener.warning(
-                "the tool never comes into the work; on a tape that runs backwards it goes up where it "
-                "should "
-                "go down"
+                "the tool never comes into the work: if the tape runs backwards, the tool goes up where it "
+                "should go down; turn the tape round, and look at the Z of the program"
             )
         return PlayResult(figures, paths, charts, path, chart, speeds, fault, picture)
 
@@ -237,9 +236,13 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
 
     control, pulses = control_of(tape), CONTROLS[".ngc"]
     if str(tape) == PIPE and given:
-        raise WrongUse(f"{_options(given)} is for files, not for a pipe or a device")
+        raise WrongUse(
+            f"{_options(given)} is for files, not for a pipe or a device; leave it out"
+        )
     if control != TAPE and not given.keys().isdisjoint(FOR_TAPES):
-        raise WrongUse(f"{_options(given.keys() & FOR_TAPES)} is for tapes; {tape} is not one")
+        raise WrongUse(
+            f"{_options(given.keys() & FOR_TAPES)} is for tapes, and {tape} is none; leave it out"
+        )
     blocks = "programs of lines and arcs, .ngc"
     # setting, as it was written, the controls that have it, and in words what they play
     for name, option, has_it, what in (
@@ -249,7 +252,7 @@ def _refuse_foreign(tape: FilePath, given: dict[str, Any]) -> None:
         ("feed_override", "--feed-override", (TAPE, pulses), f"tapes and for {blocks}"),
     ):
         if name in given and control not in has_it:
-            raise WrongUse(f"{option} is for {what}; {tape} is not one")
+            raise WrongUse(f"{option} is for {what}, and {tape} is none; leave it out")
     if "control" in given and not given.keys().isdisjoint(FOR_PULSES):
         raise WrongUse(
             f"{_options(given.keys() & FOR_PULSES)} is for the pulse control; leave --control out"

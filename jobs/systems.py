@@ -87,7 +87,8 @@ class SystemsJob:
                 medium.outgoing(output, file)
         if medium.kind_of(file) != "drawing":
             raise WrongUse(
-                f"{file} is no drawing; --systems traces one and plays it on each system"
+                f"{file} is no drawing; --systems traces a drawing and plays it on each system: give a scan, "
+                "such as a .png"
             )
         # 2. trace, record, play, measure
         drawing = self.drawing.for_lines(tracing.settings.line).open(listener)

@@ -191,8 +191,8 @@ class Playing:
         if order := getattr(playback, "found_order", None):
             tracks = ",".join(map(str, order))
             listener.warning(
-                f"{self.file.name} has its tracks in another order; its check signal or its end tells that "
-                f"it is --tracks {tracks}"
+                f"the tracks of {self.file.name} are in another order, by its check signal or its end: it is "
+                f"played as by --tracks {tracks}"
             )
         met: list[Fault] = []
         motion = _until_fault(_noting(playback, listener), met)

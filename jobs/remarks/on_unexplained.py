@@ -69,7 +69,7 @@ SAID: dict[Kind, tuple[tuple[str, str], str]] = {
     # strokes that leave ink, or go over paper, where lines meet
     "off": (
         ("place", "places"),
-        "the strokes are not what is drawn at {many}, the worst at {at}, for {mm:.1f} mm: a corner or an end "
+        "the strokes do not match the ink at {many}, the worst at {at}, for {mm:.1f} mm: a corner or an end "
         "in the ink of another line, or ink that is no line; look there in --picture, and draw it with a "
         "finer pen, or a little further from that line",
     ),

@@ -64,8 +64,8 @@ class LineSettings:
         """Raise WrongUse for lettering where one line, or some by their numbers, are asked for."""
         if self.lettering_mm is not None and not isinstance(self.lines, str):
             raise WrongUse(
-                "--lettering says what --lines all, contours and outer do with letters; give one of these "
-                "too, or leave it out"
+                "--lettering is for --lines all, contours or outer; give one of these too, or leave "
+                "--lettering out"
             )
 
     def check(self) -> None:

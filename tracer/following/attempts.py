@@ -267,7 +267,7 @@ class Attempts:
         is_open = run.ending == "ended"
         what = "the line is open" if is_open else "the line does not come back that way round"
         raise LineFault(
-            f"direction {direction}: {what}; leave --direction out, or look at the drawing"
+            f"--direction {direction}: {what}; leave --direction out, or look at the drawing"
         )
 
 

@@ -58,8 +58,8 @@ def turned_to(stance: Stance, start_mm: tuple[float, float] | None, side: Side) 
     way = stance.place_mm - np.asarray(stance.place_mm if start_mm is None else start_mm)
     if np.hypot(*way) < ON_LINE_WIDTHS * stance.view.width_mm:
         raise LineFault(
-            f"direction {side}: the head was put down on the line and comes to it from neither side;"
-            " give --start X,Y beside the line, or --direction cw or ccw"
+            f"--direction {side} is seen from the way that comes to the line, and the head was put down on"
+            " the line; give --start X,Y beside it, or --direction cw or ccw"
         )
     ahead = turn(math.atan2(way[1], way[0]), stance.heading_rad)
     return stance if (ahead > 0) == (side == "left") else turned_about(stance)

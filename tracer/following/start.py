@@ -174,7 +174,7 @@ def reference_on(drawing: Drawing) -> tuple[float, float]:
     places = "; ".join(f"{x:.1f},{y:.1f}" for x, y in listed)
     what = f"{len(found)} crosses and rings, at {places}" if found else "no small cross or ring"
     raise LineFault(
-        f"no reference point is certain: the drawing has {what}; give its place, X,Y in mm, instead"
+        f"no reference point is certain: the drawing has {what}; give its place in mm instead, --zero X,Y"
     )
 
 
