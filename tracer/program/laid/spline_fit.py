@@ -36,6 +36,9 @@ TURNS_OVER = 0.25  # on either side of a place, by how much the way turns there
 # of that: more is a corner; less may be one
 CORNER_RAD, MAYBE_RAD = math.radians(30), math.radians(12)
 FOLDED_RAD = math.radians(165)  # a corner that turns by more is no tip, but a way out and back
+# a spline that turns by so much more than the stretch swings from rim to rim of ink that is broader than its
+# pen: those of a felt pen's lines turned by 820 to 1950 degrees more, right ones by up to 150
+SWINGS_RAD = math.tau
 MOST_CORNERS = 5  # are tried at a time
 PRICE = 0.001  # of a figure more, as misfit
 
@@ -65,7 +68,8 @@ class Spline(NamedTuple):
 
 def explained(ink: SeenInk, own: Array, step_mm: float, limit: float) -> Spline | None:
     """The spline along a stretch (n, 2) mm of places a step apart that explains the ink best; what it leaves
-    about a place below a limit is noise. None if the stretch goes out and back, as along a tick.
+    about a place below a limit is noise. None if the stretch goes out and back, as along a tick, or if every
+    spline swings in its ink.
     """
     if turns_rad(own).max() > FOLDED_RAD:
         return None
@@ -77,7 +81,8 @@ def explained(ink: SeenInk, own: Array, step_mm: float, limit: float) -> Spline 
         starts.append(np.vstack([own[: first + 1], turned, own[last + 1 :]]))
     crosses = len(starts) > 1
     fits = [_Fit(ink, start, step_mm, limit, crosses).best() for start in starts]
-    return min(fits, key=lambda spline: spline.cost)
+    best = min(fits, key=lambda spline: spline.cost)
+    return best if math.isfinite(best.cost) else None
 
 
 def left_by(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> float:
@@ -108,6 +113,12 @@ def _turned_rad(before: Array, after: Array) -> Array:
     """By how much each of some steps (n, 2) turns to those after them, (n,)."""
     turned = np.arctan2(after[:, 1], after[:, 0]) - np.arctan2(before[:, 1], before[:, 0])
     return np.asarray(np.abs(turned - math.tau * np.round(turned / math.tau)))
+
+
+def _turned_in_all_rad(way: Array) -> float:
+    """By how much a way (n, 2) turns, to either side, all along."""
+    steps = np.diff(way, axis=0)
+    return float(_turned_rad(steps[:-1], steps[1:]).sum())
 
 
 def corners_of(turned_rad: Array) -> list[int]:
@@ -160,6 +171,10 @@ class _Fit:
         before, after = way[at] - way[at - 1], way[at + 1] - way[at]
         return bool(np.any(_turned_rad(before, after) > FOLDED_RAD))
 
+    def _swings(self, way: Array) -> bool:
+        """Whether a way (m, 2) mm turns much more than the stretch."""
+        return _turned_in_all_rad(way) - _turned_in_all_rad(self.own) > SWINGS_RAD
+
     def _changed(self, corners: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
         """Some corners with one more, where the way turns most, or one fewer."""
         apart, more = round(CORNERS_APART / STEP_WIDTHS), list[int]()
@@ -179,7 +194,7 @@ class _Fit:
         weights = Weights.apart(len(self.own), corners, every_widths / STEP_WIDTHS)
         strip = Strip.along(self.own, self.step_mm, weights, PLACES_WIDTHS * ink.width_mm)
         way = strip.settled(ink)
-        folds = self._folds(way, np.flatnonzero(strip.sharp))
-        misfit = math.inf if folds else left_by(ink, way, strip.sharp)
+        is_none = self._folds(way, np.flatnonzero(strip.sharp)) or self._swings(way)
+        misfit = math.inf if is_none else left_by(ink, way, strip.sharp)
         worst = float(wrong_about(ink, way, strip.sharp, PLACES_WIDTHS).max())
         return Spline(way, strip.sharp, corners, strip.figures, misfit, worst)

@@ -90,6 +90,27 @@ def test_where_the_cell_led_the_ink_is_the_lines_own() -> None:
     assert strokes_off_ink(drawing, [stroke(line, CELL) for line in (ACROSS, CUT)]) == []
 
 
+def spilt(line: Points, radius_mm: float) -> list[Points]:
+    """Ink that a felt pen left at places along its rims."""
+    at_mm = np.arange(2.0, length_mm(line) - 2.0, 1.1)
+    sides = 0.5 * WIDTH_MM * np.where(np.arange(len(at_mm)) % 3, 1, -1)
+    places = at_lengths(line, at_mm) + np.outer(sides, [0.3, 1.0])
+    round_rad = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    rim = radius_mm * np.column_stack([np.cos(round_rad), np.sin(round_rad)])
+    return [place + rim for place in places]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_what_a_felt_pen_leaves_all_along_is_not_told(seed: int) -> None:
+    """As it would be if the cell had led nowhere; a stroke beside its ink is told."""
+    specks = [speck for line in (ACROSS, TIP) for speck in spilt(line, 0.24)]
+    drawing = inked(ACROSS, TIP, seed=seed, specks=specks)
+    across, bend = stroke(ACROSS, CELL), stroke(TIP)
+    assert strokes_off_ink(drawing, [across, bend]) == []
+    assert strokes_off_ink(inked(ACROSS, TIP, seed=seed, specks=specks), [stroke(ACROSS), bend])
+    assert strokes_off_ink(drawing, [across, stroke(polyline((12, 8), (20, 18)))])
+
+
 def test_strokes_of_all_the_ink_are_held_against_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if the head had left out all but the first stroke."""
     lines = polyline((4, 4), (36, 28)), polyline((4, 28), (36, 4)), polyline((4, 15), (36, 17))

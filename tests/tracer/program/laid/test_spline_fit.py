@@ -38,12 +38,13 @@ def bend(deflection_deg: float, leg_mm: float = 3.0) -> Points:
     )
 
 
-def seen(truth: Points, own: Points) -> SeenInk:
-    """The ink about a stretch of a line that goes on at both its ends."""
+def seen(truth: Points, own: Points, pen_mm: float = WIDTH_MM) -> SeenInk:
+    """The ink about a stretch of a line that goes on at both its ends, drawn with a pen."""
     onward = own[-1] + 4 * unit(own[-1] - own[-2])
     before, behind = np.array([own[0] - [4, 0], own[0]]), np.array([own[-1], onward])
     drawn = np.vstack([before[:1], truth, behind[1:]])
-    return ink_about(inked(drawn, seed=1), own, WIDTH_MM, REACH, [before, behind])
+    drawing = inked(drawn, seed=1, width_mm=pen_mm)
+    return ink_about(drawing, own, WIDTH_MM, REACH, [before, behind])
 
 
 def cut_short(way: Points, by_mm: float) -> Points:
@@ -132,6 +133,15 @@ def test_a_way_out_and_back_along_a_tick_has_no_spline() -> None:
     own = evenly(polyline((7, 10), (10, 10), (10, 12), (10.001, 10), (13, 10)), STEP_MM)
     drawing = inked(polyline((7, 10), (13, 10)), polyline((10, 10), (10, 12)), seed=1)
     assert explained(ink_about(drawing, own, WIDTH_MM, REACH), own, STEP_MM, NOISE) is None
+
+
+@pytest.mark.parametrize("broader", [1.3, 1.5, 1.8])
+def test_no_spline_swings_from_rim_to_rim_of_ink_that_is_broader_than_the_line(
+    broader: float,
+) -> None:
+    """It lay up to 0.4 widths off the middle, to one side and the other, ten times in as many widths."""
+    own = cut_short(bend(90), 0.3)
+    assert explained(seen(bend(90), own, broader * WIDTH_MM), own, STEP_MM, NOISE) is None
 
 
 def test_a_stretch_that_crosses_itself_has_a_spline() -> None:
