@@ -110,10 +110,13 @@ class Rule(NamedTuple):
 
 def along(way: Array, half_mm: float) -> Iterator[Rule]:
     """Rules along a way (n, 2) mm, with the corners of it that matter most."""
-    for count in ROUNDED:
+    kept = list[Array]()
+    for count in sorted(ROUNDED, reverse=True):
         if len(way) >= count + 2:
-            kept = _reduced(way, count + 2)
-            yield from _of_corners(kept[0], kept[-1], kept[1:-1], half_mm)
+            way = _reduced(way, count + 2)
+            kept.append(way)
+    for each in reversed(kept):
+        yield from _of_corners(each[0], each[-1], each[1:-1], half_mm)
 
 
 def sharp(first_mm: Array, last_mm: Array, corners_mm: Array, half_mm: float) -> Rule:

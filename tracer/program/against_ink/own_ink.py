@@ -24,6 +24,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -67,9 +69,8 @@ class OverLimits(NamedTuple):
 
 SURE = OverLimits(0.05, specks_px2=2.2, of_most=6.0)  # specks, which a scan has, leave so much
 DOUBT = OverLimits(0.015, specks_px2=0.66, of_most=1.8)  # it may be wrong
-NEARLY = OverLimits(
-    0.0075, specks_px2=0.0, of_most=1.8
-)  # a corner cut by a tenth of a width is over by more
+# a corner cut by a tenth of a width is over by more; the least of all: nothing below it is looked at
+NEARLY = OverLimits(0.0075, specks_px2=0.0, of_most=1.8)
 
 
 class BesideInk(NamedTuple):
@@ -110,35 +111,51 @@ class _Tiles(NamedTuple):
         return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
 
 
-def beside(
-    drawing: Drawing, lines: Sequence[Line], limits: OverLimits = SURE
-) -> Iterator[BesideInk]:
-    """Where lines that closed or ended run beside their ink, by more than some limits; nothing where no pen
-    can be told.
-    """
-    if not drawing.noise.softness_px > 0 or drawing.grainy:
-        return
-    ways = _ways(drawing, lines)
-    doubtful = _doubtful(drawing, ways, limits) if ways.judged.any() else ways.judged
-    judged = list(_judged(drawing, ways, limits, doubtful)) if doubtful.any() else []
-    if not judged:
-        return
-    line, station, over = (np.concatenate(column) for column in zip(*judged, strict=True))
-    for number in np.flatnonzero(doubtful):
-        own = np.flatnonzero(line == number)
-        order = own[np.argsort(station[own], kind="stable")]
-        usual = percentile(over[order], MOST) if len(order) else 0.0
-        least, sure = (
-            max(float(each.of(ways.half_px[number])), each.of_most * usual)
-            for each in (limits, SURE)
-        )
-        for first, last in _stretches(over[order] > least):
-            stretch = order[first:last]
-            worst = stretch[int(np.argmax(over[stretch]))]
-            places = 1 + station[stretch[-1]] - station[stretch[0]]
-            place_mm = _mm(drawing, ways.places_px[station[worst]])
-            long_mm = float(places * PLACES_PX * drawing.pitch_mm)
-            yield BesideInk(place_mm, long_mm, bool(over[worst] > sure))
+@dataclass(frozen=True, eq=False)
+class OwnInk:
+    """Some lines of a drawing, which are held against their ink once, for all limits."""
+
+    drawing: Drawing
+    lines: Sequence[Line]
+
+    def beside(self, limits: OverLimits) -> Iterator[BesideInk]:
+        """Where lines that closed or ended run beside their ink, by more than some limits; nothing where no
+        pen can be told.
+        """
+        for half_px, station, over in self._judged:
+            usual = percentile(over, MOST)
+            least, sure = (
+                max(float(each.of(half_px)), each.of_most * usual) for each in (limits, SURE)
+            )
+            for first, last in _stretches(over > least):
+                worst = first + int(np.argmax(over[first:last]))
+                places = 1 + station[last - 1] - station[first]
+                place_mm = _mm(self.drawing, self._ways.places_px[station[worst]])
+                long_mm = float(places * PLACES_PX * self.drawing.pitch_mm)
+                yield BesideInk(place_mm, long_mm, bool(over[worst] > sure))
+
+    @cached_property
+    def _ways(self) -> Ways:
+        """The ways of the lines."""
+        return _ways(self.drawing, self.lines)
+
+    @cached_property
+    def _judged(self) -> list[tuple[Array, NDArray[np.int64], Array]]:
+        """Of each line that is not surely on its ink half its width in pixels, the stations in the order of
+        the way, and what is over there.
+        """
+        drawing = self.drawing
+        if not drawing.noise.softness_px > 0 or drawing.grainy or not self.lines:
+            return []
+        ways = self._ways
+        doubtful = _doubtful(drawing, ways) if ways.judged.any() else ways.judged
+        if not doubtful.any():
+            return []
+        found = zip(*_judged(drawing, ways, doubtful), strict=True)
+        line, station, over = (np.concatenate(column) for column in found)
+        of_line = (np.flatnonzero(line == number) for number in np.flatnonzero(doubtful))
+        ordered = [own[np.argsort(station[own], kind="stable")] for own in of_line]
+        return [(ways.half_px[line[own[0]]], station[own], over[own]) for own in ordered]
 
 
 def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
@@ -154,11 +171,10 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
     )
 
 
-def _doubtful(drawing: Drawing, ways: Ways, limits: OverLimits) -> NDArray[np.bool_]:
+def _doubtful(drawing: Drawing, ways: Ways) -> NDArray[np.bool_]:
     """Which lines are not surely on their ink: most are, and need not be judged."""
     doubtful = np.zeros(len(ways.judged), bool)
-    least = limits.of(ways.half_px)
-    pen = _pen(drawing, ways, limits.over)
+    least, pen = NEARLY.of(ways.half_px), _pen(drawing, ways)
     for part in parts(drawing, ways, _are_stations(ways, ways.judged), QUICK_PX, pen):
         asked = ~doubtful[ways.line[part.stations]]
         line = ways.line[part.stations[asked]]
@@ -169,10 +185,10 @@ def _doubtful(drawing: Drawing, ways: Ways, limits: OverLimits) -> NDArray[np.bo
 
 
 def _judged(
-    drawing: Drawing, ways: Ways, limits: OverLimits, which: NDArray[np.bool_]
+    drawing: Drawing, ways: Ways, which: NDArray[np.bool_]
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
     """The stations of some lines, tile by tile: line, number of the place, and what is over."""
-    pen = _pen(drawing, ways, limits.over)
+    pen = _pen(drawing, ways)
     for part in parts(drawing, ways, _are_stations(ways, which), TILE_PX, pen):
         over = over_at(part.seen, part.ways, part.at, part.pen, part.room)
         yield ways.line[part.stations], part.stations, over
@@ -230,11 +246,11 @@ def _near_ends(ways: Ways) -> NDArray[np.bool_]:
     return np.asarray((from_first < near) | (to_last < near))
 
 
-def _pen(drawing: Drawing, ways: Ways, over: float) -> PenOnInk:
-    """The pen of most lines; what it draws on paper matters above a limit."""
+def _pen(drawing: Drawing, ways: Ways) -> PenOnInk:
+    """The pen of most lines; what it draws on paper matters above the least limit."""
     half_px, noise = median(ways.half_px[ways.judged]), drawing.noise
     reach_px, paper = 2 * REACH_WIDTHS * half_px, 0.5 * noise.paper**2
-    return PenOnInk(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, over)
+    return PenOnInk(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, NEARLY.over)
 
 
 def _every(ways: Ways) -> int:

@@ -39,7 +39,7 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER, TIP_RAD
-from morfax.tracer.program.against_ink.own_ink import SURE, OverLimits, beside
+from morfax.tracer.program.against_ink.own_ink import DOUBT, OwnInk
 from morfax.tracer.program.against_ink.pointed import points_of
 from morfax.tracer.program.against_ink.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
@@ -83,22 +83,21 @@ class Unexplained(NamedTuple):
     is_sure: bool = True
 
 
-def unexplained(
-    setup: Setup, lines: Sequence[Line], limits: OverLimits = SURE
-) -> tuple[Unexplained, ...]:
+def unexplained(setup: Setup, own: OwnInk) -> tuple[Unexplained, ...]:
     """What some lines leave unexplained, the longest first: of closed ones all, of lines that ran into
     themselves only ink, for there the head may have turned off its line, and of open ones where ink goes on
-    beyond an end, of others only where they run beside their ink, by more than some limits.
+    beyond an end, of others only where they may run beside their ink.
 
     Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
     """
+    lines = own.lines
     if not lines or setup.operator.reads_marks(lines):
         return ()
-    sheet, found = setup.sheet, _of_closed(setup, lines)
+    found = _of_closed(setup, lines)
     # ink that was missed by little may lie in a bay that was cut short
     reach_mm = (0.5 + CLEAR_WIDTHS) * max(line.width_mm for line in lines)
     other = [place for place in found if place.kind != "ink" or place.length_mm > reach_mm]
-    bays = list(_beside_ink(sheet.drawing, lines, other, limits))
+    bays = list(_beside_ink(own, other))
     sure = [place for place in bays if place.is_sure]
     found = [place for place in found if not is_about(place, sure, lines)] + bays
     return tuple(sorted(found, key=lambda place: -place.length_mm))
@@ -114,21 +113,16 @@ def _of_closed(setup: Setup, lines: Sequence[Line]) -> list[Unexplained]:
     return found or list(_astray(sheet, closed))
 
 
-def beside_ink(
-    setup: Setup, lines: Sequence[Line], limits: OverLimits = SURE
-) -> tuple[Unexplained, ...]:
-    """Where lines run beside their ink, by more than some limits; the longest first."""
-    found = _beside_ink(setup.sheet.drawing, lines, (), limits) if lines else ()
-    return tuple(sorted(found, key=lambda place: -place.length_mm))
+def beside_ink(setup: Setup, own: OwnInk) -> tuple[Unexplained, ...]:
+    """Where some lines may run beside their ink; the longest first."""
+    return tuple(sorted(_beside_ink(own, ()), key=lambda place: -place.length_mm))
 
 
-def _beside_ink(
-    drawing: Drawing, lines: Sequence[Line], found: Sequence[Unexplained], limits: OverLimits
-) -> Iterator[Unexplained]:
-    """Stretches of lines beside their ink, but for those about what was found otherwise."""
-    for place_mm, long_mm, is_sure in beside(drawing, lines, limits):
+def _beside_ink(own: OwnInk, found: Sequence[Unexplained]) -> Iterator[Unexplained]:
+    """Stretches of lines that may be beside their ink, but for those about what was found otherwise."""
+    for place_mm, long_mm, is_sure in own.beside(DOUBT):
         place = Unexplained(place_mm, long_mm, "beside", is_sure=is_sure)
-        if not is_about(place, found, lines):
+        if not is_about(place, found, own.lines):
             yield place
 
 

@@ -23,6 +23,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.plane import cross, left_of, meeting
@@ -31,9 +32,10 @@ from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
-from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, beside
+from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
-from morfax.tracer.program.laid.line_parts import LEGS, is_clear, is_plain
+from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
+from morfax.tracer.program.laid.news import moved
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT
@@ -45,22 +47,26 @@ from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
 LEAST_GAIN = 0.003  # for each width of its length; of teeth it is 0.01 to 0.03
 BENT = 0.05  # widths: a leg that bends by more tells no corner
+MOVED = 0.01  # widths: a way is looked at again where it was laid by so much
 LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 
 
-def with_corners(setup: Setup, lines: Sequence[Line]) -> list[Line]:
-    """The lines with the corners that were cut; those of a drawn program as they are."""
-    lines, drawing = list(lines), setup.sheet.drawing
-    if not lines or not is_clear(drawing) or setup.operator.reads_marks(lines):
-        return lines
+def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
+    """Lines, held against their ink, with the corners that were cut; those of a drawn program as they are."""
+    if not is_clear(own.drawing) or setup.operator.reads_marks(own.lines):
+        return own
+    news: Array | None = None
     for _ in range(ROUNDS):
-        left = [place for place in beside(drawing, lines, NEARLY) if not place.is_sure]
+        lines = own.lines
+        left = [place for place in own.beside(NEARLY) if not place.is_sure]
         every = BoxedLines.of(lines)
-        mended = [_Corners(setup, line, every, left).mended() for line in lines]
-        if all(new is line for new, line in zip(mended, lines, strict=True)):
+        mended = [_Corners(setup, line, every, left, news).mended() for line in lines]
+        pairs = list(zip(lines, mended, strict=True))
+        if all(new is line for line, new in pairs):
             break
-        lines = mended
-    return lines
+        news = np.vstack([moved(line, new, MOVED) for line, new in pairs])
+        own = OwnInk(own.drawing, mended)
+    return own
 
 
 @dataclass(frozen=True)
@@ -68,13 +74,34 @@ class _Corners(WayInk):
     """The corners of one of some lines, which run beside their ink at some places."""
 
     left: Sequence[BesideInk]
+    news: Array | None  # the places (n, 2) mm that have moved since it was last looked at
 
     def mended(self) -> Line:
         """The line as it is, or along the rules that explain what was cut."""
         if not is_plain(self.line) or self.line.as_told:
             return self.line
-        stretches = [*self._beside_ink(), *self._redrawn()][:MANY]
-        return self.along([bay for each in stretches if (bay := self._bay(*each)) is not None])
+        over = list(self._beside_ink())
+        stretches = [*over, *self._redrawn()][:MANY]
+        if not stretches:
+            return self.line
+        is_asked = self._are_within(over) if self.news is None else self._are_new(self.news)
+        bays = (self._bay(*each, is_asked) for each in stretches)
+        return self.along([bay for bay in bays if bay is not None])
+
+    def _are_within(self, stretches: Sequence[tuple[int, int]]) -> NDArray[np.bool_]:
+        """Which places lie within some stretches."""
+        within = np.zeros(len(self.way), bool)
+        for each in stretches:
+            within[self._places(*each)] = True
+        return within
+
+    def _are_new(self, news: Array) -> NDArray[np.bool_]:
+        """Which places lie near to news: the ink about all others is explained as it was."""
+        return np.asarray(nearest_mm(self.way, news) < REACH * self.line.width_mm)
+
+    def _places(self, first: int, last: int) -> NDArray[np.int64]:
+        """The numbers of the places from one to another."""
+        return np.arange(first, last + 1) % len(self.way)
 
     def _beside_ink(self) -> Iterator[tuple[int, int]]:
         """The stretches that run beside their ink: their first and last places."""
@@ -98,12 +125,22 @@ class _Corners(WayInk):
             if leader == REDRAWN:
                 yield int(along[first]), int(along[last - 1])
 
-    def _bay(self, first: int, last: int) -> Bay | None:
-        """The rule in place of a stretch, if it explains the ink better, or as well along the legs."""
-        leg = round(LEGS[0] / STEP_WIDTHS)
+    def _bay(self, first: int, last: int, is_asked: NDArray[np.bool_]) -> Bay | None:
+        """The rule in place of a stretch, if it explains the ink better, of which that of some places is
+        asked, or as well along the legs.
+        """
+        leg, by_ink = round(LEGS[0] / STEP_WIDTHS), is_asked[self._places(first, last)].any()
+        own = self.own(first - leg, last + leg)
+        legs = None if own is None else self._along_legs(own, leg)
+        if own is None or not (by_ink or legs is not None):
+            return None
         seen = self.about(first - leg, last + leg, np.empty((0, 2)))
-        found = None if seen is None else self._by_ink(seen) or self._by_legs(seen, leg)
-        return None if seen is None or found is None else self.as_bay(seen, *found)
+        if seen is None:
+            return None
+        found = self._by_ink(seen) if by_ink else None
+        if found is None and legs is not None:
+            found = self._by_legs(seen, legs)
+        return None if found is None else self.as_bay(seen, *found)
 
     def _by_ink(self, seen: BayInk) -> tuple[Rule, float] | None:
         """The rule that explains the ink of a stretch better than the way does, and by how much."""
@@ -119,21 +156,20 @@ class _Corners(WayInk):
         is_like &= ink.share_left(ink.drawn_along(rule.way, rule.half_mm), by_own) < MOST_LEFT
         return (rule, gain) if is_like and gain > LEAST_GAIN * widths else None
 
-    def _by_legs(self, seen: BayInk, leg: int) -> tuple[Rule, float] | None:
-        """The corner where both legs of a stretch meet, if the way leaves them and the corner explains the
-        ink as well; and by how much better.
-        """
-        own, ink, width_mm = seen.own, seen.ink, self.line.width_mm
+    def _along_legs(self, own: Array, leg: int) -> Rule | None:
+        """The rule along both legs of a stretch (n, 2) mm to where these meet, if the way leaves them."""
+        width_mm = self.line.width_mm
         corner = _met(own[: leg + 1], own[: -leg - 2 : -1], BENT * width_mm)
         if corner is None or nearest_mm(corner[None], own)[0] > width_mm:
             return None
-        rule = folding_rule.sharp(own[0], own[-1], corner[None], ink.half_mm)
+        rule = folding_rule.sharp(own[0], own[-1], corner[None], 0.5 * width_mm)
         straight = evenly(rule.way, self.step_mm)
         off_mm = max(nearest_mm(own, straight).max(), nearest_mm(straight, own).max())
-        if not LEFT_LEGS * width_mm < off_mm < width_mm:
-            return None
-        by_own, by_rule = ink.misfit_along(own), ink.misfit_along(rule.way)
-        gain = by_own - by_rule
+        return rule if LEFT_LEGS * width_mm < off_mm < width_mm else None
+
+    def _by_legs(self, seen: BayInk, rule: Rule) -> tuple[Rule, float] | None:
+        """A rule that explains the ink of a stretch as well as the way does, and by how much better."""
+        gain = seen.ink.misfit_along(seen.own) - seen.ink.misfit_along(rule.way)
         return (rule, gain) if gain > -PRICE else None
 
 

@@ -28,7 +28,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import bar_at
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
-from morfax.tracer.program.against_ink.own_ink import DOUBT, OverLimits
+from morfax.tracer.program.against_ink.own_ink import OwnInk
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
     beside_ink,
@@ -59,7 +59,7 @@ from morfax.tracer.tangles.seen_ink import GAIN, LIKE
 FURTHER = 0.01  # as much more must be left for each width more of a way that runs out and back on one line
 
 
-LeftBy = Callable[[Setup, Sequence[Line], OverLimits], tuple[Unexplained, ...]]
+LeftBy = Callable[[Setup, OwnInk], tuple[Unexplained, ...]]
 
 
 class Suspect(NamedTuple):
@@ -99,19 +99,20 @@ def _mended(
     """The lines with their narrow bays mended, until no more is found, then with what corners were cut, and
     what is left of what was told.
     """
-    lines, left = list(lines), left_by(setup, lines, DOUBT)
-    news = None
+    own = OwnInk(setup.sheet.drawing, list(lines))
+    left, news = left_by(setup, own), None
     for _ in range(ROUNDS):
-        mended = _once_mended(setup, lines, left, news=news)
-        if all(new is line for new, line in zip(mended, lines, strict=True)):
+        mended = _once_mended(setup, own.lines, left, news=news)
+        if all(new is line for new, line in zip(mended, own.lines, strict=True)):
             break
-        before = lines, left
-        lines, left = mended, left_by(setup, mended, DOUBT)
-        news = News.between(before, (lines, left))
-    uncut = with_corners(setup, lines)
-    if any(new is not line for new, line in zip(uncut, lines, strict=True)):
-        lines, left = uncut, left_by(setup, uncut, DOUBT)
-    return lines, tuple(place for place in left if place.is_sure)
+        before = own.lines, left
+        own = OwnInk(own.drawing, mended)
+        left = left_by(setup, own)
+        news = News.between(before, (mended, left))
+    uncut = with_corners(setup, own)
+    if uncut is not own:
+        own, left = uncut, left_by(setup, uncut)
+    return list(own.lines), tuple(place for place in left if place.is_sure)
 
 
 def _once_mended(

@@ -41,10 +41,10 @@ class News(NamedTuple):
         left = set(before[1]).symmetric_difference(now[1])
         places = np.array([place.place_mm for place in left]).reshape(-1, 2)
         reach_mm = np.array([place.length_mm for place in left]).reshape(-1, 1)
-        moved = [_moved(old, new) for old, new in zip(before[0], now[0], strict=True)]
-        return cls(
-            np.vstack([places - reach_mm, *moved]), np.vstack([places + reach_mm, *moved])
-        )
+        news = [
+            moved(old, new, STEP_WIDTHS) for old, new in zip(before[0], now[0], strict=True)
+        ]
+        return cls(np.vstack([places - reach_mm, *news]), np.vstack([places + reach_mm, *news]))
 
     def concerns(self, line: Line, left: Sequence[Unexplained]) -> bool:
         """Whether anything is new where bays of a line, or bars of the ink left beside it, may be."""
@@ -75,11 +75,11 @@ def near_box(
     return found
 
 
-def _moved(old: Line, new: Line) -> Array:
-    """The places (n, 2) mm of two states of a line off the other's way."""
+def moved(old: Line, new: Line, off_widths: float) -> Array:
+    """The places (n, 2) mm of two states of a line off the other's way, by more than so many widths."""
     if new is old:
         return np.empty((0, 2))
-    off_mm = STEP_WIDTHS * new.width_mm
+    off_mm = off_widths * new.width_mm
     old_mm, new_mm = old.places_mm, new.places_mm
     gone = old_mm[nearest_mm(old_mm, new_mm) > off_mm]
     return np.vstack([gone, new_mm[nearest_mm(new_mm, old_mm) > off_mm]])

@@ -74,18 +74,24 @@ class WayInk:
         """How long the way is."""
         return length_mm(self.line.places_mm)
 
-    def about(self, first: int, last: int, beyond_mm: Array) -> BayInk | None:
-        """The ink about a stretch from one place to another and about some places (n, 2) mm beside it; None
-        if the stretch is too long, or that ink goes on.
-        """
+    def own(self, first: int, last: int) -> Array | None:
+        """The stretch (n, 2) mm from one place to another; None if it is too long, or reaches an end."""
         way, long = self.way, last - first
         if long > OF_LOOP * len(way) or long * self.step_mm > LONGEST * self.line.width_mm:
             return None
         if not self.is_closed and not 0 < first < last < len(way) - 1:
             return None
-        own = way[np.arange(first, last + 1) % len(way)]
+        return np.asarray(way[np.arange(first, last + 1) % len(way)])
+
+    def about(self, first: int, last: int, beyond_mm: Array) -> BayInk | None:
+        """The ink about a stretch from one place to another and about some places (n, 2) mm beside it; None
+        if that is no stretch, or its ink goes on.
+        """
+        own = self.own(first, last)
+        if own is None:
+            return None
         about = np.vstack([own, beyond_mm])
-        ink = self._ink(about, rest_of(way, first, last, self.is_closed))
+        ink = self._ink(about, rest_of(self.way, first, last, self.is_closed))
         return None if goes_on(ink, about, REACH) else BayInk(first, last, own, ink)
 
     def stretch(self, at: int, long_mm: float) -> tuple[int, int]:

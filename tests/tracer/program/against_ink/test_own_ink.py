@@ -13,7 +13,7 @@ from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.against_ink.own_ink import NEARLY, beside
+from morfax.tracer.program.against_ink.own_ink import NEARLY, SURE, OwnInk
 from morfax.tracer.program.against_ink.pen_on_ink import (
     Band,
     PenOnInk,
@@ -24,10 +24,10 @@ from morfax.tracer.program.against_ink.pen_on_ink import (
     most_about,
     over_at,
 )
-from morfax.tracer.program.against_ink.unexplained import unexplained
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
 from tests.tracer.inked import Points, arc, inked, polyline, together
+from tests.tracer.program.left_by import left_by
 
 WIDTH_MM, STEP_MM = 0.5, 0.0017
 # a notch 1.8 widths wide, and as deep as five
@@ -58,7 +58,7 @@ def closed(places_mm: Points, ending: str = "closed") -> Line:
 
 def found(drawing: Drawing, *lines: Line) -> list[tuple[float, float]]:
     """The places at which lines run beside their ink."""
-    return [place.place_mm for place in beside(drawing, lines)]
+    return [place.place_mm for place in OwnInk(drawing, lines).beside(SURE)]
 
 
 @pytest.mark.parametrize("seed", [None, 1])
@@ -94,7 +94,7 @@ def test_a_broad_line_that_thin_ones_cross_is_not_found() -> None:
     edge, cross = polyline((4, 14), (44, 14)), polyline((24, 4), (24, 24))
     drawing = together((edge, 1.1), (cross, WIDTH_MM), seed=1)
     lines = replace(closed(edge, "ended"), width_mm=1.1), closed(cross, "ended")
-    assert list(beside(drawing, lines, NEARLY)) == []
+    assert list(OwnInk(drawing, lines).beside(NEARLY)) == []
 
 
 def test_a_way_beside_its_line_is_found_where_it_leaves_and_not_beyond() -> None:
@@ -102,7 +102,7 @@ def test_a_way_beside_its_line_is_found_where_it_leaves_and_not_beyond() -> None
     drawing = inked(notched(DEEP_MM), seed=1)
     aside = polyline((10, 4), (11, 4.4), (16, 4.4), (17, 4))
     way = np.vstack([notched(DEEP_MM)[:1], aside, notched(DEEP_MM)[1:]])
-    (stretch,) = beside(drawing, [closed(way)])
+    (stretch,) = OwnInk(drawing, [closed(way)]).beside(SURE)
     assert 10 < stretch.place_mm[0] < 17
     assert 6.0 < stretch.length_mm < 6.0 + 3 * WIDTH_MM
 
@@ -117,19 +117,19 @@ def test_an_open_line_that_cuts_a_notch_short_is_found_and_its_ends_are_not() ->
     for first_mm in (9.0, 12.0):
         right = closed(open_notch(first_mm, DEEP_MM), "ended")
         assert found(drawing, right, closed(bar, "ended")) == []
-    assert [each.kind for each in unexplained(Setup(drawing.sheet), [short])] == ["beside"]
+    assert [each.kind for each in left_by(Setup(drawing.sheet), [short])] == ["beside"]
 
 
 def test_lines_that_ran_into_others_and_drawn_programs_are_not_judged() -> None:
     drawing, short = inked(notched(DEEP_MM), seed=1), notched(DEEP_MM - 0.7)
     assert found(drawing, closed(short, "joined")) == []
     setup = Setup(drawing.sheet, operator=Operator(marks="on"))
-    assert unexplained(setup, [closed(short)]) == ()
+    assert left_by(setup, [closed(short)]) == ()
 
 
 def test_what_is_found_is_told_once_with_its_place() -> None:
     drawing, short = inked(notched(DEEP_MM), seed=1), closed(notched(DEEP_MM - 0.7))
-    places = unexplained(Setup(drawing.sheet), [short])
+    places = left_by(Setup(drawing.sheet), [short])
     assert any(place.kind == "beside" for place in places)
     said = " ".join(of_ink(Trace((short,), Operator(), unexplained=places), several=False))
     assert "runs beside its ink at 1 place" in said and "at 24." in said

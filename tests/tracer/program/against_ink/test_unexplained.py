@@ -15,13 +15,13 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.redrawn import most_astray
-from morfax.tracer.program.against_ink.unexplained import unexplained
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.drawing.test_coarse import scanned
 from tests.tracer.inked import Points, arc, inked, polyline
+from tests.tracer.program.left_by import left_by
 
 WIDTH_MM = 0.5
 STEP_MM = 0.0017  # of the motion: 10 mm/s at 6 kHz
@@ -49,7 +49,7 @@ def test_ink_beside_a_closed_way_is_told_with_its_place_and_how_far_it_reaches(
     long_mm: float,
 ) -> None:
     drawing = inked(with_tip(long_mm), seed=1)
-    (left,) = unexplained(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))])
+    (left,) = left_by(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))])
     assert left.kind == "ink"
     assert left.place_mm == pytest.approx((32 + long_mm + WIDTH_MM / 2, 20.05), abs=PIXEL_MM)
     assert left.length_mm == pytest.approx(long_mm + WIDTH_MM / 2, abs=PIXEL_MM)
@@ -58,7 +58,7 @@ def test_ink_beside_a_closed_way_is_told_with_its_place_and_how_far_it_reaches(
 def test_ink_beside_a_line_that_ran_into_itself_is_told_too() -> None:
     drawing = inked(with_tip(6.0), seed=1)
     line = replace(closed(arc((20, 20), 12)), ending="joined")
-    (left,) = unexplained(Setup(Sheet.of(drawing)), [line])
+    (left,) = left_by(Setup(Sheet.of(drawing)), [line])
     assert left.length_mm == pytest.approx(6 + WIDTH_MM / 2, abs=PIXEL_MM)
     (said,) = [text for text in of_ink(Trace((line,), unexplained=(left,)), several=False)]
     assert "1 piece of ink joined to the line beside its way" in said
@@ -86,7 +86,7 @@ def test_an_open_line_that_ends_where_its_ink_goes_on_leaves_the_rest(
 
 def test_a_burr_of_half_a_width_is_not_told() -> None:
     drawing = inked(with_tip(0.5 * WIDTH_MM), seed=1)
-    assert unexplained(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))]) == ()
+    assert left_by(Setup(Sheet.of(drawing)), [closed(arc((20, 20), 12))]) == ()
 
 
 TIP = np.pi / 10  # half of the angle of a star's tips
@@ -107,10 +107,10 @@ def point_of(tip: tuple[float, float]) -> Points:
 
 def test_the_points_of_pointed_tips_are_no_ink_that_was_missed() -> None:
     drawing = inked(polyline(*STAR), specks=[point_of(tip) for tip in STAR[::2]], seed=1)
-    assert unexplained(Setup(Sheet.of(drawing)), [closed(polyline(*STAR))]) == ()
+    assert left_by(Setup(Sheet.of(drawing)), [closed(polyline(*STAR))]) == ()
     (x, y), short = STAR[2], STAR.copy()
     short[2] = (x - 1.5, y - 0.49)  # the tip is cut short by 3 widths
-    told = unexplained(Setup(Sheet.of(drawing)), [closed(polyline(*short))])
+    told = left_by(Setup(Sheet.of(drawing)), [closed(polyline(*short))])
     furthest = max(
         (place for place in told if place.kind == "ink"), key=lambda it: it.length_mm
     )
@@ -120,20 +120,20 @@ def test_the_points_of_pointed_tips_are_no_ink_that_was_missed() -> None:
 def test_a_way_over_bare_paper_is_told_unless_it_is_a_gap_that_may_be_crossed() -> None:
     drawing = inked(arc((20, 20), 12, 17.2, 360), seed=1)  # 3.6 mm are missing
     setup = Setup(Sheet.of(drawing))
-    (bare,) = unexplained(setup, [closed(arc((20, 20), 12))])
+    (bare,) = left_by(setup, [closed(arc((20, 20), 12))])
     assert bare.kind == "bare" and bare.length_mm == pytest.approx(
         3.6 - WIDTH_MM, abs=2 * PIXEL_MM
     )
     assert nearest_mm(np.array([bare.place_mm]), arc((20, 20), 12))[0] < PIXEL_MM
     allowing = replace(setup, settings=replace(setup.settings, gap_mm=4.0))
-    assert unexplained(allowing, [closed(arc((20, 20), 12))]) == ()
+    assert left_by(allowing, [closed(arc((20, 20), 12))]) == ()
 
 
 def test_only_of_closed_lines_and_not_of_a_drawn_program() -> None:
     setup = Setup(Sheet.of(inked(with_tip(6.0), seed=1)))
     circle = closed(arc((20, 20), 12))
-    assert unexplained(setup, [replace(circle, ending="ended")]) == ()
-    assert unexplained(replace(setup, operator=Operator(marks="on")), [circle]) == ()
+    assert left_by(setup, [replace(circle, ending="ended")]) == ()
+    assert left_by(replace(setup, operator=Operator(marks="on")), [circle]) == ()
 
 
 def test_a_clean_outline_explains_its_ink_and_a_bar_from_it_does_not() -> None:
@@ -159,20 +159,20 @@ def coarse(places_mm: Points) -> Line:
 
 def test_a_small_bay_that_is_cut_off_on_a_coarse_scan_is_told_with_a_resolution() -> None:
     drawing = scanned(BAY, COARSE_DPI)
-    told = unexplained(Setup(drawing.sheet), [coarse(ACROSS)])
+    told = left_by(Setup(drawing.sheet), [coarse(ACROSS)])
     assert {place.wants_dpi for place in told if place.kind != "ink"} == {200}
     places_mm = np.array([place.place_mm for place in told])
     assert np.hypot(*(places_mm - (23.5, 25.5)).T).max() < 1.5  # of a bay of 2 by 1 mm
-    assert unexplained(Setup(drawing.sheet), [coarse(BAY)]) == ()
-    fine = unexplained(Setup(replace(drawing, finer=1).sheet), [coarse(ACROSS)])
+    assert left_by(Setup(drawing.sheet), [coarse(BAY)]) == ()
+    fine = left_by(Setup(replace(drawing, finer=1).sheet), [coarse(ACROSS)])
     assert [place.kind for place in fine] == ["beside"]
 
 
 def test_a_coarse_line_counts_a_pixel_less_wide_than_it_looks() -> None:
     drawing, circle = scanned(with_tip(1.0), COARSE_DPI), coarse(arc((20, 20), 12))
-    (left,) = unexplained(Setup(drawing.sheet), [circle])
+    (left,) = left_by(Setup(drawing.sheet), [circle])
     assert left.kind == "ink" and left.length_mm == pytest.approx(1.0, abs=0.5)  # a pixel
-    assert unexplained(Setup(replace(drawing, finer=1).sheet), [circle]) == ()
+    assert left_by(Setup(replace(drawing, finer=1).sheet), [circle]) == ()
 
 
 def aside(off_mm: float) -> Points:
@@ -185,12 +185,12 @@ def aside(off_mm: float) -> Points:
 def test_a_way_beside_the_pixels_of_a_line_of_one_pixel_is_told() -> None:
     """Such a way is over grey pixels, and over no bare paper."""
     drawing = scanned(ACROSS, COARSE_DPI)
-    assert unexplained(Setup(drawing.sheet), [coarse(ACROSS)]) == ()
+    assert left_by(Setup(drawing.sheet), [coarse(ACROSS)]) == ()
     far = 0.35  # mm, of a pixel of 0.5: nearer by 0.1 mm it is within what right paths are off
-    (told,) = unexplained(Setup(drawing.sheet), [coarse(aside(far))])
+    (told,) = left_by(Setup(drawing.sheet), [coarse(aside(far))])
     assert told.wants_dpi == 200 and np.hypot(*(np.array(told.place_mm) - (23.5, 26))) < 1.5
     broader = replace(drawing, seen_px=SEEN_PX)  # a line of two pixels has a flat top
-    assert unexplained(Setup(broader.sheet), [coarse(aside(far))]) == ()
+    assert left_by(Setup(broader.sheet), [coarse(aside(far))]) == ()
 
 
 def test_what_differs_grows_with_the_distance() -> None:

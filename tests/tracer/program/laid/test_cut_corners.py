@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 
 from morfax.motion.polyline import nearest_mm, with_places
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.head.leaders import REDRAWN
+from morfax.tracer.program.against_ink import own_ink
+from morfax.tracer.program.against_ink.own_ink import OwnInk
+from morfax.tracer.program.against_ink.pen_on_ink import Ways
 from morfax.tracer.program.laid.cut_corners import with_corners
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
+from morfax.tracer.tangles import folding_rule
 from tests.tracer.inked import arc, inked, polyline
 
 TEETH = 6
@@ -69,5 +75,33 @@ def test_a_corner_within_the_ink_of_another_side_is_where_its_legs_meet(
 
 def test_a_line_on_its_ink_stays_as_the_head_ran() -> None:
     drawing = inked(arc((16, 16), 10), seed=4)
-    lines = list(trace(drawing).lines)
-    assert with_corners(Setup(drawing.sheet), lines) == lines
+    own = OwnInk(drawing, trace(drawing).lines)
+    assert with_corners(Setup(drawing.sheet), own) is own
+
+
+def test_ink_that_a_way_explains_is_held_against_it_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """For doubt and for cut corners: what is surely on its ink for one is so for the other."""
+    looked_at = list[int]()
+    doubtful = own_ink._doubtful
+
+    def counted(drawing: Drawing, ways: Ways) -> np.ndarray:
+        looked_at.append(len(ways.line))
+        return doubtful(drawing, ways)
+
+    monkeypatch.setattr(own_ink, "_doubtful", counted)
+    trace(inked(arc((16, 16), 10), seed=4))
+    assert len(looked_at) == 1
+
+
+def test_a_tangle_that_was_run_out_of_rightly_has_no_rule_fitted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Teeth whose corners are laid: the ink about them leaves little, and nowhere more than elsewhere."""
+    drawing = inked(polyline(*map(tuple, turned(RACK, 0.3))), width_mm=0.5, seed=4)
+    lines = trace(drawing).lines
+    assert any(REDRAWN in line.led.leaders for line in lines)
+    monkeypatch.setattr(folding_rule, "explained", None)  # nobody asks for it
+    own = OwnInk(drawing, lines)
+    assert with_corners(Setup(drawing.sheet), own) is own

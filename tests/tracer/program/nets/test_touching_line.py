@@ -15,10 +15,10 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import trace
-from morfax.tracer.program.against_ink.unexplained import unexplained
 from morfax.tracer.program.nets.net_outline import of_net
 from morfax.tracer.program.setup import Setup
 from tests.tracer.inked import WIDTH_MM, Points, inked
+from tests.tracer.program.left_by import left_by
 
 SIZE_MM, EDGE_MM, ROUGH = 22.0, 1.6, 0.5
 # in a tuft of spikes the ink of one line is that of the next; further off is told
@@ -76,7 +76,7 @@ def test_where_the_head_is_lost_the_junctions_show_the_way_round(
     assert found.ending == "closed" and found.number == 3
     # spikes narrower than two lines are left out, and said
     assert share_on(line, found.xy_mm) > 0.85 and away_mm(line, found.xy_mm) < AWAY_MM
-    assert unexplained(setup, [found])
+    assert left_by(setup, [found])
 
 
 def test_an_open_line_on_which_the_head_is_lost_stays_lost(
