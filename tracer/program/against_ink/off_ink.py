@@ -59,18 +59,20 @@ def ink_about(
     about: Array,
     width_mm: float,
     reach_widths: float,
-    others: Sequence[Array] = (),
+    others: Sequence[tuple[Array, float]] = (),
 ) -> SeenInk:
-    """The ink about some places (n, 2) mm of a line; other ways (m, 2) mm are drawn there anyway."""
+    """The ink about some places (n, 2) mm of a line; other ways (m, 2) mm are drawn there anyway, each by how
+    much wider to either side, mm.
+    """
     reach_mm = reach_widths * width_mm
     i, j = SheetWindow.about(drawing, about, reach_mm).grid()
     within = np.flatnonzero(are_within(middles_mm(drawing, i, j), about, reach_mm))
     every = 1 + len(within) // MOST_PLACES
     i, j = i[within[::every]], j[within[::every]]
     places, known_mm = middles_mm(drawing, i, j), np.full(len(i), NOWHERE_MM)
-    for other in others:
+    for other, wider_mm in others:
         if len(other) > 1:
-            known_mm = np.minimum(known_mm, away_from(places, other))
+            known_mm = np.minimum(known_mm, away_from(places, other) - wider_mm)
     return SeenInk.of(drawing, (i, j), known_mm, width_mm, every)
 
 

@@ -192,9 +192,10 @@ class _Way:
         own = way[np.arange(first, last + 1) % len(way)]
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
-        others = (line.places_mm for line in self.beside.reaching(low, high, self.line))
-        ways = [*others, *rest_of(way, first, last, self.is_closed)]
-        near = [part for way in ways for part in _within(way, low, high)]
+        ways = [(rest, 0.0) for rest in rest_of(way, first, last, self.is_closed)]
+        for line in self.beside.reaching(low, high, self.line):
+            ways.append((line.places_mm, 0.5 * (line.width_mm - self.line.width_mm)))
+        near = [(part, wider) for way, wider in ways for part in _within(way, low, high)]
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_lone_pixels(ink, own, drawing.pitch_mm), own
 

@@ -18,7 +18,7 @@ from morfax.tracer.program.against_ink.off_ink import (
 )
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.seen_ink import SeenInk
-from tests.tracer.inked import Points, inked, polyline
+from tests.tracer.inked import Points, inked, polyline, together
 
 WIDTH_MM, DPI = 0.5, 300.0
 LINE = polyline((5.3, 6.1), (24.0, 9.0))
@@ -47,6 +47,16 @@ def test_the_pen_is_felt_true() -> None:
     assert 2 * felt.pen.half_mm == pytest.approx(WIDTH_MM, rel=0.06)
     assert 0.02 < felt.pen.softness_mm < 0.07
     assert abs(felt.usual) < 0.3 * OFF
+
+
+def test_a_broader_line_that_is_crossed_leaves_no_ink() -> None:
+    """It is known, and as broad as it was felt: 1.1 mm across one of 0.5 mm."""
+    drawing = together((LINE, WIDTH_MM), (ACROSS, 1.1), seed=1)
+    way = evenly(LINE, STEP_WIDTHS * WIDTH_MM)[10:-10]
+    ink = ink_about(drawing, way, WIDTH_MM, 1.6, [(ACROSS, 0.5 * (1.1 - WIDTH_MM))])
+    wrong = wrong_about(ink, way, straight(way), STEP_WIDTHS)
+    # the line goes on beyond the ends; pens are drawn up to two eighths of a pixel wider
+    assert wrong[40:-40].max() < 3 * OFF
 
 
 @pytest.mark.parametrize("aside_mm", [0.03, 0.06])

@@ -44,7 +44,7 @@ def seen(truth: Points, own: Points, pen_mm: float = WIDTH_MM) -> SeenInk:
     before, behind = np.array([own[0] - [4, 0], own[0]]), np.array([own[-1], onward])
     drawn = np.vstack([before[:1], truth, behind[1:]])
     drawing = inked(drawn, seed=1, width_mm=pen_mm)
-    return ink_about(drawing, own, WIDTH_MM, REACH, [before, behind])
+    return ink_about(drawing, own, WIDTH_MM, REACH, [(before, 0.0), (behind, 0.0)])
 
 
 def cut_short(way: Points, by_mm: float) -> Points:
@@ -150,7 +150,7 @@ def test_a_stretch_that_crosses_itself_has_a_spline() -> None:
     drawn = np.column_stack([12 + 2.2 * (turns**3 - turns), 8 + 2.6 * turns**2])
     truth = drawn[100:-100]
     own = cut_short(truth, 0.3)
-    others = [drawn[:101], drawn[-101:]]
+    others = [(drawn[:101], 0.0), (drawn[-101:], 0.0)]
     ink = ink_about(inked(drawn, seed=1), own, WIDTH_MM, REACH, others)
     spline = explained(ink, own, STEP_MM, NOISE)
     assert spline is not None and math.isfinite(spline.cost)
