@@ -71,7 +71,7 @@ Examples:
   morfax demo
   morfax trace scan.png --width 120mm --start 40,62 -o cam.wav
   morfax play cam.wav -o cam.csv -o cam.svg
-  morfax compare scan.png cam.csv --tolerance 50um -o cam-error.png
+  morfax compare scan.png cam.csv --tolerance 50um --picture cam-error.png
 """
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 NO_MEMORY = "not enough memory; scan the drawing at a lower resolution, or cut out the part to be traced"

@@ -51,7 +51,7 @@ class SystemsResult:
     """What the comparison gave: figures, the drawing and its traced path, and the result of each system.
 
     `rows` are the table's: the head's own path, then each system, by name. `faults` are those of a lost line
-    and of systems that did not run. `within` the tolerance is None without one. A face draws the output.
+    and of systems that did not run. `within` the tolerance is None without one. A face draws both.
     """
 
     figures: Figures
@@ -65,12 +65,16 @@ class SystemsResult:
 
 @dataclass(frozen=True, slots=True)
 class SystemsJob:
-    """Trace a drawing once, record it in the medium of each system, play it on its control, and compare."""
+    """Trace a drawing once, record it in the medium of each system, play it on its control, and compare.
+
+    `report` (.html) and `picture` are names that a face draws to.
+    """
 
     drawing: DrawingFile
     systems: tuple[str, ...] = tuple(NAMES)
     tolerance_mm: float | None = None
-    output: FilePath | None = None  # a report (.html) or a picture
+    report: FilePath | None = None
+    picture: FilePath | None = None
     settings: TraceSettings = field(default_factory=TraceSettings)
 
     def run(self, listener: Listener = SILENT, panel: Panel | None = None) -> SystemsResult:
@@ -78,8 +82,9 @@ class SystemsJob:
         # 1. what is asked for
         file = self.drawing.file
         tracing = Tracing.prepared(self.settings, panel)
-        if self.output is not None:
-            medium.outgoing(self.output, file)
+        for output in (self.report, self.picture):
+            if output is not None:
+                medium.outgoing(output, file)
         if medium.kind_of(file) != "drawing":
             raise WrongUse(
                 f"{file} is no drawing; --systems traces one and plays it on each system"
@@ -96,7 +101,8 @@ class SystemsJob:
         rows = {"traced": measured.traced_row(), **{r.name: r.figures for r in results}}
         figures = {
             "drawing": str(file),
-            "report": None if self.output is None else str(self.output),
+            "report": None if self.report is None else str(self.report),
+            "picture": None if self.picture is None else str(self.picture),
             **flattening.figures(drawing),
             **correction_settings.figures(drawing),
             "tolerance_mm": self.tolerance_mm,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -23,6 +24,8 @@ STEPS_AT_A_TIME = (
     50_000  # of a line: those of the processor's cache; of a long line few are there at a time
 )
 WITHIN_MM = 0.05 * UM  # distances from a line are true to this
+# a way that turns by more at a place is run up to there, and on from there; chosen
+STOPS_RAD = math.radians(25.0)
 
 
 def steps_mm(line_mm: Array) -> Array:
@@ -83,6 +86,16 @@ def broad_mm(line_mm: Array) -> float:
 def closed_up(line_mm: Array) -> Array:
     """A polyline with its first place once more at its end."""
     return np.vstack([line_mm, line_mm[:1]])
+
+
+def between_corners(way: Array) -> list[Array]:
+    """The stretches of a way (n, 2) mm between its sharp corners."""
+    steps = np.diff(way, axis=0)
+    headings = np.arctan2(steps[:, 1], steps[:, 0])
+    turned = np.abs(np.remainder(np.diff(headings) + math.pi, math.tau) - math.pi)
+    sharp = 1 + np.flatnonzero(turned > STOPS_RAD)
+    ends = [0, *sharp.tolist(), len(way) - 1]
+    return [way[begin : end + 1] for begin, end in pairwise(ends)]
 
 
 def nearest_mm(places_mm: Array, others_mm: Array) -> Array:

@@ -69,6 +69,18 @@ class Result(click.ParamType):
         return [CompletionItem(incomplete, type="file")]
 
 
+class Report(Result):
+    """The name for a report; a picture is refused with the option that draws it."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> FilePath:
+        """The name as a path; wrong use if it is no report's."""
+        if FilePath(value).suffix.lower() in PICTURES:
+            self.fail(f"{str(value)!r} is a picture; give it with --picture", param, ctx)
+        return super().convert(value, param, ctx)
+
+
 class ProgramPath(Result):
     """The name for a program or a drawing, which says its medium; or for one of some other results."""
 

@@ -10,7 +10,7 @@ import click
 from morfax.console.options.cutting import KERF, kerf_is_cutter
 from morfax.console.options.desk import desk_options
 from morfax.console.options.drawing import DRAWN_UNIT, drawing_options
-from morfax.console.options.files import FILE, PICTURES, Result
+from morfax.console.options.files import FILE, PICTURES, Report, Result
 from morfax.console.options.groups import Verb, given, option, renamed
 from morfax.console.options.output import FORCE
 from morfax.console.options.systems import Systems
@@ -28,13 +28,12 @@ if TYPE_CHECKING:
     from morfax.jobs.settings.settings import DrawingFile
 
 BEYOND_TOLERANCE = 1
-OF_SYSTEMS = ("head_mm", "lines", "speed_mm_s")  # options that only --systems takes
-REPORT = ".html"
+OF_SYSTEMS = ("report", "head_mm", "lines", "speed_mm_s")  # options that only --systems takes
 
 EXAMPLES = """\b
 Examples:
   morfax compare scan.png part.ngc --machine qtplasmac
-  morfax compare scan.png cam.wav --tolerance 50um -o cam-error.png
+  morfax compare scan.png cam.wav --tolerance 50um --picture cam-error.png
   morfax compare part.dxf played.csv
   morfax compare scan.png --systems all -o five-machines.html
 """
@@ -60,12 +59,16 @@ Examples:
 )
 @option(
     "Output",
+    "--picture",
+    type=Result(*PICTURES),
+    help="Draw the path with its error in colour, or all contours of --systems (.png, .svg, .pdf).",
+)
+@option(
+    "Output",
     "-o",
-    "output",
-    type=Result(REPORT, *PICTURES),
-    help="Draw the path with its error in colour, or all contours of --systems (.png, .svg, .pdf); with "
-    "--systems "
-    "also a report in one file (.html).",
+    "report",
+    type=Report(".html"),
+    help="With --systems: write a report with all pictures, in one file (.html).",
 )
 @FORCE
 @option(
@@ -144,17 +147,12 @@ def _two(
     a: DrawingFile, b: FilePath, by_hand: ByHand, options: dict[str, Any], desk: Desk
 ) -> bool | None:
     """Compare A with B, draw and print; whether that is within the tolerance, None without one."""
-    picture: FilePath | None = options["output"]
+    picture: FilePath | None = options["picture"]
     both = a.for_lines(LineSettings(lines=options["lines"]))
     if any(given(name) for name in OF_SYSTEMS if not (both.both and name == "lines")):
         raise click.UsageError(
-            "--start, --lines and --speed are for --systems; without it nothing is traced (but --edge"
+            "-o, --start, --lines and --speed are for --systems; without it nothing is traced (but --edge"
             " --lines all compares with lines and outlines)"
-        )
-    if picture is not None and picture.suffix.lower() == REPORT:
-        raise click.BadParameter(
-            f"{str(picture)!r} must end in {', '.join(PICTURES)}; a report is for --systems",
-            param_hint="'-o'",
         )
     compared = {
         name: options[name] for name in ("tolerance_mm", "cutter_mm", "zero", "drawn_unit")
@@ -182,10 +180,12 @@ def _systems(
         raise click.UsageError("--unit is for drawings from CAD; with --systems leave it out")
     line = LineSettings(start_mm=options["head_mm"], lines=options["lines"])
     settings = TraceSettings(line, HeadSettings(speed_mm_s=options["speed_mm_s"]))
-    output: FilePath | None = options["output"]
-    job = SystemsJob(a, options["systems"], options["tolerance_mm"], output, settings)
+    outputs = {"report": options["report"], "picture": options["picture"]}
+    job = SystemsJob(
+        a, options["systems"], options["tolerance_mm"], settings=settings, **outputs
+    )
     result = job.run(desk)
-    if output is not None:
+    for output in filter(None, outputs.values()):
         from morfax.reports.pictures import draw_systems
 
         draw_systems(result, output)

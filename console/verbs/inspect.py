@@ -9,7 +9,7 @@ import click
 
 from morfax.console.options.desk import desk_options
 from morfax.console.options.files import FILE, Result
-from morfax.console.options.groups import Verb, option
+from morfax.console.options.groups import Verb, option, renamed
 from morfax.console.options.tape import tape_options
 from morfax.jobs.inspect import InspectJob
 
@@ -22,7 +22,7 @@ Examples:
   morfax inspect cam.wav
   morfax inspect found.wav --reference-frequency 6kHz --cycles-per-mm 20
   morfax inspect cam.wav --json
-  morfax inspect cam.steps -o cam-tape.svg
+  morfax inspect cam.steps --picture cam-tape.svg
 """
 
 
@@ -30,11 +30,11 @@ Examples:
 @click.argument("tape", type=FILE)
 @option(
     "Output",
-    "-o",
-    "picture",
+    "--picture",
     type=Result(".png", ".svg"),
     help="Draw the punched tape of a .steps program (.png, .svg).",
 )
+@renamed("-o", "--picture")
 @tape_options
 @desk_options
 def command(tape: FilePath, picture: FilePath | None, by_hand: ByHand, desk: Desk) -> None:

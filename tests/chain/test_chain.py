@@ -211,11 +211,11 @@ def test_the_bracket_comes_off_the_machine_with_its_slot_cut_first(tmp_path: Fil
         hold(distance(played, truth[truth[:, 0] == loop, 1:]), 4 * UM, 25 * UM)
 
 
-@pytest.mark.parametrize("line_mm", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("line_mm", [0.3, 0.8])
 def test_all_fifteen_lines_of_a_panel_are_one_program(
     tmp_path: FilePath, render: ModuleType, line_mm: float
 ) -> None:
-    """Issue 15/200 um (4.0/26 at 0.3 mm; 3.7/22; 3.9/22), with holes of 3.2 and 4 mm."""
+    """Issue 15/200 um (4.0/26 at 0.3 mm, 3.9/22 at 0.8), with holes of 3.2 and 4 mm."""
     drawing, truth = drawn(
         Case("v18_front_panel.dxf", 6 * UM, 40 * UM), render, tmp_path, line_mm
     )

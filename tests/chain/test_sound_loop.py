@@ -37,6 +37,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]
     here = {
         **os.environ,
         "HOME": str(home),
+        "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),
         "XDG_RUNTIME_DIR": str(home),
         "PULSE_RUNTIME_PATH": str(home),
         "PULSE_SINK": "loop",
@@ -97,15 +98,13 @@ def once(here: dict[str, str], folder: Path) -> int:
 
 
 def test_a_tape_over_a_sound_server_is_the_path(server: dict[str, str], tmp_path: Path) -> None:
-    (tmp_path / "short.csv").write_text("x,y\n10,10\n40,10\n40,30\n10,10\n")
+    (tmp_path / "short.csv").write_text("x,y\n10,10\n20,10\n20,16\n10,10\n")
     made = morfax(
         server, "record", tmp_path / "short.csv", "-o", tmp_path / "short.wav",
         "--label", tmp_path / "label.json",
     )  # fmt: skip
     assert made.returncode == 0, made.stderr
-    morfax(
-        server, "play", tmp_path / "short.wav", "-o", tmp_path / "short-played.csv"
-    )  # compiles
+    morfax(server, "play", tmp_path / "short.wav", "-o", tmp_path / "short-played.csv")
     for _ in range(ATTEMPTS):
         ended = once(server, tmp_path)
         assert ended in (0, *LOST)

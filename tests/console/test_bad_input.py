@@ -88,7 +88,7 @@ def test_a_name_of_any_bytes_is_traced_played_compared_and_drawn(
     assert morfax("trace", f"{ODD}.png", "-o", made[0], "--picture", made[1]).exit_code == 0
     assert morfax("play", made[0], "-o", made[2], "--json").exit_code == 0
     assert morfax("inspect", made[0]).exit_code == 0
-    assert morfax("compare", f"{ODD}.png", made[2], "-o", made[3]).exit_code == 0
+    assert morfax("compare", f"{ODD}.png", made[2], "--picture", made[3]).exit_code == 0
     assert all(Path(name).stat().st_size for name in made)
     strict.flush()
     assert rb"b\udcff\udcfed$^$x.wav" in strict.buffer.getvalue()  # type: ignore[attr-defined]

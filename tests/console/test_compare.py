@@ -60,7 +60,7 @@ def test_a_tape_is_played_for_the_comparison(
 
 
 def test_the_picture_shows_the_error(morfax: Morfax, aside: Path, path_file: Path) -> None:
-    assert morfax("compare", aside, path_file, "-o", "error.png").exit_code == 0
+    assert morfax("compare", aside, path_file, "--picture", "error.png").exit_code == 0
     assert Path("error.png").read_bytes().startswith(b"\x89PNG")
 
 

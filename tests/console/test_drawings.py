@@ -48,7 +48,7 @@ def test_a_drawing_becomes_a_tape_and_the_tape_the_drawn_contour(
     assert distance(played, path).hausdorff_mm < PLAYED_WITHIN_MM
     assert all(math.dist(way[0], way[-1]) < CLOSED_WITHIN_MM for way in path.runs())
     answer = morfax(
-        "compare", CAM, "cam.wav", "--tolerance", "25um", "-o", "error.png", "--json"
+        "compare", CAM, "cam.wav", "--tolerance", "25um", "--picture", "error.png", "--json"
     )
     assert answer.exit_code == 0 and answer.figures["missed_ink_share"] < 0.01
     assert answer.figures["path_to_ink"]["rms_mm"] < 4 * UM

@@ -72,13 +72,13 @@ def test_verbs_that_write_over_a_given_name_take_force_too(
     morfax: Morfax, here: Path, path_file: Path, tape_file: Path
 ) -> None:
     for words, name in (
-        (("play", tape_file), "played.csv"),
-        (("compare", path_file, path_file), "error.svg"),
+        (("play", tape_file, "-o"), "played.csv"),
+        (("compare", path_file, path_file, "--picture"), "error.svg"),
     ):
         (here / name).write_text("of yesterday")
-        assert morfax(*words, "-o", name, "--force").exit_code == 0
+        assert morfax(*words, name, "--force").exit_code == 0
         with_it = (here / name).read_bytes()
-        assert morfax(*words, "-o", name).exit_code == 0  # as without it
+        assert morfax(*words, name).exit_code == 0  # as without it
         assert len((here / name).read_bytes()) == len(with_it) > 100
 
 

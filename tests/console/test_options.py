@@ -33,6 +33,7 @@ RENAMED = [
     (("play", "a.wav", "--zero", "1,1"), "--zero-adjustment"),
     (("trace", "a.png", "--origin", "sheet"), "--zero"),
     (("compare", "a.png", "b.csv", "--origin", "1,1"), "--zero"),
+    (("inspect", "a.steps", "-o", "a.png"), "--picture"),
 ]
 
 
@@ -41,7 +42,7 @@ def test_an_old_spelling_is_refused_with_the_new_one(
     morfax: Morfax, words: tuple[str, ...], new: str
 ) -> None:
     answer = morfax(*words)
-    old = next(word for word in words if word.startswith("--")).partition("=")[0]
+    old = next(word for word in reversed(words) if word.startswith("-")).partition("=")[0]
     assert answer.exit_code == 2 and len(answer.err.splitlines()) == 1
     assert f"{old} is called {new} now" in answer.fault
     assert f"{old} " not in morfax(words[0], "--help").out  # only the new one is shown

@@ -92,9 +92,9 @@ def test_what_is_for_tapes_only_is_wrong_use(
         ["trace", SAMPLES / "curve.png", "-o", "b.wav", "--fit-tolerance", "1um"],
         ["trace", SAMPLES / "curve.png", "-o", "b.csv", "--lines-only"],
         ["run", SAMPLES / "curve.png", "-o", "b", "--lines-only"],
-        ["inspect", tape_file, "-o", "tape.png"],
+        ["inspect", tape_file, "--picture", "tape.png"],
         ["record", path_file, "-o", "a.tape"],
-        ["inspect", "a.steps", "-o", "tape.jpg"],
+        ["inspect", "a.steps", "--picture", "tape.jpg"],
     ):
         answer = morfax(*words)
         assert answer.exit_code == 2 and answer.fault
@@ -150,7 +150,7 @@ def test_inspect_tells_what_is_on_a_punched_tape_and_draws_it(
     morfax: Morfax, here: Path, path_file: Path
 ) -> None:
     assert morfax("record", path_file, "-o", "a.steps").exit_code == 0
-    figures = morfax("inspect", "a.steps", "-o", "tape.png", "--json").figures
+    figures = morfax("inspect", "a.steps", "--picture", "tape.png", "--json").figures
     assert (
         figures["oscillator_hz"] == 10240
         and figures["tool_changes"] == 2
@@ -159,7 +159,7 @@ def test_inspect_tells_what_is_on_a_punched_tape_and_draws_it(
     assert figures["x_axis"]["from_mm"] == pytest.approx(20, abs=0.01)
     with Image.open(here / "tape.png") as image:
         assert image.info["dpi"][0] == pytest.approx(6 * 25.4, rel=1e-3)
-    assert morfax("inspect", "a.steps", "-o", "tape.svg").exit_code == 0
+    assert morfax("inspect", "a.steps", "--picture", "tape.svg").exit_code == 0
     assert (here / "tape.svg").read_text().count("<circle") == sum(
         1 for _ in punched.holes(read_program("a.steps"))
     )

@@ -60,7 +60,7 @@ def test_some_systems_and_the_picture_alone(morfax: Morfax, here: Path) -> None:
         SAMPLES / "curve.png",
         "--systems",
         "wav,.ngc",
-        "-o",
+        "--picture",
         "all.png",
         "--tolerance",
     )
@@ -125,6 +125,8 @@ def test_a_system_that_refuses_says_why_and_the_others_go_on(
             "--cutter is for a path beside a drawing's line",
         ),
         (("cam.png", "--systems", "all", "-o", "a.csv"), "must end in .html"),
+        (("cam.csv", "cam.csv", "-o", "a.html"), "are for --systems"),
+        (("cam.csv", "cam.csv", "-o", "a.png"), "'a.png' is a picture; give it with --picture"),
     ],
 )
 def test_what_does_not_go_together_is_wrong_use(

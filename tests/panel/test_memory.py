@@ -60,11 +60,11 @@ def test_the_memory_of_an_hour_is_flat(serving: Serving) -> None:
         come(page, round(FRAMES * PLACES))
         assert serving.held_mb() - server_mb < SERVER_MB
         assert heap_mb() - page_mb < PAGE_MB
-        # 3. and a second one: what is kept has a bound
+        # 3. and twelve minutes more: what is kept has a bound, which they pass
         kept = serving.kept()
-        serving.stream(0, FRAMES)
+        serving.stream(0, FRAMES // 5)
         page.wait_for_timeout(500)
         assert page.evaluate("panel.head.count") <= head_path.MOST
-        assert kept <= head_path.MOST and serving.kept() <= head_path.MOST
+        assert serving.kept() < kept <= head_path.MOST < kept + FRAMES // 5 * PLACES
         assert serving.held_mb() - server_mb < SERVER_MB
         page.close()

@@ -1,18 +1,13 @@
 """Patent ES 361967 (Morfax, 1969): one test for each of its 17 claims, on the running system.
 
-`docs/background/claims-morfax.md` has the table from claim to test. The sheet is the patent's draftsman's: a
-reference point, a lead line with a stop mark just before the contour, the contour, a stop mark on it.
+Here are the methods and the machine that plays; `test_morfax_apparatus` has the apparatus, claims 8 to 14.
 
-       ┼──────┼──── contour ──┼── and back          drawn with 0.5 mm, scanned at 300 dpi with noise
-
-What is on the tape is heard here with nothing of the project's own: a counter of zero crossings.
+`docs/background/claims-morfax.md` has the table from claim to test; `drawn_tape` the sheet and its tape.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,15 +15,13 @@ import pytest
 import soundfile
 from numpy.typing import NDArray
 
-from morfax.jobs.remarks.who_led import WhoLed
-from morfax.motion.arrays import Array
 from morfax.motion.axis import LeadScrew
 from morfax.motion.contour import distance
-from morfax.motion.drive import Condition, Drive
+from morfax.motion.drive import Condition
 from morfax.motion.faults import FollowingFault, LockFault
 from morfax.motion.motion import MOTION_RATE_HZ, Motion, join, thin
 from morfax.motion.ramp import positions_mm
-from morfax.player.tape.playback import TapePlayback, play
+from morfax.player.tape.playback import play
 from morfax.player.tape.sector_wheel import SectorWheel
 from morfax.recorder.tape.pickups import PICK_UPS
 from morfax.recorder.tape.tape import Tape, TapeFormat, record
@@ -36,156 +29,41 @@ from morfax.tracer.drawing.deviation import deviation
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.head.settings import HISTORIC, Settings
+from morfax.tracer.head.settings import HISTORIC
 from morfax.tracer.head.state import Home
 from morfax.tracer.operator import zunit
-from morfax.tracer.operator.card import Card, Stop
-from morfax.tracer.operator.operator import Operator
-from morfax.tracer.operator.work import Halt, Work
 from morfax.tracer.operator.zunit import (
     Counters,
     Preset,
-    QuillMove,
     coincidence,
     counts_of,
     z_moves,
 )
 from morfax.tracer.program.program import Trace
-from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.photocell import behind_aperture, sweep
-from tests.tracer.inked import arc, inked, polyline
-
-UM = 1e-3
-RATE_HZ = 48_000
-REFERENCE_HZ, Q_MM = 6000.0, 0.05
-REFERENCE, X, Y, Z = range(4)
-CENTRE_MM, RADIUS_MM, SPEED_MM_S, DEPTH_MM = (40.0, 30.0), 10.0, 10.0, 5.0
-COUNTED_S = 0.05
-# a crossing is placed to 0.015 of a cycle where eight samples make one: two of them over 0.05 s
-COUNTED_HZ = 0.6
-# 16 bit: a step is 3e-5 of full scale, and a carrier's zero is passed at pi of it per cycle
-AT_REST_CYCLES = 2e-5
-
-
-@pytest.fixture(scope="module")
-def sheet() -> Drawing:
-    cross = [polyline((10.8, 30), (13.2, 30)), polyline((12, 28.8), (12, 31.2))]
-    ticks = [polyline((25, 28.5), (25, 31.5)), polyline((40, 38.5), (40, 41.5))]
-    return inked(
-        arc(CENTRE_MM, RADIUS_MM), polyline((12, 30), (30, 30)), *cross, *ticks, seed=1969
-    )
-
-
-@pytest.fixture(scope="module")
-def run(sheet: Drawing) -> Trace:
-    """The follower's run over the whole sheet."""
-    return trace(
-        sheet,
-        settings=Settings(speed_mm_s=SPEED_MM_S),
-        operator=Operator(Work(depth_mm=DEPTH_MM)),
-    )
-
-
-@dataclass(frozen=True)
-class Taped:
-    """A motion and the tape of it."""
-
-    file: Path
-    motion: Motion
-
-    def track(self, number: int) -> Array:
-        """The samples of a track, as any sound program reads them."""
-        frames = np.asarray(soundfile.read(self.file)[0])
-        return np.asarray(frames[:, number])
-
-    def hz(self, number: int, at_s: float) -> float:
-        """Frequency of a track about a time of the motion, by counting."""
-        first = round((at_s + 1.0 - COUNTED_S / 2) * RATE_HZ)  # after a second of standstill
-        return counted_hz(self.track(number)[first : first + round(COUNTED_S * RATE_HZ)])
-
-    def speed_mm_s(self, axis: int, at_s: float) -> float:
-        """Mean speed of an axis of the motion over the same time."""
-        places = self.motion.positions_mm[:, axis - 1]
-        half = round(COUNTED_S / 2 * MOTION_RATE_HZ)
-        at = round(at_s * MOTION_RATE_HZ)
-        return float((places[at + half] - places[at - half]) / (2 * half) * MOTION_RATE_HZ)
-
-
-def counted_hz(samples: Array) -> float:
-    """Frequency of a carrier: whole cycles between its first and last upward crossing of zero."""
-    up = np.flatnonzero((samples[:-1] < 0) & (samples[1:] >= 0))
-    at = up + samples[up] / (samples[up] - samples[up + 1])
-    return float((len(at) - 1) / (at[-1] - at[0]) * RATE_HZ)
-
-
-def phase_apart(
-    tape: Taped, number: int, from_s: float, to_s: float, window_s: float = 0.01
-) -> float:
-    """How far the phase of a track goes against the reference's within a time of the motion, cycles; of means
-    over a window.
-    """
-    span = slice(round((from_s + 1) * RATE_HZ), round((to_s + 1) * RATE_HZ))
-    turning = np.exp(-2j * np.pi * REFERENCE_HZ * np.arange(span.start, span.stop) / RATE_HZ)
-    window = round(window_s * RATE_HZ)  # whole cycles: the mirror image falls out
-    beats = [
-        (tape.track(track)[span] * turning)[: len(turning) // window * window]
-        for track in (number, REFERENCE)
-    ]
-    means = [beat.reshape(-1, window).mean(axis=1) for beat in beats]
-    return float(np.ptp(np.unwrap(np.angle(means[0] * means[1].conj()))) / (2 * np.pi))
-
-
-def taped(motion: Motion, file: Path, fmt: TapeFormat | None = None) -> Taped:
-    record(motion, file, fmt or TapeFormat())  # the bare tracks of the patent
-    return Taped(file, motion)
-
-
-@pytest.fixture(scope="module")
-def tape(run: Trace, tmp_path_factory: pytest.TempPathFactory) -> Taped:
-    return taped(join(run), tmp_path_factory.mktemp("morfax") / "program.wav")
-
-
-def round_the_contour(tape: Taped) -> Iterator[float]:
-    """Times at which the head is under way, by the motion itself."""
-    speed = np.hypot(
-        *np.gradient(tape.motion.positions_mm[:, :2], 1 / MOTION_RATE_HZ, axis=0).T
-    )
-    steady = np.convolve(np.abs(speed - SPEED_MM_S) < 0.5, np.ones(601), "same") == 601
-    moments = np.flatnonzero(steady)
-    return iter((moments[:: len(moments) // 40] / MOTION_RATE_HZ).tolist())
-
-
-def edges_of_the_cells(playback: TapePlayback) -> Iterator[tuple[Array, Array]]:
-    """While a tape plays, block by block: the edges that the cells on the machine's screws have given, and
-    those that the reference's cycles and the screws' places make, (axes).
-    """
-    reference_cycles = playback.format.reference_hz / playback.format.motion_rate_hz
-    rows = 0
-    for motion in playback:
-        rows += len(motion.positions_mm)
-        moved_mm = motion.positions_mm[-1] - playback.start_mm
-        yield playback.cell_edges, rows * reference_cycles + moved_mm / Q_MM
-
-
-def cell_share(run: Trace) -> float:
-    """The share of the head's way outside of corners and junctions that its swinging cell led."""
-    led = WhoLed.along(run)
-    assert led is not None
-    return led.cell_on_lines_share
-
-
-def standing_s(run: Trace, number: int) -> tuple[float, float]:
-    """From when to when X and Y stand at a stop, s of the motion."""
-    place = next(
-        action.halt.place_mm for action in run.actions[0] if action.halt.number == number
-    )
-    positions = join(run).positions_mm
-    still = np.r_[False, (np.diff(positions[:, :2], axis=0) == 0).all(axis=1)]
-    there = np.flatnonzero(still & (np.hypot(*(positions[:, :2] - place).T) < 0.01))
-    return float(there[0] / run.rate_hz), float(there[-1] / run.rate_hz)
-
-
-# the methods
+from tests.sources.drawn_tape import (
+    CENTRE_MM,
+    COUNTED_HZ,
+    DEPTH_MM,
+    Q_MM,
+    RADIUS_MM,
+    RATE_HZ,
+    REFERENCE,
+    REFERENCE_HZ,
+    SPEED_MM_S,
+    UM,
+    Taped,
+    X,
+    Y,
+    Z,
+    cell_share,
+    counted_hz,
+    edges_of_the_cells,
+    round_the_contour,
+    standing_s,
+    taped,
+)
+from tests.tracer.inked import arc, polyline
 
 
 def test_claim_1_the_follower_goes_round_the_drawing_and_its_signal_tells_direction_and_speed(
@@ -354,169 +232,6 @@ def test_claim_7_the_contour_that_was_drawn_is_the_contour_that_is_cut(
         ).hausdorff_mm
         < 0.25
     )
-
-
-# the apparatus
-
-
-def test_claim_8_what_is_recorded_is_the_turning_of_the_follower_s_own_motors(
-    sheet: Drawing, tmp_path: Path
-) -> None:
-    """With slower motors X and Y follow the head's demand later, and the tape has just that motion."""
-    ways = []
-    for lag_s in (0.001, 0.005):
-        settings = Settings(speed_mm_s=SPEED_MM_S, drive=Drive(lag_s))
-        run = trace(sheet, settings=settings)
-        tape = taped(join(run), tmp_path / "a.wav")
-        for at_s in list(round_the_contour(tape))[::8]:
-            for axis in (X, Y):
-                expected = REFERENCE_HZ + tape.speed_mm_s(axis, at_s) / Q_MM
-                assert tape.hz(axis, at_s) == pytest.approx(expected, abs=COUNTED_HZ)
-        assert cell_share(run) > 0.85  # the motors run as the cell steers
-        ways.append(thin(run))
-    assert distance(ways[1], ways[0]).hausdorff_mm > 2 * UM  # the motors are in it
-
-
-def test_claim_9_each_drive_turns_a_member_beside_one_of_constant_speed(tmp_path: Path) -> None:
-    """The shift is the speed of the screw times the sectors of the wheel; with twice the sectors it is twice
-    as much.
-    """
-    for sectors in (40, 80):
-        screw = LeadScrew(pitch_mm=5.0, sectors=sectors)
-        places = 5.0 * np.arange(12_000) / MOTION_RATE_HZ  # one turn a second
-        fmt = TapeFormat(cycles_per_mm=screw.cycles_per_mm, dwell_s=0.0)
-        tape = taped(
-            Motion(np.column_stack([places, -places, 0 * places])), tmp_path / "a.wav", fmt
-        )
-        heard = [
-            counted_hz(tape.track(track)[4800:91_200]) - REFERENCE_HZ for track in (X, Y, Z)
-        ]
-        assert heard == pytest.approx([sectors, -sectors, 0], abs=0.02)
-
-
-def test_claim_10_one_steering_movement_makes_both_tracks_beside_a_constant_third(
-    run: Trace, tape: Taped
-) -> None:
-    """In every direction the two shifts make the one tracing speed: sine and cosine of one heading."""
-    assert cell_share(run) > 0.85  # the cell's, on the steered member
-    for at_s in round_the_contour(tape):
-        shifts = [(tape.hz(track, at_s) - REFERENCE_HZ) * Q_MM for track in (X, Y)]
-        chord = math.sin(SPEED_MM_S * COUNTED_S / 2 / RADIUS_MM) / (
-            SPEED_MM_S * COUNTED_S / 2 / RADIUS_MM
-        )
-        # mm/s: two counts, and the waver of a head on a noisy scan
-        assert math.hypot(*shifts) == pytest.approx(
-            SPEED_MM_S * chord, abs=2 * COUNTED_HZ * Q_MM + 0.2
-        )
-        assert tape.hz(REFERENCE, at_s) == pytest.approx(REFERENCE_HZ, abs=COUNTED_HZ)
-
-
-def test_claim_11_a_member_that_stands_gives_the_reference_frequency(
-    run: Trace, tape: Taped
-) -> None:
-    for number in (1, 2):
-        from_s, to_s = standing_s(run, number)
-        assert to_s - from_s > 0.4  # the tape runs on
-        for track in (X, Y):
-            assert phase_apart(tape, track, from_s + 0.02, to_s - 0.02) < AT_REST_CYCLES
-    from_s, to_s = standing_s(run, 1)
-    travel = phase_apart(tape, Z, from_s - 0.1, to_s + 0.1, 0.001)
-    assert travel == pytest.approx(
-        (DEPTH_MM + run.work.clearance_mm) / Q_MM, abs=1e-3
-    )  # 7 mm are 140 cycles
-
-
-def test_claim_12_a_sector_wheel_passes_a_lamp_and_a_photocell(
-    run: Trace, tape: Taped, tmp_path: Path
-) -> None:
-    lit = taped(join(run), tmp_path / "a.wav", TapeFormat(pickup="photocell"))
-    still = lit.track(X)[: RATE_HZ // 2]
-    lines = 2 * np.abs(np.fft.rfft(still)) / len(still)
-    assert lines[9000] / lines[3000] == pytest.approx(
-        1 / 3, abs=1e-4
-    )  # light and dark: a square, up to 18 kHz
-    for at_s in list(round_the_contour(lit))[::8]:
-        assert lit.hz(X, at_s) == pytest.approx(
-            REFERENCE_HZ + lit.speed_mm_s(X, at_s) / Q_MM, abs=3 * COUNTED_HZ
-        )
-    assert distance(thin(play(lit.file)), thin(play(tape.file))).hausdorff_mm < 1 * UM
-
-
-def test_claim_13_the_operator_sets_the_tool_s_movement_by_hand(
-    sheet: Drawing, tmp_path: Path
-) -> None:
-    asked: list[int | None] = []
-
-    class AtThePanel:
-        def ask(self, halt: Halt, z_mm: float, usual: Sequence[QuillMove]) -> Stop | None:
-            asked.append(halt.number)
-            return (
-                Stop(moves=(Preset(counts_of(z_mm) + 325, "down", 4.0),))
-                if halt.number == 1
-                else None
-            )
-
-        def wait(self, halt: Halt) -> float:
-            return 0.0
-
-    tape = taped(join(trace(sheet, operator=Operator(panel=AtThePanel()))), tmp_path / "a.wav")
-    assert sorted(set(asked)) == [1, 2]
-    assert join(play(tape.file)).positions_mm[:, 2].min() == pytest.approx(-3.25, abs=1 * UM)
-
-
-CARD = """
-start = "2mm"
-[[stop]]
-number = 1
-moves = [
-  { down = "4mm", feed = "4mm/s" }, { dwell = "300ms" },
-  { up = "1.5mm", feed = "2mm/s" }, { down = "3.25mm", feed = "3mm/s" },
-]
-"""
-
-
-def test_claim_14_switches_a_motor_of_variable_speed_and_counters_make_a_sequence(
-    sheet: Drawing, tmp_path: Path
-) -> None:
-    card = Card.parse(CARD)
-    run = trace(sheet, operator=Operator(Work(clearance_mm=2.0), card))
-    tape = taped(join(run), tmp_path / "a.wav")
-    from_s, to_s = standing_s(run, 1)
-    z = tape.motion.positions_mm[round(from_s * 6000) : round(to_s * 6000), 2]
-    lowest = int(np.argmax(z == -2.0))
-    assert [z[0], z[lowest], z[lowest:].max(), z[-1]] == pytest.approx(
-        [2.0, -2.0, -0.5, -3.75], abs=1e-9
-    )  # to the count
-    assert np.count_nonzero(z[lowest:] == -2.0) / MOTION_RATE_HZ == pytest.approx(
-        0.3, abs=0.001
-    )  # the dwell
-    shown = Counters(counts_of(2.0))
-    for preset in card.stop(1).moves:
-        shown = shown.after(preset)
-    assert shown.digits == "-00375"
-    speeds = [tape.hz(Z, from_s + after_s) - REFERENCE_HZ for after_s in _middles(z)]
-    assert speeds == pytest.approx(
-        [-4 / Q_MM, 2 / Q_MM, -3 / Q_MM], abs=COUNTED_HZ
-    )  # the feeds, one after the other
-
-
-def _middles(z_mm: Array) -> list[float]:
-    """The middle of each move of Z, s from the first row."""
-    moving = np.r_[False, np.diff(z_mm) != 0, False]
-    edges = np.flatnonzero(np.diff(moving.astype(int)))
-    runs = [(a, b) for a, b in edges.reshape(-1, 2) if b - a > 600]
-    turns = [
-        (a, a + int(np.argmax(z_mm[a:b])), b) for a, b in runs
-    ]  # the last two moves have no dwell between them
-    parts = [
-        (a, b)
-        for a, top, b in turns
-        for a, b in ([(a, top), (top, b)] if a + 600 < top < b - 600 else [(a, b)])
-    ]
-    return [float((a + b) / 2 / MOTION_RATE_HZ) for a, b in parts]
-
-
-# the machine
 
 
 def tones(file: Path, *hz: float, seconds: float = 2.0) -> Path:

@@ -22,6 +22,7 @@ head averages less of it: 1 um RMS on smooth lines.
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING, Any
 
 import cv2
 import numpy as np
@@ -30,7 +31,11 @@ from numpy.typing import NDArray
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.contrast import DARKER
+from morfax.tracer.drawing.two_levels import with_rims
 from morfax.tracer.limits import DETAIL_PX, PAPER
+
+if TYPE_CHECKING:
+    from morfax.tracer.drawing.noise import Within
 
 Darkness = NDArray[np.float32]
 
@@ -63,6 +68,16 @@ def finer(darkness: Darkness, times: int, seen_px: float = math.inf) -> Darkness
         soft /= _left_of(darkness, soft)
     larger = cv2.resize(soft, None, fx=times, fy=times, interpolation=cv2.INTER_LANCZOS4)
     return np.asarray(larger, np.float32)
+
+
+def without_steps(darkness: Any, lines: Within, has_steps: bool) -> tuple[Any, int, bool]:
+    """Darkness of which the head feels no pixel as a step, how many times finer its pixels are, and whether
+    rims were laid through them (`two_levels`).
+    """
+    finer_times = times_finer(darkness, lines.width_px)
+    if finer_times > 1:
+        return finer(np.asarray(darkness), finer_times, lines.seen_px), finer_times, False
+    return (with_rims(np.asarray(darkness)) if has_steps else darkness), 1, has_steps
 
 
 def wanted_dpi(pitch_mm: float) -> int:

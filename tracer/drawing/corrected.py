@@ -20,7 +20,8 @@ from morfax.motion.faults import CardFault
 from morfax.tracer.corrections.corrections import RUBBED, Corrections
 from morfax.tracer.corrections.on_sheet import OnSheet, SheetSize
 from morfax.tracer.corrections.rubber_and_pen import DrawingPen, Easel
-from morfax.tracer.drawing.drawing import Drawing, Shapes
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.levelling import Shapes
 
 # where no line shows how wide the pen is and how soft its edges are: a drawing pen at 300 dpi
 USUAL = DrawingPen(0.5, 0.05)

@@ -30,14 +30,13 @@ from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import LEAST, deepened, deepened_note
-from morfax.tracer.drawing.levelling import levelled
+from morfax.tracer.drawing.levelling import Levelled, levelled
 from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
 from morfax.tracer.drawing.tiles import Tiles
-from morfax.tracer.drawing.two_levels import with_rims
 
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
@@ -49,7 +48,6 @@ EDGE_PITCH_MM, SMALLEST = 0.0847, 0.2
 LEAST_RADIUS_MM, MOST_ENLARGED = 1.3, 4  # of an edge; by trial on round holes
 
 Darkness = NDArray[np.float32]
-Shapes = NDArray[np.bool_]
 
 
 class Reading(NamedTuple):
@@ -72,13 +70,14 @@ class Drawing:
 
     Of filled shapes whose edges are asked for: the darkness is a line along these, so many times `enlarged`;
     `edges_mm` are closed polylines (n, 2) to which a run keeps; and the `shade` is what the head's cells see,
-    paper 0 and shape 1, on the picture's own pixels. Otherwise `shapes` tells where they are, on the picture
-    reduced by a whole number. `notes` on the file are for the operator; `flattening` is how well a photograph
-    was made flat; `corrected` what the operator put right, `bare` the drawing before that. A coarse scan's
-    pixels are made so many times `finer`. Of `both` solid areas are as dark as lines (see
-    `shapes_among_lines`). Lines look `seen_px` wide on the picture's own pixels, paper or ink alone if it
-    `is_hard`, or with rims laid through their steps if it `has_steps`; a `grainy` one is seen through a slit.
-    `paper_noise` is the deviation of the paper's darkness before bare paper was made 0.
+    paper 0 and shape 1, on the picture's own pixels. Otherwise `shapes` tells where filled shapes are no ink,
+    on the picture reduced by a whole number; a scan that `has_shapes` may have them as ink. `notes` on the
+    file are for the operator; `flattening` is how well a photograph was made flat; `corrected` what the
+    operator put right, `bare` the drawing before that. A coarse scan's pixels are made so many times `finer`.
+    Of `both` solid areas are as dark as lines. Lines look `seen_px` wide on the picture's own pixels, paper
+    or ink alone if it `is_hard`, or with rims laid through their steps if it `has_rims`; a `grainy` one is
+    seen through a slit. `paper_noise` is the deviation of the paper's darkness, if that was measured before
+    it was made 0.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -87,7 +86,8 @@ class Drawing:
     enlarged: int = 1
     edges_mm: tuple[NDArray[np.float64], ...] = ()
     shade: Darkness | None = None
-    shapes: Shapes | None = None
+    shapes: NDArray[np.bool_] | None = None
+    has_shapes: bool = False
     notes: tuple[str, ...] = ()
     flattening: Flattening | None = None
     corrected: OnSheet | None = None
@@ -96,7 +96,7 @@ class Drawing:
     both: bool = False
     seen_px: float = math.inf
     is_hard: bool = False
-    has_steps: bool = False
+    has_rims: bool = False
     grainy: bool = False
     paper_noise: float | None = None
     narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
@@ -235,7 +235,7 @@ class Drawing:
     ) -> Drawing:
         """The lines in grey levels on square pixels."""
         # 1. darkness, without what is printed and the scan's border
-        darkness, shapes, paper_noise = _levelled(grey, pitch_mm, reading)
+        darkness, shapes, paper_noise, has_shapes = _levelled(grey, pitch_mm, reading)
         darkness, cleared = _cleared(darkness, pitch_mm, reading)
         lines, pale_mm = within(darkness, paper_noise), 0.0
         times = speckled.times_larger(darkness, lines)
@@ -244,44 +244,38 @@ class Drawing:
             larger = speckled.on_larger_pixels(np.asarray(grey), times)
             return cls._of_lines(file, larger, times * pitch_mm, notes, reading)
         # 2. pale lines
-        notes += cleared
         drawn_grain = lines.grain
         is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
             pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
-        if pale_mm:
-            lines = within(darkness, paper_noise)
-        notes += grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm)
+            lines = within(darkness, paper_noise) if pale_mm else lines
+        notes = (*notes, *cleared, *grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm))
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
         # 3. grain, of lines as they are drawn
-        slit = grain.slit_for(drawn_grain, lines.width_px, pitch_mm)
-        behind = None if slit is None else grain.mended(slit, np.asarray(darkness), drawn_grain)
-        if slit is not None and behind is not None:
-            darkness, notes = behind, (*notes, grain.note(slit, pitch_mm))
+        averaged = grain.averaged(darkness, drawn_grain, lines.width_px, pitch_mm)
+        if averaged is not None:
+            darkness, notes = averaged.darkness, (*notes, averaged.note)
         # 4. steps of pixels, and too large pixels
-        finer = coarse.times_finer(darkness, lines.width_px)
-        has_steps = hard and behind is None and finer == 1
-        if has_steps:
-            darkness = with_rims(np.asarray(darkness))
-        if finer > 1:
-            darkness = coarse.finer(np.asarray(darkness), finer, lines.seen_px)
-            if reading.pale_is_ink:  # a line of a pixel is paler now
-                pale_mm += deepened(darkness, pitch_mm / finer, None, shapes)
+        steps = hard and averaged is None
+        darkness, finer, has_rims = coarse.without_steps(darkness, lines, steps)
+        if finer > 1 and reading.pale_is_ink:  # a line of a pixel is paler now
+            pale_mm += deepened(darkness, pitch_mm / finer, None, shapes)
         notes = (*notes, deepened_note(pale_mm)) if pale_mm else notes
         drawing = cls(
             darkness,
             pitch_mm / finer,
             file,
             shapes=shapes,
+            has_shapes=has_shapes,
             notes=notes,
             finer=finer,
             seen_px=lines.seen_px,
-            is_hard=hard and not has_steps,
-            has_steps=has_steps,
-            grainy=behind is not None,
+            is_hard=hard and not has_rims,
+            has_rims=has_rims,
+            grainy=averaged is not None,
             paper_noise=paper_noise,
         )
-        if behind is None and finer == 1 and not has_steps:  # the darkness that was measured
+        if averaged is None and finer == 1 and not has_rims:  # the darkness that was measured
             vars(drawing)["noise"] = lines.found.noise(pitch_mm)
         return drawing
 
@@ -293,8 +287,8 @@ def _cleared(darkness: Any, pitch_mm: float, reading: Reading) -> tuple[Any, tup
     return darkness, tuple(filter(None, (printed, border_note(edges) if edges else None)))
 
 
-def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Any:
-    """Darkness, or tiles of it, where filled shapes are, and the noise of the paper."""
+def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Levelled:
+    """The sheet as darkness; a large one as tiles of it."""
     if grey.size >= large.LARGE_PX:
         return large.levelled(grey, pitch_mm)
     return levelled(grey, pitch_mm, reading.shapes_are_ink)

@@ -37,6 +37,7 @@ from morfax.tracer.limits import PAPER
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.noise import Within
+    from morfax.tracer.drawing.tiles import Kept
 
 Darkness = NDArray[np.float32]
 
@@ -85,6 +86,13 @@ class Slit(NamedTuple):
         return Slit(along, across, self.width_px / by)
 
 
+class Averaged(NamedTuple):
+    """A sheet seen through the slit: its darkness, and what the operator should know of it."""
+
+    darkness: Darkness
+    note: str
+
+
 def slit_for(grain: float, width_px: float, pitch_mm: float) -> Slit | None:
     """The slit that lines of a grain and width ask for; None without grain, and for too thin lines."""
     if not (grain > LEAST_OF_SOME and width_px > coarse.FEWEST_PX):
@@ -93,7 +101,7 @@ def slit_for(grain: float, width_px: float, pitch_mm: float) -> Slit | None:
     return Slit(along_px, max(ACROSS_WIDTHS * width_px, 0.5), width_px)
 
 
-def note(slit: Slit, pitch_mm: float) -> str:
+def _note(slit: Slit, pitch_mm: float) -> str:
     """What the operator should know of a sheet that is seen through the slit."""
     long_mm = 2 * slit.along_px * pitch_mm
     return (
@@ -131,10 +139,16 @@ def behind(slit: Slit, darkness: Darkness) -> Darkness:
     return seen
 
 
-def mended(slit: Slit, darkness: Darkness, drawn_grain: float) -> Darkness | None:
-    """The darkness behind a slit, if the slit mends the grain of the lines."""
-    seen = behind(slit, darkness)
-    return seen if mends(darkness, seen, drawn_grain) else None
+def averaged(
+    darkness: Kept, drawn_grain: float, width_px: float, pitch_mm: float
+) -> Averaged | None:
+    """The sheet as seen through the slit, where lines of a grain and width ask for it and it mends them."""
+    slit = slit_for(drawn_grain, width_px, pitch_mm)
+    if slit is None:
+        return None
+    drawn = np.asarray(darkness)
+    seen = behind(slit, drawn)
+    return Averaged(seen, _note(slit, pitch_mm)) if mends(drawn, seen, drawn_grain) else None
 
 
 def mends(before: Darkness, after: Darkness, grain: float) -> bool:

@@ -33,6 +33,7 @@ from morfax.tracer.drawing.contrast import (
     SOFT_PX,
     strokes_of,
 )
+from morfax.tracer.drawing.levelling import Levelled
 from morfax.tracer.drawing.memory import make_sure_of_ink
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.paper_noise import paper_noise
@@ -44,7 +45,6 @@ LARGE_PX = 1 << 26
 SOFTENED = 1 / (2 * math.sqrt(math.pi) * SOFT_PX)  # of white noise, behind that spot
 HALO_PX = 8  # rows about a band that a spot sees
 
-Shapes = NDArray[np.bool_]
 Bytes = NDArray[np.uint8]
 
 
@@ -61,7 +61,7 @@ class _Look:
     every: int
 
 
-def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes, float]:
+def levelled(grey: Any, pitch_mm: float) -> Levelled:
     """Darkness of a grey picture whose rows can be read: paper 0, the strokes 1; filled shapes; and the noise
     of the paper.
 
@@ -81,7 +81,8 @@ def levelled(grey: Any, pitch_mm: float) -> tuple[Tiles, Shapes, float]:
         tiles, max(LEAST_CONTRAST, centre + ABOVE_NOISE * SOFTENED * noise), pitch_mm
     )
     noise_of_paper = paper_noise(sample / np.float32(ink))
-    return replace(tiles, unit=1 / ink), paper.shapes(ink), noise_of_paper
+    shapes = paper.shapes(ink)
+    return Levelled(replace(tiles, unit=1 / ink), shapes, noise_of_paper, bool(shapes.any()))
 
 
 def _look(grey: Any, by: int) -> _Look:

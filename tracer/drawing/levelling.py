@@ -10,6 +10,7 @@ Source: our own. Questions: none; the patent takes ink that is black for granted
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -32,6 +33,7 @@ from morfax.tracer.drawing.contrast import (
 from morfax.tracer.drawing.memory import give_back
 from morfax.tracer.drawing.paper_noise import every_px, paper_noise
 from morfax.tracer.drawing.scan import Grey
+from morfax.tracer.drawing.tiles import Tiles
 from morfax.tracer.effort import FEW_PX
 
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
@@ -42,26 +44,37 @@ Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
 
 
-def levelled(
-    grey: Grey, pitch_mm: float, shapes_are_ink: bool = False
-) -> tuple[Darkness, Shapes, float]:
-    """Darkness of a grey picture (0..255): paper 0, the strokes 1; where filled shapes are that are no ink,
-    on a picture reduced by a whole number; the noise of the paper. Raises DrawingFault if nothing is long and
-    dark enough to be a line.
+class Levelled(NamedTuple):
+    """A sheet as darkness, paper 0, the strokes 1, or tiles of it; where filled shapes are that are no ink,
+    on a picture reduced by a whole number; the noise of the paper; and whether there are filled shapes.
+    """
+
+    darkness: Darkness | Tiles
+    shapes: Shapes
+    paper_noise: float
+    has_shapes: bool
+
+
+def levelled(grey: Grey, pitch_mm: float, shapes_are_ink: bool = False) -> Levelled:
+    """Darkness of a grey picture (0..255). Raises DrawingFault if nothing is long and dark enough to be a
+    line.
     """
     contrast = _in_even_light(Contrast.of(grey, pitch_mm), pitch_mm)
     ink, everywhere = _ink_contrast(contrast, pitch_mm)
-    if shapes_are_ink:  # another paper beneath them, and so another contrast
+    shapes = contrast.paper.shapes(ink)
+    has_shapes = bool(shapes.any())
+    if shapes_are_ink and has_shapes:  # another paper beneath them, and so another contrast
         contrast, everywhere = contrast.with_shapes(ink), None
+        shapes = contrast.paper.shapes(ink)
     every = every_px(grey.size)
     sample = contrast.pixels(every) if everywhere is None else everywhere[::every, ::every]
     noise_of_paper = paper_noise(sample / np.float32(ink))
-    shapes = contrast.paper.shapes(ink)
     if everywhere is None:
-        return contrast.darkness(ink), shapes, noise_of_paper
+        return Levelled(contrast.darkness(ink), shapes, noise_of_paper, has_shapes)
     if grey.size > FEW_PX:
         give_back()
-    return contrast.in_parts_of(ink, everywhere), shapes, noise_of_paper
+    darkness = contrast.in_parts_of(ink, everywhere)
+    return Levelled(darkness, shapes, noise_of_paper, has_shapes)
 
 
 def _in_even_light(contrast: Contrast, pitch_mm: float) -> Contrast:

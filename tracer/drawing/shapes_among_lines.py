@@ -65,15 +65,12 @@ def drawing_of_all_ink(
 
     Raises what `Drawing.of` raises.
     """
-    drawing = Drawing.of(scan, scale, ink, Reading(printed=printed, pale_is_ink=True))
-    if drawing.shapes is None or not drawing.shapes.any():
+    reading = Reading(printed=printed, shapes_are_ink=True, pale_is_ink=True)
+    drawing = Drawing.of(scan, scale, ink, reading)
+    if not drawing.has_shapes or has_lines(drawing):
         return drawing
-    whole = Drawing.of(
-        scan, scale, ink, Reading(False, printed, shapes_are_ink=True, pale_is_ink=True)
-    )
-    return (
-        whole if has_lines(whole) else replace(drawing, notes=(*drawing.notes, MOSTLY_SHAPES))
-    )
+    lines = Drawing.of(scan, scale, ink, reading._replace(shapes_are_ink=False))
+    return replace(lines, notes=(*lines.notes, MOSTLY_SHAPES))
 
 
 def has_lines(drawing: Drawing) -> bool:

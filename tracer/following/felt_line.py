@@ -15,7 +15,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import heading_between
-from morfax.motion.polyline import at_lengths, length_mm, lengths_mm
+from morfax.motion.polyline import at_lengths, between_corners, length_mm, lengths_mm
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import STATIONS
 from morfax.tracer.head.plan import Plan
@@ -118,9 +118,12 @@ def clean_from(view: View, carriage: Carriage, plan: Plan) -> Anchor:
 
 
 def trail_behind(view: View, carriage: Carriage) -> Array:
-    """The last stretch of the trail as stations of the line, (n, 3)."""
+    """The last stretch of the trail as stations of the line, (n, 3): not round a corner."""
     stations = round(view.leg_mm / view.step_mm)
     places = np.vstack([carriage.trail.recent()[-stations:], carriage.stands()[0]])
+    straight = between_corners(places)[-1]
+    if len(straight) >= FEWEST_STATIONS:
+        places = straight
     return np.column_stack([places, np.full(len(places), view.width_mm)])
 
 

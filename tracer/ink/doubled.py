@@ -71,7 +71,7 @@ class SureWidths(NamedTuple):
     def of(cls, drawing: Drawing) -> SureWidths:
         """Those of a drawing."""
         pixel_mm = drawing.pitch_mm * drawing.finer
-        return cls(LEAST_PX[drawing.is_hard] * pixel_mm, drawing.has_steps * pixel_mm)
+        return cls(LEAST_PX[drawing.is_hard] * pixel_mm, drawing.has_rims * pixel_mm)
 
 
 class Doubled(NamedTuple):

@@ -152,12 +152,9 @@ class FeltSheet:
             patch_of = {n: int(patch[n]) for n in some}
             doubled = Doubled.of(felt, swell, patch_of, straight.onward, sure)
             pen_mm = narrow_of(list(swell.values()))
-            # a step of few pixels, where these are ink or paper alone, is no line that begins
-            tells = pen_mm > sure.least_mm or not drawing.is_hard
-            some_beside = swell if are_strokes and tells else {}
             beside = {
                 n: lines
-                for n in some_beside
+                for n in (swell if are_strokes else ())
                 if (lines := lines_beside(felt[n], pen_mm, ends[n]))
             }
         if doubled.is_sure and math.isfinite(doubled.pen_mm):

@@ -223,8 +223,9 @@ def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
     put down on a small patch. Of what is likely a letter, and of open ink on its own that is small or of
     several strokes, the strokes (see `open_ink`).
 
-    If the line from an end goes along less than half of the ink, a line from a plain place goes before it
-    where that closes and is longer.
+    A line from a plain place that closes goes before one from an end that runs into itself, if it comes by
+    all of that: the end was a tip in which two sides meet. If that goes along less than half of the ink, it
+    does so if it is longer.
     """
     strokes = strokes_told(setup, contour, is_letter)
     if strokes is not None:
@@ -233,19 +234,28 @@ def _follow(setup: Setup, contour: Contour, is_letter: bool) -> _Found:
     if is_small and goes_round(setup.sheet, stroke.patch, 1) and not can_stand(setup, contour):
         return _Found(None)  # the head would take another line nearby for it
     from_end = followed_from_an_end(setup, stroke, contour.number)
-    if from_end is not None:
-        goes_far = from_end.length_mm > SHORT * from_end.ink_mm
-        if from_end.ending != "joined" or goes_far:
-            return _Found(from_end)
+    if from_end is not None and from_end.ending != "joined":
+        return _Found(from_end)
     about = _follow_from_plain_places(setup, contour)
-    if isinstance(about, _Found):
-        if from_end is None or about.others is not None or about.line is None:
-            return about
-        is_better = about.line.ending == "closed" and about.line.length_mm > from_end.length_mm
-        return about if is_better else _Found(from_end)
+    if isinstance(about, _Found) and (from_end is None or _goes_before(about, from_end)):
+        return about
     if from_end is not None or is_small:
         return _Found(from_end)
+    assert isinstance(about, LineFault)
     return _Found(_lost(contour, about))
+
+
+def _goes_before(about: _Found, from_end: Line) -> bool:
+    """Whether what was found from plain places goes before a line from an end that ran into itself."""
+    line, goes_far = about.line, from_end.length_mm > SHORT * from_end.ink_mm
+    if line is None or about.others is not None:
+        return not goes_far
+    if line.ending != "closed":
+        return False
+    if not goes_far:
+        return line.length_mm > from_end.length_mm
+    away_mm = nearest_mm(from_end.places_mm, line.loop_mm)
+    return bool(away_mm.max() < 0.5 * from_end.width_mm)
 
 
 def _lost(contour: Contour, fault: LineFault) -> Line:

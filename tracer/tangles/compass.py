@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import NamedTuple
 
 import cv2
@@ -28,7 +27,7 @@ from morfax.motion import arrays
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM2, left_of, unit
-from morfax.motion.polyline import area_mm2
+from morfax.motion.polyline import area_mm2, between_corners
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.least_squares import fitted
@@ -43,9 +42,6 @@ BEGIN = 0.3
 MOST_SETTLED = 5  # of the cores, those that explain most to begin with
 # 1 - cosine of the corner: sides that meet at 45 degrees are drawn in no further
 SHARPEST = 0.3
-STOPS_RAD = math.radians(
-    25.0
-)  # a way that turns by more is run up to there, and on from there; chosen
 ARC_RAD = math.radians(2.0)  # between the places of an arc: they lie within 1 um of one of 6 mm
 
 
@@ -105,16 +101,6 @@ class Core(NamedTuple):
             share = np.linspace(0.0, 1.0, 2 + math.ceil(turned / ARC_RAD))
             normal = heading - 0.5 * math.pi + share * turned
             yield point + self.radius_mm * np.column_stack([np.cos(normal), np.sin(normal)])
-
-
-def between_corners(way: Array) -> list[Array]:
-    """The stretches of a way (n, 2) mm between its sharp corners."""
-    steps = np.diff(way, axis=0)
-    headings = np.arctan2(steps[:, 1], steps[:, 0])
-    turned = np.abs(np.remainder(np.diff(headings) + math.pi, math.tau) - math.pi)
-    sharp = 1 + np.flatnonzero(turned > STOPS_RAD)
-    ends = [0, *sharp.tolist(), len(way) - 1]
-    return [way[begin : end + 1] for begin, end in pairwise(ends)]
 
 
 def explained(ink: SeenInk) -> Core | None:

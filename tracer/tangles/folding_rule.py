@@ -150,11 +150,14 @@ def round_bar(ink: SeenInk, legs: Array) -> Iterator[Rule]:
         yield from _of_corners(legs[0], legs[-1], corners, half_mm)
 
 
-def explained(ink: SeenInk, rules: Iterable[Rule]) -> Rule | None:
-    """The rule that explains the ink best with few figures, of some to begin with; None if none does."""
+def explained(ink: SeenInk, rules: Iterable[Rule], of_bay: bool = True) -> Rule | None:
+    """The rule that explains the ink best with few figures, of some to begin with; None if none does.
+
+    That of a bay has sides that stay apart, or begin apart and meet in a point.
+    """
     drawn = [_drawn(ink, rule) for rule in rules]
     likely = sorted(drawn, key=lambda rule: rule.cost)[:MOST_SETTLED]
-    return best_of(ink, likely, _settled)
+    return best_of(ink, likely, _settled_bay if of_bay else _settled)
 
 
 def _of_corners(
@@ -186,9 +189,15 @@ def _drawn(ink: SeenInk, rule: Rule) -> Rule:
     return rule._replace(misfit=ink.misfit(ink.drawn_along(rule.way, rule.half_mm)))
 
 
+def _settled_bay(ink: SeenInk, start: Rule) -> Rule | None:
+    """The same of a bay; None also if the pen runs out and back along one line."""
+    rule = _settled(ink, start)
+    return rule if rule is not None and _is_apart(rule, ink.width_mm) else None
+
+
 def _settled(ink: SeenInk, start: Rule) -> Rule | None:
-    """A rule moved to where the pen leaves the ink that is there; None if the pen becomes another,
-    comes off the ink, or runs out and back along one line.
+    """A rule moved to where the pen leaves the ink that is there; None if the pen becomes another, or comes
+    off the ink.
     """
     size, is_rounded = start.corners_mm.size, bool(start.rounded.any())
 
@@ -214,8 +223,7 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     rule = rule_of(fitted(wrong, figures, STEPS * len(figures), changes))
     least, most = LIKE_PEN
     is_pen = least * ink.half_mm < rule.half_mm < most * ink.half_mm
-    is_way = is_pen and ink.holds(rule.way) and _is_apart(rule, ink.width_mm)
-    return _drawn(ink, rule) if is_way else None
+    return _drawn(ink, rule) if is_pen and ink.holds(rule.way) else None
 
 
 def _turned(before: Array, place: Array, after: Array) -> float:

@@ -7,6 +7,7 @@ Source: our own (see `sketch`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -45,25 +46,45 @@ class Tangles:
         self._known: list[tuple[Tangle, Redrawing]] = []
         self._left: list[tuple[int, int, Leg]] = []
         self._beside: list[Leg] = []
+        self._softness_mm = math.inf  # of the lens: that of the clearest leg so far
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Tangles:
         """A memory that goes on by itself; tangles and legs, which are never changed, are shared."""
         copied = Tangles()
         copied._known, copied._left = list(self._known), list(self._left)
-        copied._beside = list(self._beside)
+        copied._beside, copied._softness_mm = list(self._beside), self._softness_mm
         return copied
 
     @property
-    def strands(self) -> list[Redrawing]:
-        """The redrawings of the tangles so far: what decides by which strand a line leads through again."""
-        return [redrawing for _, redrawing in self._known]
+    def strands(self) -> tuple[list[Redrawing], float]:
+        """The redrawings of the tangles so far, and the lens's softness, mm: what decides by which strand a
+        line leads through again, and by which rule.
+        """
+        return [redrawing for _, redrawing in self._known], self._softness_mm
 
     def way_out(self, view: View, approach: Approach) -> tuple[Plan | None, bool]:
         """The way out of the tangle ahead, and whether it explains the tangle's ink.
 
-        It is the plan if that explains the ink as well as any other way, or if the tangle does not end in
-        legs, or in too many, or if no redrawing explains its ink.
+        It is the plan if that explains the ink as well as any other way, or if neither a redrawing nor a rule
+        explains it.
         """
+        plan, is_explained = self._by_legs(view, approach)
+        if is_explained or len(approach.incoming.seen) < FEWEST_STATIONS:
+            return plan, is_explained
+        rule = self._by_rule(view, approach)
+        return (plan, False) if rule is None else (rule, True)
+
+    def _by_rule(self, view: View, approach: Approach) -> Plan | None:
+        """The way over corners whose sides are no legs, if the ink ahead is one line; None if it is not."""
+        from morfax.tracer.tangles.rule_ahead import rule_ahead
+        from morfax.tracer.tangles.sketch import softness_of
+
+        softness_mm = softness_of(view, approach.incoming)
+        self._softness_mm = min(self._softness_mm, softness_mm)
+        return rule_ahead(view, approach, self._softness_mm)
+
+    def _by_legs(self, view: View, approach: Approach) -> tuple[Plan | None, bool]:
+        """The same by the legs of the tangle, if it ends in legs, and in no more than can be joined."""
         from morfax.tracer.tangles.tangle import tangle_ahead
 
         incoming, plan = approach.incoming, approach.plan

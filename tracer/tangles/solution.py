@@ -245,11 +245,12 @@ def _is_as_good(way: Redrawing, other: Redrawing) -> bool:
 def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan, slack: float) -> bool:
     """Whether what is drawn beside a straight plan may be a mark or a blot.
 
-    It is no longer than a mark, and no stroke of the line explains it better. `slack`: what a tick may leave
-    unexplained beyond that.
+    It is no longer than a mark, the plan lies on ink, and no stroke of the line explains it better.
+    `slack`: what a tick may leave unexplained beyond that.
     """
     beside_mm = aside_mm(way.own, plan.stretches)
-    if beside_mm >= longest_mm(sketch.view):
+    on_paper = sketch.view.darkness_along(np.vstack(plan.stretches)) < sketch.view.level
+    if beside_mm >= longest_mm(sketch.view) or on_paper.any():
         return False
     if way.misfit > CLEAR or _is_scribble(way, beside_mm, _width(sketch)):
         return True

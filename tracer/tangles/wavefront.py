@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.pen import away_from
 
 FAR = 1e9  # pixels: where the wave has not come
 STEP_MM, STEP_PX = 0.1, 1.5  # how far the wave runs from front to front, at least; by trial
@@ -36,6 +37,7 @@ OPEN, STARTS = 1, 2  # of ink: where the wave may run, and where it starts
 START_PX, START_ASIDE = 1.5, 0.4
 # widths, pixels behind and widths aside of the start: shut off
 SHUT, SHUT_PX, SHUT_ASIDE = 2.0, 2.0, 0.9
+SHUT_WAY = 0.6  # widths from a way that was run: shut off
 MARGIN_PX = 4  # of the window beyond the reach
 RECENT = 64  # links among which a pair is looked for: those of one row's neighbours
 
@@ -77,9 +79,24 @@ class Fronts:
             steps[k] = max((steps[b] + 1 for b in self.children[k]), default=0)
         return steps * self.step_mm
 
+    def way_to(self, front: int) -> Array:
+        """The way (n, 2) mm by which the wave came to a front, from its start on."""
+        way = [front]
+        while self.parents[way[-1]]:
+            way.append(self.parents[way[-1]][0])
+        return self.places_mm[way[::-1]]
 
-def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fronts:
-    """The fronts of a wave that starts across the line at a place and runs ahead as far as `reach_mm`."""
+
+def fronts_from(
+    view: View,
+    place: Array,
+    heading: float,
+    reach_mm: float,
+    behind_mm: Array | None = None,
+) -> Fronts:
+    """The fronts of a wave that starts across the line at a place and runs ahead as far as `reach_mm`, and
+    not into the ink along a way (n, 2) mm that ends there.
+    """
     # 1. a window of the sheet about the place
     rows, pitch = view.cells.shape[0], view.pitch_mm
     half = math.ceil(reach_mm / pitch) + MARGIN_PX
@@ -90,6 +107,9 @@ def fronts_from(view: View, place: Array, heading: float, reach_mm: float) -> Fr
     # 2. the wave in it, and its fronts
     pose = float(x - left), float(y - top), float(heading)
     ground = _ground(window, view.level, pose, view.width_mm / pitch)
+    if behind_mm is not None:
+        corner_mm = np.array([left + 0.5, rows - top - 0.5]) * pitch
+        _shut_along(ground, (behind_mm - corner_mm) / pitch * [1, -1], view.width_mm / pitch)
     step_px = max(STEP_MM / pitch, STEP_PX)
     label, table, links = _split(_wave(ground, reach_mm / pitch), step_px)
     # 3. in the order of the wave
@@ -131,6 +151,18 @@ def _ground(darkness, level, pose, width_px):  # type: ignore[no-untyped-def]
             starts = 0 <= along < START_PX and aside < START_ASIDE * width_px
             out[i, j] = STARTS if starts else OPEN
     return out
+
+
+def _shut_along(ground: NDArray[np.int8], way_px: Array, width_px: float) -> None:
+    """Close the ink along a way (n, 2), columns and rows, in place, but for what lies ahead of its end."""
+    rows, columns = np.nonzero(ground)
+    places = np.column_stack([columns, rows]).astype(float)
+    end, ahead = way_px[-1], way_px[-1] - way_px[-2]
+    away_px = away_from(places, way_px)
+    from_end = places - end
+    is_ahead = (np.hypot(*from_end.T) < away_px + LEAST_PX) & (from_end @ ahead >= 0)
+    shut = (away_px < SHUT_WAY * width_px) & ~is_ahead
+    ground[rows[shut], columns[shut]] = 0
 
 
 @njit(cache=True)

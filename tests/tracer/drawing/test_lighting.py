@@ -128,7 +128,7 @@ def test_a_disc_of_pencil_under_a_lamp_stays_dark() -> None:
     cv2.circle(grey, (236, 236), 140, 110.0, -1, cv2.LINE_AA)
     cv2.circle(grey, (708, 236), 140, 110.0, 6, cv2.LINE_AA)
     grey *= np.linspace(1, 0.7, 945)
-    _, shapes, _ = levelled(np.asarray(np.round(grey), np.uint8), 25.4 / 300)
+    shapes = levelled(np.asarray(np.round(grey), np.uint8), 25.4 / 300).shapes
     by = round(945 / shapes.shape[1])
     assert shapes[236 // by, 236 // by] and not shapes[236 // by, 708 // by]
 
@@ -140,7 +140,7 @@ def test_along_the_edge_of_grey_paper_no_line_is_left() -> None:
     grey = np.full((472, 945), 240.0)
     cv2.rectangle(grey, (203, 101), (741, 370), 150.0, -1)
     cv2.line(grey, (240, 140), (700, 330), 20.0, 7, cv2.LINE_AA)
-    darkness, _, _ = levelled(np.asarray(np.round(grey), np.uint8), 25.4 / 300)
+    darkness = levelled(np.asarray(np.round(grey), np.uint8), 25.4 / 300).darkness
     drawn = np.zeros(grey.shape, np.uint8)
     cv2.line(drawn, (240, 140), (700, 330), 1, 15)
     for corner in ((203, 101), (741, 101), (203, 370), (741, 370)):

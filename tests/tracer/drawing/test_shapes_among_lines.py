@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -10,7 +11,9 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.polyline import nearest_mm
+from morfax.tracer.drawing import drawing as drawing_module
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.levelling import Levelled
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
@@ -80,6 +83,21 @@ def test_a_line_that_ends_at_a_black_area_is_followed_up_to_it(
     (area,) = (area for area in found.ink.areas if area.what == "solid area")
     (left, bottom), (right, top) = shape_mm[0], shape_mm[2]
     assert area.area_mm2 == pytest.approx((right - left) * (top - bottom), rel=0.03)
+
+
+@pytest.mark.parametrize("lines", [True, False], ids=["among lines", "alone"])
+def test_filled_shapes_are_told_and_a_sheet_with_lines_is_read_once(
+    monkeypatch: pytest.MonkeyPatch, lines: bool
+) -> None:
+    levelled, read_as_ink = drawing_module.levelled, list[bool]()
+
+    def counted(grey: Any, pitch_mm: float, shapes_are_ink: bool) -> Levelled:
+        read_as_ink.append(shapes_are_ink)
+        return levelled(grey, pitch_mm, shapes_are_ink)
+
+    monkeypatch.setattr(drawing_module, "levelled", counted)
+    assert read(box(25, 45, 85, 58), lines=lines).has_shapes
+    assert read_as_ink == ([True] if lines else [True, False])
 
 
 @pytest.mark.parametrize(

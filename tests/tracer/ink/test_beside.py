@@ -63,7 +63,7 @@ def test_bent_lines_of_two_pixels_are_two_strokes() -> None:
         assert min(aside_mm(line, stroke.xy_mm) for stroke in found.lines) < 0.127
 
 
-@pytest.mark.parametrize(("width_mm", "dpi"), [(0.5, 200.0), (0.45, 300.0)])
+@pytest.mark.parametrize(("width_mm", "dpi"), [(0.45, 300.0), (0.45, 150.0)])
 def test_a_line_of_ink_and_paper_alone_is_one_stroke_where_it_is_nearly_level(
     width_mm: float, dpi: float
 ) -> None:
@@ -71,7 +71,7 @@ def test_a_line_of_ink_and_paper_alone_is_one_stroke_where_it_is_nearly_level(
     turn = np.linspace(0, 2 * np.pi, 1500)
     across = 30 * np.cos(turn) - 9 * np.cos(2 * turn)
     up = 14 * np.sin(turn) + 5 * np.sin(2 * turn) * np.cos(turn)
-    fish = np.column_stack([105 + 2.4 * across, 50.03 + 2.4 * up])
+    fish = np.column_stack([53 + 1.2 * across, 26.03 + 1.2 * up])
     levels = np.where(inked(fish, width_mm=width_mm, dpi=dpi).darkness > 0.5, 0.0, 255.0)
     (stroke,) = trace_ink(opened(levels, dpi)).lines
     assert stroke.ending == "closed"

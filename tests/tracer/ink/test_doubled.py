@@ -283,9 +283,9 @@ def test_a_broader_pens_line_along_the_steps_of_pixels_is_one_line(seed: int) ->
     drawing = together(*thin, (rows[0], 0.45), (rows[2], 0.45), seed=None)
     noise = np.random.default_rng(seed).normal(0.0, 0.1, drawing.darkness.shape)
     hard = (drawing.darkness + cv2.GaussianBlur(noise, (0, 0), 0.8) > 0.5).astype(np.float32)
-    laid = replace(drawing, darkness=with_rims(hard), has_steps=True)
+    laid = replace(drawing, darkness=with_rims(hard), has_rims=True)
     assert doubled_mm(laid) == 0.0
-    assert doubled_mm(replace(laid, has_steps=False)) > 5.0
+    assert doubled_mm(replace(laid, has_rims=False)) > 5.0
 
 
 @pytest.mark.parametrize("seed", [None, 1, 2])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -19,9 +20,9 @@ from tests.tracer.inked import arc, inked, polyline
 SHEET = Sheet.of(inked(arc((16, 16), 10)))
 
 
-def line(ending: str, length_mm: float, ink_mm: float = 100.0) -> Line:
+def line(ending: str, length_mm: float, ink_mm: float = 100.0, y_mm: float = 0.0) -> Line:
     """A line along X, as it might have ended."""
-    places = np.column_stack([np.linspace(0, length_mm, 50), np.zeros(50)])
+    places = np.column_stack([np.linspace(0, length_mm, 50), np.full(50, y_mm)])
     return Line(places, ending, 0.5, length_mm, ink_mm=ink_mm)
 
 
@@ -34,7 +35,9 @@ def line(ending: str, length_mm: float, ink_mm: float = 100.0) -> Line:
         (line("joined", 40), line("closed", 30), "end"),
         (line("joined", 40), line("joined", 95), "end"),
         # a stem, and the loop that it leads to
-        (line("joined", 70), line("closed", 95), "end"),
+        (line("joined", 70, y_mm=2.0), line("closed", 95), "end"),
+        # a tip in which two sides of the loop meet
+        (line("joined", 70), line("closed", 70), "round"),
         (line("ended", 40), line("closed", 95), "end"),
         (None, line("closed", 95), "round"),
     ],
@@ -47,6 +50,18 @@ def test_a_line_from_an_end_that_leads_round_little_of_the_ink_gives_way(
     asked, _ = selection.plan(SHEET, (1,))
     (found,), unclear, _ = one_of_each.one_of_each(Setup(SHEET), asked, (1,))
     assert found is (from_end if taken == "end" else round_about) and not unclear
+
+
+def test_a_tip_in_which_two_sides_meet_begins_no_lead_line() -> None:
+    """A wedge of 9 degrees, 14 mm long: its tip looks like an open end."""
+    wedge = np.array([(0, 0), (2.2, 0), (1.1, 14.0), (0, 0)])
+    c, s = math.cos(1.2), math.sin(1.2)
+    turned = wedge @ np.array([[c, s], [-s, c]])
+    places = [(x, y) for x, y in (turned - turned.min(axis=0) + 4).tolist()]
+    sheet = Sheet.of(inked(polyline(*places), width_mm=0.3, dpi=600, seed=1))
+    asked, _ = selection.plan(sheet, "contours")
+    (found,), _, _ = one_of_each.one_of_each(Setup(sheet), asked, "contours")
+    assert found.ending == "closed" and not found.is_lead
 
 
 @pytest.mark.parametrize(("apart_mm", "felt"), [(9.2, 1), (8.0, 2)])

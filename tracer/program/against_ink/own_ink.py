@@ -4,13 +4,13 @@
     ║  ││  ║      the sheet's
     ╚══╯╰══╝
 
-Within some widths of a way each pixel is held against the ink of a pen (see `pen_on_ink`) on whatever way is
-nearest to it, of that width which explains a box about it best: a line that swells is no other line. What the
-pen draws on paper there is summed,
+Within some widths of a way each pixel is held against the ink of a pen (see `pen_on_ink`) along whatever line
+its edge is nearest to, as wide as that was felt, or by that share which explains a box about it best: a line
+that swells is no other line. What the pens draw on paper there is summed,
 
     over = (sum((drawn - seen)²) - what the paper's noise leaves) · area of a pixel / width²
 
-and so is the ink that it leaves; a way is beside its ink where the lesser of both is large, and far above
+and so is the ink that they leave; a way is beside its ink where the lesser of both is large, and far above
 that of most of its line. By itself neither tells: another line or a tick leaves ink, and a gap is paper.
 
 Signals: the drawing and lines that were followed in; stretches of them beside their ink out, of those that
@@ -197,7 +197,7 @@ def parts(
     """The tiles of a side in which some of the places that stand for ways are stations."""
     tiles = _Tiles.of(ways, side_px)
     margin = math.ceil(2 * (REACH_WIDTHS + 1) * pen.half_px) + 1
-    room = Room.of((side_px + 2 * margin) ** 2, pen.reach_px)
+    room = Room.of((side_px + 2 * margin) ** 2, pen)
     for number in sorted(set(tiles.of_place[is_station].tolist())):
         row, column = divmod(number, tiles.across)
         near = tiles.about(row, column)

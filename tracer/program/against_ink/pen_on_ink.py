@@ -1,9 +1,10 @@
 """Pen on ink: a part of a sheet is held against the ink of a pen on the ways there, pixel by pixel.
 
-    1. what way is nearest to each pixel within reach: its line, and how far it is
-    2. what a pen of the felt width leaves wrong in the box about each of those pixels; where that is hardly
-       anything, the best pen draws no more than that on paper, and stations are judged by it
-    3. else the pen, of some widths, that explains each box best: what it draws on paper, and what it leaves
+    1. to the edge of what way's line each pixel within reach is nearest, and how far beyond it is
+    2. what pens as wide as each line was felt leave wrong in the box about each of those pixels; where that
+       is hardly anything, the best pens draw no more than that on paper, and stations are judged by them
+    3. else pens of the share of those widths that explains each box best: what they draw on paper, and what
+       they leave
 
 Signals: darkness of a part of the sheet (rows, columns), places of the ways (n, 2) in its columns and rows,
 stations (m, 2) of lines that are judged among them; what is over about each station out (see `own_ink`).
@@ -26,9 +27,9 @@ from morfax.tracer.tangles.tangle import DARKEST
 
 
 class PenOnInk(NamedTuple):
-    """The pen of most lines: half its width and its softness in pixels, how far from a way it is looked at,
-    the variance of the paper's noise on either side, shares of the width that are tried, the widest last, and
-    how much may be over for nothing else to be tried, in widths.
+    """The pen of most lines: half its width and its softness in pixels, how far from its way it is looked at,
+    the variance of the paper's noise on either side, shares of a line's width that are tried, the widest
+    last, and how much may be over for nothing else to be tried, in widths.
     """
 
     half_px: float
@@ -55,30 +56,30 @@ class Ways(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Room to work in, for as many pixels (n,) as the largest part of a sheet has: squares of distances,
-    numbers, and two rows of values; the first three are as empty after each part as before it.
+    """Room to work in, for as many pixels (n,) as the largest part of a sheet has: how far they are beyond
+    an edge, numbers, and two rows of values; the first three are as empty after each part as before it.
     """
 
-    away2: NDArray[np.float32]
+    beyond: NDArray[np.float32]
     number: NDArray[np.int32]
     spread: Array
     boxes: Array
 
     @classmethod
-    def of(cls, pixels: int, reach_px: float) -> Room:
-        """Room for so many pixels within a reach: made once, as the system wipes what it gives out."""
-        away2 = np.full(pixels, reach_px**2, np.float32)
-        return cls(away2, np.zeros(pixels, np.int32), np.zeros(pixels), np.empty(pixels))
+    def of(cls, pixels: int, pen: PenOnInk) -> Room:
+        """Room for so many pixels within a pen's reach: made once, as the system wipes what it gives out."""
+        beyond = np.full(pixels, pen.reach_px - pen.half_px, np.float32)
+        return cls(beyond, np.zeros(pixels, np.int32), np.zeros(pixels), np.empty(pixels))
 
 
 class Band(NamedTuple):
-    """Pixels nearest to ways that are judged: rows and columns, how far the way is, half its width, the
-    darkness.
+    """Pixels nearest to lines that are judged: rows and columns, how far they are beyond the line's edge,
+    half the width of that, the darkness.
     """
 
     row: NDArray[np.int32]
     column: NDArray[np.int32]
-    away_px: Array
+    beyond_px: Array
     half_px: Array
     dark: Array
 
@@ -94,17 +95,17 @@ def over_at(seen, ways, stations, pen, room):  # type: ignore[no-untyped-def]
         room.boxes[: seen.size].reshape(shape),
     )
     width2, over = (2 * pen.half_px) ** 2, np.empty(len(stations))
-    # 1. the felt pen alone
+    # 1. the felt pens alone
     values = np.empty(len(band.dark))
     for k in range(len(values)):
-        wrong = ink_at(band.away_px[k], pen.half_px, pen.softness_px) - band.dark[k]
+        wrong = ink_at(band.beyond_px[k], 0.0, pen.softness_px) - band.dark[k]
         values[k] = wrong * wrong - 2 * pen.noise
     most = in_boxes(band, values, side, spread, boxes)
     if most < pen.over * width2:
         for k in range(len(stations)):
             over[k] = most_about(boxes, stations[k], side) / width2
         return over
-    # 2. the best of some pens
+    # 2. the best of some shares of their widths
     on_paper, on_ink = np.zeros(shape), np.zeros(shape)
     _best(band, pen, spread, on_paper, on_ink)
     for k in range(len(stations)):
@@ -125,8 +126,8 @@ def _best(band, pen, spread, on_paper, on_ink):  # type: ignore[no-untyped-def]
     least = np.full(spread.shape, np.inf)
     for share in pen.of_width:
         for k in range(len(band.dark)):
-            away_px = band.away_px[k] - (share - 1) * band.half_px[k]
-            wrong = ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
+            beyond_px = band.beyond_px[k] - (share - 1) * band.half_px[k]
+            wrong = ink_at(beyond_px, 0.0, pen.softness_px) - band.dark[k]
             paper[k] = max(wrong, 0.0) ** 2 - pen.noise
             left[k] = max(-wrong, 0.0) ** 2 - pen.noise
         in_boxes(band, paper, side, spread, papers)
@@ -140,14 +141,15 @@ def _best(band, pen, spread, on_paper, on_ink):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def band_of(seen, ways, pen, room):  # type: ignore[no-untyped-def]
-    """The pixels of a part of the sheet that are nearest to ways that are judged; their numbers, from 1, are
+    """The pixels of a part of the sheet that are nearest to lines that are judged; their numbers, from 1, are
     left in the room until it is cleared.
     """
-    away2 = room.away2[: seen.size].reshape(seen.shape)
+    all_beyond = room.beyond[: seen.size].reshape(seen.shape)
     number = room.number[: seen.size].reshape(seen.shape)
-    count, reached = _nearest(ways, pen.reach_px, away2, number)
+    most_px = pen.reach_px - pen.half_px
+    count, reached = _nearest(ways, most_px, all_beyond, number)
     row, column = np.empty(count, np.int32), np.empty(count, np.int32)
-    away, half, dark = np.empty(count), np.empty(count), np.empty(count)
+    beyond, half, dark = np.empty(count), np.empty(count), np.empty(count)
     n = 0
     for i in range(len(reached)):
         for j in range(reached[i, 0], reached[i, 1]):
@@ -157,12 +159,12 @@ def band_of(seen, ways, pen, room):  # type: ignore[no-untyped-def]
             number[i, j] = 0
             if ways.judged[line]:
                 row[n], column[n] = i, j
-                away[n], half[n] = math.sqrt(away2[i, j]), ways.half_px[line]
+                beyond[n], half[n] = all_beyond[i, j], ways.half_px[line]
                 dark[n] = min(float(seen[i, j]), DARKEST)
                 n += 1
                 number[i, j] = n
-            away2[i, j] = pen.reach_px**2
-    return Band(row[:n], column[:n], away[:n], half[:n], dark[:n])
+            all_beyond[i, j] = most_px
+    return Band(row[:n], column[:n], beyond[:n], half[:n], dark[:n])
 
 
 @njit(cache=True)
@@ -174,31 +176,33 @@ def clear(seen, band, room):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _nearest(ways, reach_px, away2, number):  # type: ignore[no-untyped-def]
-    """For each pixel the square of how far the nearest place of some ways is, if less than what is there,
-    and the number, from 1, of which line it is; no place changes a pixel out of reach. Give how many pixels
-    have a number, and from and to before which column of each row (rows, 2) some have.
+def _nearest(ways, most_px, beyond, number):  # type: ignore[no-untyped-def]
+    """For each pixel how far it is beyond the nearest edge of a line along some ways, if less than what is
+    there, and the number, from 1, of that line; a pixel that is further beyond than the most keeps both. Give
+    how many pixels have a number, and from and to before which column of each row (rows, 2) some have.
 
     Nothing branches in the innermost loop, so that it runs in vectors.
     """
-    places, (rows, columns) = ways.places_px, away2.shape
-    across2 = np.empty(2 * math.ceil(reach_px) + 2, np.float32)
+    places, (rows, columns) = ways.places_px, beyond.shape
+    reach_px = most_px + ways.half_px
+    across2 = np.empty(2 * math.ceil(reach_px.max()) + 2, np.float32)
     reached = np.empty((rows, 2), np.int64)
     reached[:, 0], reached[:, 1] = columns, 0
     for k in range(len(places)):
         x, y, line = places[k, 0], places[k, 1], np.int32(ways.line[k] + 1)
-        left, right = max(0, math.ceil(x - reach_px)), min(columns, int(x + reach_px) + 1)
+        half, reach = np.float32(ways.half_px[ways.line[k]]), reach_px[ways.line[k]]
+        left, right = max(0, math.ceil(x - reach)), min(columns, int(x + reach) + 1)
         if left >= right:  # beside this part of the sheet
             continue
         for j in range(right - left):
             across2[j] = (left + j - x) ** 2
-        for row in range(max(0, math.ceil(y - reach_px)), min(rows, int(y + reach_px) + 1)):
+        for row in range(max(0, math.ceil(y - reach)), min(rows, int(y + reach) + 1)):
             down2 = np.float32((row - y) ** 2)
-            away, lines = away2[row, left:right], number[row, left:right]
+            away, lines = beyond[row, left:right], number[row, left:right]
             for j in range(len(away)):
-                square = across2[j] + down2
-                is_nearer = square < away[j]
-                away[j] = square if is_nearer else away[j]
+                by = np.sqrt(across2[j] + down2) - half
+                is_nearer = by < away[j]
+                away[j] = by if is_nearer else away[j]
                 lines[j] = line if is_nearer else lines[j]
             reached[row, 0] = min(reached[row, 0], left)
             reached[row, 1] = max(reached[row, 1], right)

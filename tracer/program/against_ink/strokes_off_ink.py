@@ -199,7 +199,7 @@ def _side(pen: PenOnInk) -> int:
 def _sums(band: Band, pen: PenOnInk, half_px: Array, spread: Array) -> tuple[Array, Array]:
     """What pens, half as wide as given for each pixel, draw on paper in the box about it, and leave."""
     drawn, sums = np.empty(len(band.dark)), (np.empty(spread.shape), np.empty(spread.shape))
-    ink(band.away_px - half_px + pen.half_px, pen.half_px, pen.softness_px, drawn)
+    ink(band.beyond_px + band.half_px - half_px, 0.0, pen.softness_px, drawn)
     wrong = drawn - band.dark
     for signed, into in zip((wrong, -wrong), sums, strict=True):
         in_boxes(band, np.maximum(signed, 0.0) ** 2 - pen.noise, _side(pen), spread, into)

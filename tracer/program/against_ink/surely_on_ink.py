@@ -1,10 +1,10 @@
 """Surely on ink: a quick proof that what a pen leaves wrong about stations of a way is below a limit.
 
-`over_at` (see `pen_on_ink`) has the pen of several widths that explains a box best. Whatever pen that is, it
-leaves no more than the felt pen, and neither what it draws on paper nor what ink it leaves counts for less
-than no noise at all. So both are below
+`over_at` (see `pen_on_ink`) has the pens of several widths that explain a box best. Whatever pens these are,
+they leave no more than the felt ones, and neither what they draw on paper nor what ink they leave counts for
+less than no noise at all. So both are below
 
-    over <= sum((drawn by the felt pen - seen)²) - noise · pixels of the box
+    over <= sum((drawn by the felt pens - seen)²) - noise · pixels of the box
 
 and only boxes that are above the limit by this are looked at with all the pens; only stations about which
 all that is wrong is above it are looked at box by box. No pen draws more on paper than the widest does: where
@@ -38,11 +38,11 @@ def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[n
     # 1. all that is wrong in each square of a box's side; the boxes about a station reach into nine of them
     squares = np.zeros((len(seen) // side + 3, seen.shape[1] // side + 3))
     for k in range(len(band.dark)):
-        wrong = ink_at(band.away_px[k], pen.half_px, pen.softness_px) - band.dark[k]
+        wrong = ink_at(band.beyond_px[k], 0.0, pen.softness_px) - band.dark[k]
         row, column = band.row[k], band.column[k]
         spread[row, column] = wrong * wrong - pen.noise
         squares[row // side + 1, column // side + 1] += max(spread[row, column], 0.0)
-    # 2. where that is more than the limit, box by box: with the felt pen, what the widest draws, the best
+    # 2. where that is more than the limit, box by box: with the felt pens, what the widest draw, the best
     down, boxes, papers = np.empty(2 * side - 1), np.empty((side, side)), np.empty((side, side))
     told, on_paper, wrongs = np.full((KEPT, 3), -1.0), np.empty((0, 0)), np.empty((0, 0))
     for k in range(len(stations)):
@@ -69,9 +69,9 @@ def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[n
 
 @njit(cache=True)
 def _too_dark(band, k, share, pen):  # type: ignore[no-untyped-def]
-    """What a pen of a share of the width draws too dark at a pixel of a band."""
-    away_px = band.away_px[k] - (share - 1) * band.half_px[k]
-    return ink_at(away_px, pen.half_px, pen.softness_px) - band.dark[k]
+    """What a pen of a share of its line's width draws too dark at a pixel of a band."""
+    beyond_px = band.beyond_px[k] - (share - 1) * band.half_px[k]
+    return ink_at(beyond_px, 0.0, pen.softness_px) - band.dark[k]
 
 
 @njit(cache=True)

@@ -47,6 +47,7 @@ from morfax.tracer.program.laid.line_parts import (
     LEGS,
     OF_LOOP,
     STILL_LEFT,
+    along_mm,
     is_bare,
     is_clear,
     rest_of,
@@ -121,8 +122,8 @@ class _Way:
         """Whether the swinging cell led to each place."""
         line = self.line
         _, leaders = line.led.thinned(line.xy_mm, THINNED)
-        come_mm = lengths_mm(line.places_mm)
-        at = np.searchsorted(come_mm, np.arange(len(self.places)) * self.step_mm)
+        lengths = lengths_mm(line.places_mm)
+        at = np.searchsorted(lengths, np.arange(len(self.places)) * self.step_mm)
         return np.asarray(leaders[np.minimum(at, len(leaders) - 1)] == CELL)
 
     @cached_property
@@ -154,9 +155,17 @@ class _Way:
     def bent(self, felt: UsualPen) -> Line:
         """The line as it is, or along the splines that explain its ink better."""
         bays = [bay for off in self._off(felt) if (bay := self._bay(*off, felt)) is not None]
-        round_mm = len(self.places) * self.step_mm
-        bays = apart(bays, round_mm)
-        return laid(self.setup, self.line, bays, round_mm) if bays else self.line
+        bays = apart(bays, self.round_mm)
+        return laid(self.setup, self.line, bays, self.round_mm) if bays else self.line
+
+    @cached_property
+    def round_mm(self) -> float:
+        """How long the way is: no whole number of steps."""
+        return length_mm(self.line.places_mm)
+
+    def _at_mm(self, place: int) -> float:
+        """How far along the way a place is."""
+        return along_mm(place, len(self.places), self.step_mm, self.round_mm)
 
     def _off(self, felt: UsualPen) -> Iterator[tuple[int, int]]:
         """The stretches that are off their ink, from which place to which."""
@@ -214,7 +223,7 @@ class _Way:
         if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
             return None
         rule = LaidWay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
-        return Bay(first * self.step_mm, last * self.step_mm, rule, gain)
+        return Bay(self._at_mm(first), self._at_mm(last), rule, gain)
 
 
 def _runs(chosen: NDArray[np.bool_], apart: int, is_closed: bool) -> Iterator[tuple[int, int]]:

@@ -21,7 +21,14 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
-from morfax.motion.polyline import area_mm2, broad_mm, length_mm, lengths_mm, nearest_mm
+from morfax.motion.polyline import (
+    area_mm2,
+    between_corners,
+    broad_mm,
+    length_mm,
+    lengths_mm,
+    nearest_mm,
+)
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
@@ -31,7 +38,6 @@ from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.compass import between_corners
 
 # In widths of the pen:
 NEAR = 1.0  # from an end of the stretch to the rim's way

@@ -18,13 +18,13 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly, nearest_mm
+from morfax.motion.polyline import evenly, length_mm, nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH, rest_of
+from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH, along_mm, rest_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import folding_rule, pen
@@ -69,10 +69,10 @@ class WayInk:
         line = self.line
         return evenly(line.loop_mm if self.is_closed else line.places_mm, self.step_mm)
 
-    @property
+    @cached_property
     def round_mm(self) -> float:
         """How long the way is."""
-        return len(self.way) * self.step_mm
+        return length_mm(self.line.places_mm)
 
     def about(self, first: int, last: int, beyond_mm: Array) -> BayInk | None:
         """The ink about a stretch from one place to another and about some places (n, 2) mm beside it; None
@@ -95,7 +95,11 @@ class WayInk:
 
     def as_bay(self, seen: BayInk, rule: Rule | LaidWay, gain: float) -> Bay:
         """What is laid in place of a stretch."""
-        return Bay(seen.first * self.step_mm, seen.last * self.step_mm, rule, gain)
+        first_mm, last_mm = (
+            along_mm(place, len(self.way), self.step_mm, self.round_mm)
+            for place in (seen.first, seen.last)
+        )
+        return Bay(first_mm, last_mm, rule, gain)
 
     def along(self, bays: list[Bay]) -> Line:
         """The line with the head run along those of some bays that lie apart."""
@@ -118,5 +122,9 @@ class WayInk:
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = np.min([pen.away_from(ink.places_mm, part) for part in rest], axis=0)
         for line in self.lines.reaching(low, high, self.line):
-            known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, line.places_mm))
+            # a known line is as wide as it was felt, and drawn by this line's pen
+            wider_mm = 0.5 * (line.width_mm - self.line.width_mm)
+            known_mm = np.minimum(
+                known_mm, nearest_mm(ink.places_mm, line.places_mm) - wider_mm
+            )
         return ink._replace(known_mm=known_mm)

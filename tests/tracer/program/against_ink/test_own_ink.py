@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.against_ink.own_ink import beside
+from morfax.tracer.program.against_ink.own_ink import NEARLY, beside
 from morfax.tracer.program.against_ink.pen_on_ink import (
     Band,
     PenOnInk,
@@ -26,7 +27,7 @@ from morfax.tracer.program.against_ink.pen_on_ink import (
 from morfax.tracer.program.against_ink.unexplained import unexplained
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
-from tests.tracer.inked import Points, arc, inked, polyline
+from tests.tracer.inked import Points, arc, inked, polyline, together
 
 WIDTH_MM, STEP_MM = 0.5, 0.0017
 # a notch 1.8 widths wide, and as deep as five
@@ -88,6 +89,14 @@ def test_a_line_that_swells_is_not_found() -> None:
     assert found(inked(notched(DEEP_MM), *broad, seed=1), closed(notched(DEEP_MM))) == []
 
 
+def test_a_broad_line_that_thin_ones_cross_is_not_found() -> None:
+    """Each line is as broad as it was felt: an outline of 1.1 mm, and centre lines of 0.5 mm."""
+    edge, cross = polyline((4, 14), (44, 14)), polyline((24, 4), (24, 24))
+    drawing = together((edge, 1.1), (cross, WIDTH_MM), seed=1)
+    lines = replace(closed(edge, "ended"), width_mm=1.1), closed(cross, "ended")
+    assert list(beside(drawing, lines, NEARLY)) == []
+
+
 def test_a_way_beside_its_line_is_found_where_it_leaves_and_not_beyond() -> None:
     """It goes 0.4 mm aside for 6 mm; boxes about its ends reach one and a half widths further."""
     drawing = inked(notched(DEEP_MM), seed=1)
@@ -126,16 +135,17 @@ def test_what_is_found_is_told_once_with_its_place() -> None:
     assert "runs beside its ink at 1 place" in said and "at 24." in said
 
 
-def test_the_nearest_of_some_places_within_reach() -> None:
-    away2, number = np.full((3, 5), 1.6**2, np.float32), np.zeros((3, 5), np.int32)
+def test_the_nearest_edge_within_reach() -> None:
+    """One line of 2 px, and one of 3 px, whose edge is nearer to the pixel between them."""
+    beyond, number = np.full((3, 5), 0.6, np.float32), np.zeros((3, 5), np.int32)
     # the last three lie beside this part of the sheet
-    some = [(0.0, 1.0), (3.0, 1.5), (-3.0, 1.0), (60.0, 1.0), (1.0, -40.0)]
-    lines = np.array([7, 8, 9, 9, 9], np.int32)
-    ways = Ways(np.array(some, np.float32), lines, np.empty(0), np.empty(0, bool))
-    count, reached = _nearest.py_func(ways, 1.6, away2, number)
-    assert number[1].tolist() == [8, 8, 9, 9, 9]
-    assert away2[1].tolist() == [0, 1, 1.25, 0.25, 1.25]
-    assert number[0, 4] == 0 and count == np.count_nonzero(number)
+    some = [(0.0, 1.0), (4.0, 1.0), (-4.0, 1.0), (60.0, 1.0), (1.0, -40.0)]
+    lines, half_px = np.array([0, 1, 0, 0, 0], np.int32), np.array([1.0, 1.5])
+    ways = Ways(np.array(some, np.float32), lines, half_px, np.empty(0, bool))
+    count, reached = _nearest.py_func(ways, 0.6, beyond, number)
+    assert number[1].tolist() == [1, 1, 2, 2, 2]
+    assert beyond[1].tolist() == [-1, 0, 0.5, -0.5, -1.5]
+    assert number[0, 2] == 0 and count == np.count_nonzero(number)
     # each pixel that has a number, once, though the second line takes one of the first over
     assert reached.tolist() == [[0, 5], [0, 5], [0, 5]]
 
@@ -168,7 +178,7 @@ def test_a_pen_of_its_own_width_explains_its_line_and_a_bare_way_is_over() -> No
     places = np.column_stack([np.arange(40.0), np.full(40, 10.0)]).astype(np.float32)
     ways = Ways(places, np.zeros(40, np.int32), np.array([2.0]), np.array([True]))
     pen = PenOnInk(2.0, 0.3, 5.0, 0.0, (0.8, 1.0), 0.05)
-    stations, room = np.array([(8, 10), (33, 10)]), Room.of(seen.size, 5.0)
+    stations, room = np.array([(8, 10), (33, 10)]), Room.of(seen.size, pen)
     over = over_at.py_func(seen.astype(np.float32), ways, stations, pen, room)
     assert over[0] < 0.05
     # beyond its end the pen draws all of the box, but leaves no ink: a gap

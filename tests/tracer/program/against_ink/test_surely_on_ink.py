@@ -41,7 +41,7 @@ def test_what_is_not_over_by_the_proof_is_not_over_by_all_pens(
 ) -> None:
     for seed in range(3):
         seen, ways, pen, stations = part(aside_px, seed)
-        room = Room.of(seen.size, pen.reach_px)
+        room = Room.of(seen.size, pen)
         may = np.empty(len(stations), bool)
         over = over_at(seen, ways, stations, pen, room)
         may_be_over(seen, ways, stations, np.full(len(over), limit), pen, room, may)
@@ -55,7 +55,7 @@ def test_a_right_way_is_surely_on_its_ink_and_a_wrong_one_is_not() -> None:
     """The kernel's plain Python; the dot beside the line is ink that no pen draws, and is no fault."""
     for aside_px, is_over in ((0.0, False), (3.0, True)):
         seen, ways, pen, stations = part(aside_px, 1)
-        room, may = Room.of(seen.size, pen.reach_px), np.empty(len(stations), bool)
+        room, may = Room.of(seen.size, pen), np.empty(len(stations), bool)
         limits = np.full(len(stations), 0.05)
         may_be_over.py_func(seen, ways, stations, limits, pen, room, may)
         assert may.any() == is_over
@@ -70,7 +70,7 @@ def test_only_where_much_is_wrong_boxes_are_looked_at(monkeypatch: pytest.Monkey
         _in_boxes_about(*given)
 
     monkeypatch.setattr(surely_on_ink, "_in_boxes_about", counted)
-    room, may = Room.of(seen.size, pen.reach_px), np.empty(len(stations), bool)
+    room, may = Room.of(seen.size, pen), np.empty(len(stations), bool)
     may_be_over.py_func(seen, ways, stations, np.full(len(stations), 0.05), pen, room, may)
     assert 30 in looked_at and not {0, 3, 6, 51, 54, 57} & {
         *looked_at
@@ -81,7 +81,7 @@ def test_only_where_much_is_wrong_boxes_are_looked_at(monkeypatch: pytest.Monkey
 def test_where_another_line_crosses_no_pens_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     seen, ways, pen, stations = part(0.0, 1)
     seen[:, 44:48] = 1.0
-    room = Room.of(seen.size, pen.reach_px)
+    room = Room.of(seen.size, pen)
     may, most = np.empty(len(stations), bool), list[float]()
 
     def summed(*given: Any) -> None:
@@ -108,7 +108,7 @@ def test_other_pens_are_held_against_the_pixels_of_doubtful_boxes_alone(
     monkeypatch.setattr(surely_on_ink, "_too_dark", counted)
     for plain in ("_is_over", "_best_in", "_on_paper"):
         monkeypatch.setattr(surely_on_ink, plain, getattr(surely_on_ink, plain).py_func)
-    room, may = Room.of(seen.size, pen.reach_px), np.empty(len(stations), bool)
+    room, may = Room.of(seen.size, pen), np.empty(len(stations), bool)
     may_be_over.py_func(seen, ways, stations, np.full(len(stations), 0.05), pen, room, may)
     others = {column for column, share in asked if share == pen.of_width[0]}
     assert may.any() and {20, 30, 40, 70} <= others

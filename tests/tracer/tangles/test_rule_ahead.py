@@ -1,0 +1,42 @@
+"""Teeth whose sides are no longer than a line or two are wide are followed all along, over all their corners:
+no side of them is a leg, and where they stand close their inks run together.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from morfax.motion.arrays import Array
+from morfax.motion.contour import distance
+from morfax.tracer.program.trace import trace
+from tests.tracer.inked import UM, inked, polyline
+
+# two thirds of a pixel of 85 um: the head that runs by legs alone leaves millimetres of such teeth out
+CORNER_MM = 60 * UM
+
+
+def saw(pitch_mm: float, high_mm: float, lean_mm: float, turned_deg: float) -> Array:
+    """A bar with nine teeth along one side, upright in front and sloping behind; closed."""
+    feet = [(k * pitch_mm, 0.0) for k in range(10)]
+    tips = [(x + lean_mm, high_mm) for x, _ in feet]
+    teeth = [place for pair in zip(feet, tips, strict=True) for place in pair]
+    bar = [(-4.0, 0.0), *teeth, (10 * pitch_mm, 0.0), (10 * pitch_mm + 4, 0.0)]
+    bar += [(10 * pitch_mm + 4, -5.0), (-4.0, -5.0), (-4.0, 0.0)]
+    angle = np.radians(turned_deg)
+    turning = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    places = np.array(bar) @ turning
+    return polyline(*(places - places.min(axis=0) + 6))
+
+
+@pytest.mark.parametrize(
+    ("pitch_mm", "high_mm", "turned_deg"),
+    [(1.5, 1.4, 20.0), (1.5, 1.4, 52.0), (1.8, 1.4, 20.0)],
+)
+def test_teeth_with_sides_of_few_widths_are_followed_all_along(
+    pitch_mm: float, high_mm: float, turned_deg: float
+) -> None:
+    line = saw(pitch_mm, high_mm, 0.1 * pitch_mm, turned_deg)
+    run = trace(inked(line, seed=1)).lines[0]
+    assert run.ending == "closed"
+    assert distance(line, run.xy_mm).path_to_reference.max_mm < CORNER_MM
