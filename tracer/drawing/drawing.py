@@ -68,15 +68,16 @@ AS_LINES = Reading()
 class Drawing:
     """A drawing as the cells see it: `darkness` (rows from the top, columns) on pixels of `pitch_mm`.
 
-    Of filled shapes whose edges are asked for: the darkness is a line where the edges are, so many times
-    `enlarged`; `edges_mm` are closed polylines (n, 2) to which a run has to keep; and the `shade` is what the
-    head's cells see, paper 0 and shape 1, on the picture's own pixels. Otherwise `shapes` tells where filled
-    shapes are no ink, on the picture reduced by a whole number; a scan that `has_shapes` may have them as
-    ink. `notes` on the file are for the operator; `flattening` is how well a photograph was made flat;
-    `corrected` what the operator has put right, `bare` the drawing before that. The pixels of a coarse scan
-    are made so many times `finer`. Of `both` solid areas are as dark as lines. Lines look `seen_px` wide on
-    the picture's own pixels, which are paper or ink alone if it `is_hard`; a `grainy` one is seen through a
-    slit. `paper_noise` is the deviation of the paper's darkness, if that was measured before it was made 0.
+    Of filled shapes whose edges are asked for: the darkness is a line along these, so many times `enlarged`;
+    `edges_mm` are closed polylines (n, 2) to which a run keeps; and the `shade` is what the head's cells see,
+    paper 0 and shape 1, on the picture's own pixels. Otherwise `shapes` tells where filled shapes are no ink,
+    on the picture reduced by a whole number; a scan that `has_shapes` may have them as ink. `notes` on the
+    file are for the operator; `flattening` is how well a photograph was made flat; `corrected` what the
+    operator put right, `bare` the drawing before that. A coarse scan's pixels are made so many times `finer`.
+    Of `both` solid areas are as dark as lines. Lines look `seen_px` wide on the picture's own pixels, paper
+    or ink alone if it `is_hard`, or with rims laid through their steps if it `has_rims`; a `grainy` one is
+    seen through a slit. `paper_noise` is the deviation of the paper's darkness, if that was measured before
+    it was made 0.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -95,6 +96,7 @@ class Drawing:
     both: bool = False
     seen_px: float = math.inf
     is_hard: bool = False
+    has_rims: bool = False
     grainy: bool = False
     paper_noise: float | None = None
     narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
@@ -269,6 +271,7 @@ class Drawing:
             finer=finer,
             seen_px=lines.seen_px,
             is_hard=hard and not has_rims,
+            has_rims=has_rims,
             grainy=averaged is not None,
             paper_noise=paper_noise,
         )
@@ -281,8 +284,7 @@ def _cleared(darkness: Any, pitch_mm: float, reading: Reading) -> tuple[Any, tup
     """Darkness without what is printed and without the scan's border, and notes of both."""
     darkness, printed = ruling.left_out(darkness, pitch_mm, reading.printed)
     edges = without_border(darkness, LEAST if reading.pale_is_ink else INK)
-    border = border_note(edges) if edges else None
-    return darkness, tuple(note for note in (printed, border) if note is not None)
+    return darkness, tuple(filter(None, (printed, border_note(edges) if edges else None)))
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Levelled:

@@ -26,7 +26,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.motion.plane import BEND_RAD
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.ink.nib import (
     ENOUGH,
     SwellingKind,
@@ -57,6 +59,21 @@ LEAST_PX = 3.0, 7.0
 LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
 
 
+class SureWidths(NamedTuple):
+    """Which widths of lines a drawing tells, mm: none that are less; and by how much a line of one width may
+    differ all the same, because it runs along the steps of pixels for longer than its rims are laid through.
+    """
+
+    least_mm: float
+    step_mm: float
+
+    @classmethod
+    def of(cls, drawing: Drawing) -> SureWidths:
+        """Those of a drawing."""
+        pixel_mm = drawing.pitch_mm * drawing.finer
+        return cls(LEAST_PX[drawing.is_hard] * pixel_mm, drawing.has_rims * pixel_mm)
+
+
 class Doubled(NamedTuple):
     """The pen's width, mm, and the stretches that two lines share: which of the stations of each.
 
@@ -76,17 +93,17 @@ class Doubled(NamedTuple):
         found: Mapping[int, Swelling],
         patch_of: Mapping[int, int],
         onward: Callable[[int], tuple[int, int]],
-        narrowest_mm: float,
+        sure: SureWidths,
     ) -> Doubled:
         """Find the doubled stretches among those whose widths are given, and patches; none of a sheet that is
-        not clean, or whose lines are narrower than a width. `onward` says how many go straight on
-        from either end of one.
+        not clean, or whose lines are narrower than it tells. `onward` says how many go straight on from
+        either end of one.
         """
         # 1. whether the ink along each stretch is one pen's line, or two lines
         every = list(found.values())
         pen_mm, beside_mm = pen_of(every), pen_of_hollow(every)
         pen_mm = beside_mm if math.isnan(pen_mm) else pen_mm
-        if not pen_mm > narrowest_mm:
+        if not pen_mm > sure.least_mm:
             return cls()
         ink = SwellingKind.TWO_LINES if beside_mm > 0 else _what_is(every, pen_mm)
         if ink == SwellingKind.NIB:
@@ -100,8 +117,12 @@ class Doubled(NamedTuple):
             if (flags := _broad(felt[n], some.averaged, pen_mm)) is not None
         }
         spreads = {n: _spread(found[n].averaged) for n in broad}
-        are_several = _are_several_pens(felt, spreads)
-        swell = {n for n in broad if spreads[n] > (SWELLS if are_several else EVEN)}
+        steps = {n: sure.step_mm / median(found[n].known) for n in broad}
+        even = {n for n in broad if spreads[n] <= max(EVEN, steps[n])}
+        if _are_most(felt, even, broad):
+            swell = {n for n in broad if spreads[n] > max(SWELLS, steps[n])}
+        else:
+            swell = {n for n in broad if spreads[n] > EVEN}
         if not beside_mm > 0:
             swell -= _nibs({n: found[n] for n in swell}, patch_of, onward, pen_mm)
         stations = {n: broad[n] for n in sorted(swell)}
@@ -177,10 +198,10 @@ def _spread(averaged: Array) -> float:
     return float(1 - low_mm / high_mm)
 
 
-def _are_several_pens(felt: Sequence[Run], spreads: Mapping[int, float]) -> bool:
-    """Whether most ink broader than the pen's is even: pens of several widths have drawn the sheet."""
-    even_mm = sum(felt[n].length_mm for n, spread in spreads.items() if spread <= EVEN)
-    return even_mm > HALF * sum(felt[n].length_mm for n in spreads)
+def _are_most(felt: Sequence[Run], some: Iterable[int], every: Iterable[int]) -> bool:
+    """Whether some stretches are most of the length of others."""
+    some_mm, all_mm = (sum(felt[n].length_mm for n in each) for each in (some, every))
+    return some_mm > HALF * all_mm
 
 
 def _cut(

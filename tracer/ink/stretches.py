@@ -22,7 +22,7 @@ from morfax.tracer.drawing.strokes import Window
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.apertures import feel_all
 from morfax.tracer.ink.beside import StretchLine, lines_beside
-from morfax.tracer.ink.doubled import BROADER, LEAST_PX, Doubled
+from morfax.tracer.ink.doubled import BROADER, Doubled, SureWidths
 from morfax.tracer.ink.felt import (
     Ends,
     Parted,
@@ -147,11 +147,10 @@ class FeltSheet:
         doubled, some = Doubled(), _no_letters(graph, letters)
         beside = dict[int, list[StretchLine]]()
         if not settings.line_width_mm and not drawing.grainy:
-            patch, pixel_mm = graph.patches(), drawing.pitch_mm * drawing.finer
-            narrowest_mm = LEAST_PX[drawing.is_hard] * pixel_mm
+            patch, sure = graph.patches(), SureWidths.of(drawing)
             swell = {n: s for n in some if (s := Swelling.of(felt[n], ends[n])) is not None}
             patch_of = {n: int(patch[n]) for n in some}
-            doubled = Doubled.of(felt, swell, patch_of, straight.onward, narrowest_mm)
+            doubled = Doubled.of(felt, swell, patch_of, straight.onward, sure)
             pen_mm = narrow_of(list(swell.values()))
             beside = {
                 n: lines

@@ -13,6 +13,7 @@ from morfax.jobs.remarks.on_ink import of_ink
 from morfax.jobs.tracing.trace_figures import ink as figures_of
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.two_levels import with_rims
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.bare import Thinned
 from morfax.tracer.ink.both_lines import strands
@@ -271,6 +272,20 @@ def test_hard_pixels_tell_a_width_to_one_of_them() -> None:
     seen = inked(*near_lines(True), CLEAR)
     assert doubled_mm(seen) > 10.0
     assert doubled_mm(replace(seen, is_hard=True)) == 0.0
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_broader_pens_line_along_the_steps_of_pixels_is_one_line(seed: int) -> None:
+    """It is a pixel broader for as long as its rims come by no step: 29 mm were told as two lines."""
+    rows = [polyline((4, y), (46, y + rise)) for y, rise in ((10, 0.4), (28, -0.5), (38, 0.9))]
+    columns = [polyline((x, 4), (x + 2, 46)) for x in (12, 24, 37)]
+    thin = [(line, 0.25) for line in (*columns, rows[1], polyline((4, 18), (46, 19.4)))]
+    drawing = together(*thin, (rows[0], 0.45), (rows[2], 0.45), seed=None)
+    noise = np.random.default_rng(seed).normal(0.0, 0.1, drawing.darkness.shape)
+    hard = (drawing.darkness + cv2.GaussianBlur(noise, (0, 0), 0.8) > 0.5).astype(np.float32)
+    laid = replace(drawing, darkness=with_rims(hard), has_rims=True)
+    assert doubled_mm(laid) == 0.0
+    assert doubled_mm(replace(laid, has_rims=False)) > 5.0
 
 
 @pytest.mark.parametrize("seed", [None, 1, 2])
