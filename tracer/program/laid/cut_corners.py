@@ -11,6 +11,8 @@ better, and lies as near to the way, the head runs along it from memory.
     │  ╱╱        a corner within the ink of another side: the ink shows it nowhere. Where the way leaves its
     └─╱╱──       straight legs, and the corner at which these meet explains the ink as well, it is that
 
+A corner rounded by so little that no ink beside the way tells is that, too, where it explains the ink better.
+
 Signals: the sheet and lines in; the lines with their corners out.
 
 Source: our own; a draughtsman's sides are straight up to where they meet. Questions: none.
@@ -45,6 +47,7 @@ from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
 LEAST_GAIN = 0.003  # for each width of its length; of teeth it is 0.01 to 0.03
 BENT = 0.05  # widths: a leg that bends by more tells no corner
+HALF = 0.8  # widths from the middle of a corner to its legs: the head rounds none by more
 LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 
 
@@ -74,7 +77,9 @@ class _Corners(WayInk):
         if not is_plain(self.line) or self.line.as_told:
             return self.line
         stretches = [*self._beside_ink(), *self._redrawn()][:MANY]
-        return self.along([bay for each in stretches if (bay := self._bay(*each)) is not None])
+        bays = [self._bay(*each) for each in stretches]
+        bays += [self._sharp(*each) for each in self._rounded()]
+        return self.along([bay for bay in bays if bay is not None])
 
     def _beside_ink(self) -> Iterator[tuple[int, int]]:
         """The stretches that run beside their ink: their first and last places."""
@@ -97,6 +102,24 @@ class _Corners(WayInk):
         ):
             if leader == REDRAWN:
                 yield int(along[first]), int(along[last - 1])
+
+    def _rounded(self) -> Iterator[tuple[int, int]]:
+        """The same of those along which the way turns off, and leaves the corner where its legs meet."""
+        leg, half = (round(widths / STEP_WIDTHS) for widths in (LEGS[0], HALF))
+        width_mm, count = self.line.width_mm, len(self.way)
+        for at in _turns(self.way, half):
+            own = self.way[np.arange(at - half - leg, at + half + leg + 1) % count]
+            corner = _met(own[: leg + 1], own[: -leg - 2 : -1], BENT * width_mm)
+            off_mm = 0.0 if corner is None else nearest_mm(corner[None], own)[0]
+            if LEFT_LEGS * width_mm < off_mm < width_mm:
+                yield at - half, at + half
+
+    def _sharp(self, first: int, last: int) -> Bay | None:
+        """The corner in place of a stretch that is rounded, if it explains the ink better."""
+        leg = round(LEGS[0] / STEP_WIDTHS)
+        seen = self.about(first - leg, last + leg, np.empty((0, 2)))
+        found = None if seen is None else self._by_legs(seen, leg)
+        return self.as_bay(seen, *found) if seen and found and found[1] > PRICE else None
 
     def _bay(self, first: int, last: int) -> Bay | None:
         """The rule in place of a stretch, if it explains the ink better, or as well along the legs."""
@@ -135,6 +158,17 @@ class _Corners(WayInk):
         by_own, by_rule = ink.misfit_along(own), ink.misfit_along(rule.way)
         gain = by_own - by_rule
         return (rule, gain) if gain > -PRICE else None
+
+
+def _turns(way: Array, half: int) -> list[int]:
+    """The numbers of places at which a way (n, 2) mm turns off most, from so many places before to so many
+    after.
+    """
+    places = way[:, 0] + 1j * way[:, 1]
+    before, after = places - np.roll(places, half), np.roll(places, -half) - places
+    turn = np.abs(np.angle(after * before.conj()))
+    most = np.max([np.roll(turn, by) for by in range(-half, half + 1)], axis=0)
+    return np.flatnonzero((turn == most) & (turn > STRAIGHT)).tolist()
 
 
 def _met(before: Array, after: Array, bent_mm: float) -> Array | None:
