@@ -11,6 +11,8 @@ better, and lies as near to the way, the head runs along it from memory.
     │  ╱╱        a corner within the ink of another side: the ink shows it nowhere. Where the way leaves its
     └─╱╱──       straight legs, and the corner at which these meet explains the ink as well, it is that
 
+A corner rounded by so little that no ink beside the way tells is that, too, where it explains the ink better.
+
 Signals: the sheet and lines in; the lines with their corners out.
 
 Source: our own; a draughtsman's sides are straight up to where they meet. Questions: none.
@@ -48,6 +50,7 @@ OFF = 0.45  # widths: a rule that lies further off the head's way runs out along
 LEAST_GAIN = 0.003  # for each width of its length; of teeth it is 0.01 to 0.03
 BENT = 0.05  # widths: a leg that bends by more tells no corner
 MOVED = 0.01  # widths: a way is looked at again where it was laid by so much
+HALF = 0.8  # widths from the middle of a corner to its legs: the head rounds none by more
 LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 
 
@@ -80,12 +83,12 @@ class _Corners(WayInk):
         """The line as it is, or along the rules that explain what was cut."""
         if not is_plain(self.line) or self.line.as_told:
             return self.line
-        over = list(self._beside_ink())
-        stretches = [*over, *self._redrawn()][:MANY]
-        if not stretches:
-            return self.line
-        is_asked = self._are_within(over) if self.news is None else self._are_new(self.news)
-        bays = (self._bay(*each, is_asked) for each in stretches)
+        over, is_first = list(self._beside_ink()), self.news is None
+        is_new = self._are_new()
+        is_asked = self._are_within(over) if is_first else is_new
+        bays = [self._bay(*each, is_asked) for each in [*over, *self._redrawn()][:MANY]]
+        turns = (each for each in self._rounded() if is_new[self._places(*each)].any())
+        bays += [self._sharp(*each) for each in turns]
         return self.along([bay for bay in bays if bay is not None])
 
     def _are_within(self, stretches: Sequence[tuple[int, int]]) -> NDArray[np.bool_]:
@@ -95,9 +98,13 @@ class _Corners(WayInk):
             within[self._places(*each)] = True
         return within
 
-    def _are_new(self, news: Array) -> NDArray[np.bool_]:
-        """Which places lie near to news: the ink about all others is explained as it was."""
-        return np.asarray(nearest_mm(self.way, news) < REACH * self.line.width_mm)
+    def _are_new(self) -> NDArray[np.bool_]:
+        """Which places were not looked at, or lie near to news: the ink about the others is explained as it
+        was.
+        """
+        if self.news is None:
+            return np.ones(len(self.way), bool)
+        return np.asarray(nearest_mm(self.way, self.news) < REACH * self.line.width_mm)
 
     def _places(self, first: int, last: int) -> NDArray[np.int64]:
         """The numbers of the places from one to another."""
@@ -124,6 +131,22 @@ class _Corners(WayInk):
         ):
             if leader == REDRAWN:
                 yield int(along[first]), int(along[last - 1])
+
+    def _rounded(self) -> Iterator[tuple[int, int]]:
+        """The same of those along which the way turns off."""
+        half = round(HALF / STEP_WIDTHS)
+        return ((at - half, at + half) for at in _turns(self.way, half))
+
+    def _sharp(self, first: int, last: int) -> Bay | None:
+        """The corner in place of a stretch that is rounded, if it explains the ink better."""
+        leg = round(LEGS[0] / STEP_WIDTHS)
+        own = self.own(first - leg, last + leg)
+        rule = None if own is None else self._along_legs(own, leg)
+        if rule is None:
+            return None
+        seen = self.about(first - leg, last + leg, np.empty((0, 2)))
+        found = None if seen is None else self._by_legs(seen, rule)
+        return self.as_bay(seen, *found) if seen and found and found[1] > PRICE else None
 
     def _bay(self, first: int, last: int, is_asked: NDArray[np.bool_]) -> Bay | None:
         """The rule in place of a stretch, if it explains the ink better, of which that of some places is
@@ -171,6 +194,17 @@ class _Corners(WayInk):
         """A rule that explains the ink of a stretch as well as the way does, and by how much better."""
         gain = seen.ink.misfit_along(seen.own) - seen.ink.misfit_along(rule.way)
         return (rule, gain) if gain > -PRICE else None
+
+
+def _turns(way: Array, half: int) -> list[int]:
+    """The numbers of places at which a way (n, 2) mm turns off most, from so many places before to so many
+    after.
+    """
+    places = way[:, 0] + 1j * way[:, 1]
+    before, after = places - np.roll(places, half), np.roll(places, -half) - places
+    turn = np.abs(np.angle(after * before.conj()))
+    most = np.max([np.roll(turn, by) for by in range(-half, half + 1)], axis=0)
+    return np.flatnonzero((turn == most) & (turn > STRAIGHT)).tolist()
 
 
 def _met(before: Array, after: Array, bent_mm: float) -> Array | None:

@@ -42,7 +42,7 @@ def test_a_corner_that_is_missing_in_another_line_is_told(
     assert np.hypot(*(np.array(place.place_mm) - TIP[len(TIP) // 2])) < ABOUT_MM
     (said,) = of_ink(Trace(tuple(lines), unexplained=(place,)), several=True)
     x, y = place.place_mm
-    assert f"not what is drawn at 1 place, the worst at {x:.1f},{y:.1f} mm" in said
+    assert f"do not match the ink at 1 place, the worst at {x:.1f},{y:.1f} mm" in said
 
 
 @pytest.mark.parametrize("seed", [None, 3, 4])

@@ -78,7 +78,7 @@ def test_an_open_line_that_ends_where_its_ink_goes_on_leaves_the_rest(
     setup = Setup(Sheet.of(inked(slanting(0.0, 30.0), seed=1)))
     line = replace(closed(slanting(*ends_mm)), ending="ended")
     left_mm = [mm for mm in (ends_mm[0], 30 - ends_mm[1]) if mm > 0]
-    found = unexplained(setup, [line])
+    found = left_by(setup, [line])
     assert [place.kind for place in found] == ["ink"] * len(left_mm)
     for place, mm in zip(found, sorted(left_mm, reverse=True), strict=True):
         assert place.length_mm == pytest.approx(mm + WIDTH_MM / 2, abs=2 * PIXEL_MM)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -104,4 +106,37 @@ def test_a_tangle_that_was_run_out_of_rightly_has_no_rule_fitted(
     assert any(REDRAWN in line.led.leaders for line in lines)
     monkeypatch.setattr(folding_rule, "explained", None)  # nobody asks for it
     own = OwnInk(drawing, lines)
+    assert with_corners(Setup(drawing.sheet), own) is own
+
+
+QUAD = polyline((4, 4), (19, 6), (16, 15), (6, 13), (4, 4))
+
+
+def rounded(places: np.ndarray, at_mm: np.ndarray, within_mm: float) -> np.ndarray:
+    """A way (n, 2) mm with a corner rounded from so far before it to so far after."""
+    out = places.copy()
+    near = np.flatnonzero(np.hypot(*(places - at_mm).T) < within_mm)
+    share = np.linspace(0, 1, len(near))[:, None]
+    before, after = places[near[0]], places[near[-1]]
+    out[near] = (1 - share) ** 2 * before + 2 * share * (1 - share) * at_mm + share**2 * after
+    return out
+
+
+@pytest.mark.parametrize(("dpi", "corner_mm"), [(300, (6.0, 13.0)), (200, (16.0, 15.0))])
+def test_a_rounded_corner_is_where_its_legs_meet_if_the_ink_is_that_of_a_sharp_one(
+    dpi: float, corner_mm: tuple[float, float]
+) -> None:
+    """The head sometimes rounds a corner by less than the ink beside its way tells."""
+    drawing, corner = inked(QUAD, dpi=dpi, seed=4), np.array([corner_mm])
+    (line,) = trace(drawing).lines
+    cut = replace(line, xy_mm=rounded(line.xy_mm, corner[0], 0.25))
+    assert nearest_mm(corner, cut.places_mm)[0] > 0.065
+    (mended,) = with_corners(Setup(drawing.sheet), OwnInk(drawing, [cut])).lines
+    assert nearest_mm(corner, mended.places_mm)[0] < 0.01
+
+
+def test_a_corner_that_was_drawn_round_stays_round() -> None:
+    soft = rounded(with_places(QUAD, 0.02), np.array([16.0, 15.0]), 0.5)
+    drawing = inked(soft, seed=3)
+    own = OwnInk(drawing, trace(drawing).lines)
     assert with_corners(Setup(drawing.sheet), own) is own
