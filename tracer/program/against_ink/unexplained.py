@@ -143,16 +143,17 @@ def _leave_none(sheet: Sheet, lines: Sequence[Line]) -> list[Line]:
 
 
 def _ends_in_ink(sheet: Sheet, line: Line) -> bool:
-    """Whether ink that is no other part's goes on ahead beyond an end of an open line, farther than the round
-    end of its pen.
+    """Whether ink goes on from an end of an open line as one line does, farther than the round end of a pen;
+    where it goes on to both sides, another line passes.
     """
     places, reach_mm = line.places_mm, MISSED * line.width_mm
     for way in (places, places[::-1]):
         end, before = at_lengths(way, np.array([0.0, line.width_mm]))
         headings = heading_of(end - before) + AHEAD
         ahead_mm = end + reach_mm * np.column_stack([np.cos(headings), np.sin(headings)])
-        is_no_others = nearest_mm(ahead_mm, places) > reach_mm - WITHIN_MM
-        if (_darkness(sheet, ahead_mm[is_no_others]) > PALE).any():
+        is_ink = _darkness(sheet, ahead_mm) > PALE
+        is_ink &= nearest_mm(ahead_mm, places) > reach_mm - WITHIN_MM  # no other part's
+        if np.sum(np.diff(is_ink, prepend=False) & is_ink) == 1:
             return True
     return False
 
