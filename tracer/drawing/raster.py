@@ -22,6 +22,7 @@ from morfax.motion.faults import DrawingFault, Fault, FileFault
 from morfax.motion.files import check_regular
 from morfax.tracer.drawing import by_rows, exif, large
 from morfax.tracer.drawing import memory as room
+from morfax.tracer.drawing.coloured_paper import levels_on_white
 from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.exif import ORIENTATION
 from morfax.tracer.drawing.scan import (
@@ -46,6 +47,7 @@ PDF, HEIF_BRANDS = (
 )
 DRAWN_LINES = (".dxf", ".svg", ".plt", ".hpgl")  # drawings from CAD
 PREVIEWS = ("MPO",)  # formats whose further pictures are no pages: a camera's previews
+COLOURED = ("RGB", "YCbCr", "CMYK")  # modes in which the paper may have a colour
 TURNED = (5, 6, 7, 8)  # orientations of Exif that put columns in the place of rows
 
 # what Pillow meets in damaged files: a TIFF without its size ends in a TypeError
@@ -178,10 +180,11 @@ def _grey(image: Image) -> Grey:
     columns, rows = image.size
     deep = image.mode in ("I;16", "I;16B", "I;16L", "I", "F")
     grey = np.empty((rows, columns), np.float32 if deep else np.uint8)
+    levels = levels_on_white(image) if image.mode in COLOURED else None
     for top, bottom, _ in strips(grey.shape, pixels=FEW_PX):
         # a strip's memory is that of the strip before
         strip = image.crop((0, top, columns, bottom))
-        grey[top:bottom] = np.asarray(strip) if deep else _darkest_channel(strip)
+        grey[top:bottom] = np.asarray(strip) if deep else _darkest_channel(strip, levels)
     if deep:
         np.multiply(grey, 255 / _white(image.mode, float(grey.max())), out=grey)
     return grey
@@ -194,8 +197,10 @@ def _white(mode: str, lightest: float) -> float:
     return 1.0 if mode == "F" and lightest <= 1 else 255.0
 
 
-def _darkest_channel(image: Image) -> NDArray[np.uint8]:
-    """The darkest colour channel of an image of eight bits or fewer, on white where it is transparent."""
+def _darkest_channel(image: Image, levels: list[int] | None) -> NDArray[np.uint8]:
+    """The darkest colour channel of an image of eight bits or fewer, on white where it is transparent; of
+    coloured paper with other levels (see `coloured_paper`).
+    """
     if image.mode in ("1", "L"):
         return np.asarray(image.convert("L"))
     if image.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in image.info:
@@ -203,4 +208,5 @@ def _darkest_channel(image: Image) -> NDArray[np.uint8]:
 
         rgba = image.convert("RGBA")
         image = Images.alpha_composite(Images.new("RGBA", rgba.size, "white"), rgba)
-    return darkest(np.asarray(image.convert("RGB")))
+    colours = image.convert("RGB")
+    return darkest(np.asarray(colours if levels is None else colours.point(levels)))

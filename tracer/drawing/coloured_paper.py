@@ -1,0 +1,41 @@
+"""Coloured paper: each colour channel of a picture is held against the paper's own.
+
+On brown paper the blue channel is the darkest one, and in that channel a white label stands out more than ink
+does: the lines would be taken for light ones on dark paper, and the ink left out.
+
+         ┌──────────── 255        red    ink  95 below the paper of 207
+      ───┴───┐    ┌───                                                    each channel times 207 over its own
+             └────┘    0          blue   ink  60 below the paper of  95   paper: ink is as dark in all of them
+
+Signals: an image in; levels (768,), 256 for each of red, green and blue, out, or None on paper that is grey,
+white or dark.
+
+Source: our own.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+SAMPLES = 200  # columns and rows of the pixels that are looked at, at the most
+# grey levels of 255: half; paper whose lightest channel is darker bears light lines, as a blueprint does
+LIGHT = 128
+EVEN = 0.75  # of its lightest channel: yellowed paper comes to 0.8
+
+
+def levels_on_white(image: Image) -> list[int] | None:
+    """What each level of red, green and blue becomes where the paper's colour is taken out of a picture."""
+    from PIL import Image as Images
+
+    size = tuple(min(pixels, SAMPLES) for pixels in image.size)
+    some = image.resize(size, Images.Resampling.NEAREST).convert("RGB")
+    paper = np.median(np.asarray(some).reshape(-1, 3), axis=0)
+    if paper.max() < LIGHT or paper.min() > EVEN * paper.max() or not paper.all():
+        return None
+    levels = np.arange(256)[:, None] * paper.max() / paper
+    return np.minimum(np.rint(levels.T), 255).astype(int).ravel().tolist()
