@@ -32,8 +32,8 @@ def levels_on_white(image: Image) -> list[int] | None:
     """What each level of red, green and blue becomes where the paper's colour is taken out of a picture."""
     from PIL import Image as Images
 
-    size = tuple(min(pixels, SAMPLES) for pixels in image.size)
-    some = image.resize(size, Images.Resampling.NEAREST).convert("RGB")
+    columns, rows = (min(pixels, SAMPLES) for pixels in image.size)
+    some = image.resize((columns, rows), Images.Resampling.NEAREST).convert("RGB")
     paper = np.median(np.asarray(some).reshape(-1, 3), axis=0)
     if paper.max() < LIGHT or paper.min() > EVEN * paper.max() or not paper.all():
         return None
