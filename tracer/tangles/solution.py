@@ -182,7 +182,9 @@ def _stands(sketch: Sketch, way: Redrawing, plan: Plan | None) -> bool:
     drawn = as_drawn(plan, sketch.tangle, _width(sketch))
     planned = sketch.misfit_with(way.without_own(), drawn)
     straight = goes_straight(sketch.tangle.legs[0], plan.leg)
-    grain = _grain(sketch) if len(sketch.tangle.legs) == 2 and _is_gentle(sketch, way) else 0.0
+    grain = 0.0
+    if len(sketch.tangle.legs) == 2 and _is_gentle(sketch, way):
+        grain = min(_grain(sketch), way.misfit)  # no redrawing explains grain
     # 1. a corner or a step of two legs: only its vertices are in question, and only noise and the line's
     # grain excuse more; a blot leaves more unexplained than the line beside it
     if grain > 0.0 and way.misfit < GRAINY * grain + SLACK:
