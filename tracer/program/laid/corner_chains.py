@@ -33,7 +33,7 @@ from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import LEGS, is_whole, rest_of
+from morfax.tracer.program.laid.line_parts import LEGS, is_whole
 from morfax.tracer.program.laid.spline_fit import FOLDED_RAD, corners_of, turns_rad
 from morfax.tracer.program.laid.way_ink import BayInk, WayInk
 from morfax.tracer.program.setup import Setup
@@ -144,11 +144,12 @@ class _Chains(WayInk):
                 turned = _turned_rad(*(corner.place_mm for corner in chain[k - 1 : k + 2]))
                 if chain[k].is_asked and not TURNED_RAD < turned < FOLDED_RAD:
                     _leave_out(chain, k)
-        explains = [self._explains(chain, k) for k in range(len(chain))]
-        for is_right, run in groupby(range(len(chain)), lambda k: explains[k]):
-            bay = self._bay([chain[k] for k in run]) if is_right else None
-            if bay is not None:
-                yield bay
+        gains = [self._gain(chain, k) for k in range(len(chain))]
+        for is_right, run in groupby(range(len(chain)), lambda k: gains[k] > -GAIN):
+            numbers = list(run)
+            gain = max(gains[k] for k in numbers)
+            if is_right and gain > GAIN:
+                yield self._bay([chain[k] for k in numbers], gain)
 
     def _leaves_ink(self, chain: Sequence[_Corner], k: int) -> bool:
         """Whether the way about a corner leaves as much ink as another would have to gain."""
@@ -178,29 +179,24 @@ class _Chains(WayInk):
         radius_mm = rule.radius_mm if rule.rounded[at] else 0.0
         return corner._replace(place_mm=place_mm, radius_mm=radius_mm)
 
-    def _explains(self, chain: Sequence[_Corner], k: int) -> bool:
-        """Whether a chain explains the ink about a corner that is asked as well as the way does."""
+    def _gain(self, chain: Sequence[_Corner], k: int) -> float:
+        """How much less ink a chain leaves about a corner than the way does, for each width of its length; if
+        it is not asked, it is not laid.
+        """
         near = _about(chain, k)
         seen = self._seen(near) if chain[k].is_asked else None
         if seen is None:
-            return False
-        ends_mm = _ends_mm(chain, k, (seen.own[0], seen.own[-1]))
-        return self._gain(seen, _along(near, ends_mm, seen.ink.half_mm)) > -GAIN
-
-    def _bay(self, run: Sequence[_Corner]) -> Bay | None:
-        """What is laid along some corners of a chain, if it explains the ink better than the way."""
-        first, last = run[0].first, run[-1].last
-        own = self.way[np.arange(first, last + 1) % len(self.way)]
-        rest = rest_of(self.way, first, last, self.is_closed)
-        seen = BayInk(first, last, own, self._ink(own, rest))
-        way = _along(run, (seen.own[0], seen.own[-1]), seen.ink.half_mm)
-        gain = self._gain(seen, way)
-        return self.as_bay(seen, way, gain) if gain > GAIN else None
-
-    def _gain(self, seen: BayInk, way: LaidWay) -> float:
-        """How much less ink a way leaves than a stretch does, for each width of its length."""
+            return -math.inf
+        way = _along(near, _ends_mm(chain, k, (seen.own[0], seen.own[-1])), seen.ink.half_mm)
         gain = seen.ink.misfit_along(seen.own) - seen.ink.misfit_along(way.way)
         return gain * self.line.width_mm / way.length_mm
+
+    def _bay(self, run: Sequence[_Corner], gain: float) -> Bay:
+        """What is laid along some corners of a chain."""
+        first, last = run[0].first, run[-1].last
+        ends_mm = self.way[first % len(self.way)], self.way[last % len(self.way)]
+        way = _along(run, ends_mm, 0.5 * self.line.width_mm)
+        return Bay(self._along_mm(first), self._along_mm(last), way, gain)
 
 
 def _about(chain: Sequence[_Corner], k: int) -> Sequence[_Corner]:
