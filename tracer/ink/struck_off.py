@@ -5,9 +5,9 @@ Signals: strokes and the sheet's darkness in; the strokes without what others dr
     ───────────────────────      the other stroke         where the ink is no broader than one pen's it is one
        ╲__________                the end of this one      stroke's: this one ends where it comes to the other
 
-Two lines that lie beside each other have their ink together, as broad as the two of them: beyond the rims of
-one pen, by a quarter of what parts them, is ink if there are two lines, and paper if there is one. Pens that
-lie nearer to each other than ink of two lines tells (see `doubled`) are one, and so are those in lines of few
+Two lines that lie beside each other have their ink together, as broad as the two of them: beyond both rims of
+one pen, by a quarter of what parts them, is ink if there are two, and not if there is one. Pens that lie
+nearer to each other than ink of two lines tells (see `doubled`) are one, and so are those in lines of few
 pixels, which tell none. Each place along a stroke has a vote, and the stroke is cut where most votes are for
 it: at its ends, and in its middle where it goes along another for longer than lines do that cross or touch,
 and the ink is not known to be two lines'. The shorter strokes are cut first; what is cut off is no stroke
@@ -142,8 +142,8 @@ class _Struck:
         # beyond the rims of a pen half-way between the two
         beyond = 0.5 * widths_mm[:, None] * unit(aside) + 0.25 * aside
         halfway = places + 0.5 * aside
-        darkness = self._darkness(halfway - beyond) + self._darkness(halfway + beyond)
-        is_ink = 0.5 * darkness > HALF * self._darkness(places + aside)
+        rims = self._darkness(np.stack([halfway - beyond, halfway + beyond]))
+        is_ink = rims.min(axis=0) > HALF * self._darkness(places + aside)
         sure_mm = np.where(widths_mm > self.sure_mm, SAME * widths_mm, BESIDE * widths_mm)
         is_one = np.isfinite(apart_mm) & ((apart_mm < sure_mm) | ~is_ink)
         return np.where(is_one & self.are_left[some], 1, -1)
@@ -171,10 +171,10 @@ class _Struck:
         return apart[rows, nearest], aside[rows, nearest, None] * normals
 
     def _darkness(self, places: Array) -> Array:
-        """The sheet's darkness at some places (n, 2) mm."""
+        """The sheet's darkness at some places (..., 2) mm."""
         darkness, pitch_mm = self.drawing.darkness, self.drawing.pitch_mm
-        rows = darkness.shape[0] - places[:, 1] / pitch_mm - 0.5
-        return between(darkness, rows, places[:, 0] / pitch_mm - 0.5, edge_goes_on=False)
+        rows = darkness.shape[0] - places[..., 1] / pitch_mm - 0.5
+        return between(darkness, rows, places[..., 0] / pitch_mm - 0.5, edge_goes_on=False)
 
 
 def _of_end(votes: Indices, some: int) -> int:
