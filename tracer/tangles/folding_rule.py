@@ -196,7 +196,26 @@ def _drawn(ink: SeenInk, rule: Rule) -> Rule:
 def _settled_bay(ink: SeenInk, start: Rule) -> Rule | None:
     """The same of a bay; None also if the pen runs out and back along one line."""
     rule = _settled(ink, start)
+    if rule is not None and _changes_over(rule):
+        rule = _settled(ink, _turned_back(rule))
     return rule if rule is not None and _is_apart(rule, ink.width_mm) else None
+
+
+def _changes_over(rule: Rule) -> bool:
+    """Whether a rule's way is shorter by its corners in the other order: within the ink of both sides of a
+    slender bay it changes over from one to the other, which no ink shows.
+    """
+    return _sides_mm(_turned_back(rule)) < _sides_mm(rule)
+
+
+def _turned_back(rule: Rule) -> Rule:
+    """A rule by its corners in the other order."""
+    return rule._replace(corners_mm=rule.corners_mm[::-1], rounded=rule.rounded[::-1])
+
+
+def _sides_mm(rule: Rule) -> float:
+    """How long the sides of a rule are from corner to corner."""
+    return length_mm(np.vstack([rule.first_mm, rule.corners_mm, rule.last_mm]))
 
 
 def _settled(ink: SeenInk, start: Rule) -> Rule | None:
