@@ -47,12 +47,14 @@ class Tangles:
         self._left: list[tuple[int, int, Leg]] = []
         self._beside: list[Leg] = []
         self._softness_mm = math.inf  # of the lens: that of the clearest leg so far
+        self._side: Leg | None = None  # that the last rule led onto
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Tangles:
         """A memory that goes on by itself; tangles and legs, which are never changed, are shared."""
         copied = Tangles()
         copied._known, copied._left = list(self._known), list(self._left)
-        copied._beside, copied._softness_mm = list(self._beside), self._softness_mm
+        copied._beside, copied._side = list(self._beside), self._side
+        copied._softness_mm = self._softness_mm
         return copied
 
     @property
@@ -69,19 +71,29 @@ class Tangles:
         explains it.
         """
         plan, is_explained = self._by_legs(view, approach)
-        if is_explained or len(approach.incoming.seen) < FEWEST_STATIONS:
-            return plan, is_explained
+        if is_explained:
+            return plan, True
         rule = self._by_rule(view, approach)
         return (plan, False) if rule is None else (rule, True)
 
     def _by_rule(self, view: View, approach: Approach) -> Plan | None:
-        """The way over corners whose sides are no legs, if the ink ahead is one line; None if it is not."""
+        """The way over corners whose sides are no legs, if the ink ahead is one line; None if it is not.
+
+        Where the head comes along such a side, and hardly feels a leg, it comes as that rule lay.
+        """
         from morfax.tracer.tangles.rule_ahead import rule_ahead
         from morfax.tracer.tangles.sketch import softness_of
 
-        softness_mm = softness_of(view, approach.incoming)
-        self._softness_mm = min(self._softness_mm, softness_mm)
-        return rule_ahead(view, approach, self._softness_mm)
+        incoming, side = approach.incoming, self._side
+        if len(incoming.seen) >= FEWEST_STATIONS:
+            self._softness_mm = min(self._softness_mm, softness_of(view, incoming))
+        elif side is not None and math.dist(side.end_mm, incoming.end_mm) < view.width_mm:
+            approach = approach._replace(incoming=side)
+        else:
+            return None
+        rule = rule_ahead(view, approach, self._softness_mm)
+        self._side = None if rule is None else rule.leg
+        return rule
 
     def _by_legs(self, view: View, approach: Approach) -> tuple[Plan | None, bool]:
         """The same by the legs of the tangle, if it ends in legs, and in no more than can be joined."""

@@ -15,12 +15,13 @@ Source: our own (see `wavefront` and `folding_rule`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import groupby
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import direction, heading_of
 from morfax.motion.polyline import evenly, length_mm
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
@@ -62,6 +63,8 @@ def rule_ahead(view: View, approach: Approach, softness_mm: float) -> Plan | Non
         if plan is not None and ink.misfit_along(_planned(plan)) < TWICE * most:
             return None
         rule = _explained(ink, way)
+        if rule is not None and most <= rule.misfit < TWICE * most:
+            rule = _with_free_end(ink, rule)
         if rule is not None and rule.misfit < most and _leads_on(rule, incoming):
             return _plan(incoming, approach.stands, rule)
     return None
@@ -80,6 +83,23 @@ def _explained(ink: SeenInk, way: Array) -> Rule | None:
         if best is not None and best.misfit < SURE * best.length_mm / ink.width_mm:
             break
     return best
+
+
+def _with_free_end(ink: SeenInk, rule: Rule) -> Rule | None:
+    """A rule whose last side ends where it explains the ink best: where that was cut aslant, the middle of
+    the cut lies beside the side. None if it ends elsewhere.
+    """
+    ahead = rule.last_mm - rule.corners_mm[-1]
+    beyond_mm = rule.last_mm + ink.half_mm * ahead / max(np.hypot(*ahead), NOT_ZERO)
+    corners_mm, rounded = np.vstack([rule.corners_mm, rule.last_mm]), np.r_[rule.rounded, False]
+    free = rule._replace(last_mm=beyond_mm, corners_mm=corners_mm, rounded=rounded)
+    found = folding_rule.explained(ink, [free], of_bay=False)
+    if found is None or math.dist(found.corners_mm[-1], rule.last_mm) > ink.width_mm:
+        return None
+    *corners, last_mm = found.corners_mm
+    return found._replace(
+        last_mm=last_mm, corners_mm=np.array(corners), rounded=found.rounded[:-1]
+    )
 
 
 def _leads_on(rule: Rule, incoming: Leg) -> bool:

@@ -31,7 +31,16 @@ def saw(pitch_mm: float, high_mm: float, lean_mm: float, turned_deg: float) -> A
 
 @pytest.mark.parametrize(
     ("pitch_mm", "high_mm", "turned_deg"),
-    [(1.5, 1.4, 20.0), (1.5, 1.4, 52.0), (1.8, 1.4, 20.0)],
+    [
+        (1.5, 1.4, 20.0),
+        (1.5, 1.4, 52.0),
+        (1.8, 1.4, 20.0),
+        # the last side was cut aslant
+        (1.3, 1.2, 350.0),
+        # on a side the head feels no leg, and knows that the rule led it there
+        (1.3, 1.2, 20.0),
+        (1.3, 1.2, 80.0),
+    ],
 )
 def test_teeth_with_sides_of_few_widths_are_followed_all_along(
     pitch_mm: float, high_mm: float, turned_deg: float
