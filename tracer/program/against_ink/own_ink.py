@@ -24,9 +24,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from hashlib import sha1
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,12 +112,22 @@ class _Tiles(NamedTuple):
         return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
 
 
+Told = dict[bytes, NDArray[Any]]
+
+
 @dataclass(frozen=True, eq=False)
 class OwnInk:
-    """Some lines of a drawing, which are held against their ink once, for all limits."""
+    """Some lines of a drawing, which are held against their ink once, for all limits; and what was told of
+    tiles of the sheet by all that lies in them.
+    """
 
     drawing: Drawing
     lines: Sequence[Line]
+    told: Told = field(default_factory=dict)
+
+    def mended(self, lines: Sequence[Line]) -> OwnInk:
+        """The lines with some of them mended: tiles in which they are as they were are told of at once."""
+        return replace(self, lines=lines)
 
     def beside(self, limits: OverLimits) -> Iterator[BesideInk]:
         """Where lines that closed or ended run beside their ink, by more than some limits; nothing where no
@@ -137,10 +148,11 @@ class OwnInk:
     @cached_property
     def doubtful(self) -> NDArray[np.bool_]:
         """Which lines, of those that closed or ended, are not surely on their ink."""
-        drawing, ways = self.drawing, self._ways
-        if not ways.judged.any() or drawing.grainy or not drawing.noise.softness_px > 0:
-            return np.zeros(len(ways.judged), bool)
-        return _doubtful(drawing, ways)
+        noise = self.drawing.noise
+        is_told = bool(self.lines) and noise.softness_px > 0 and not self.drawing.grainy
+        if not is_told or not self._ways.judged.any():
+            return np.zeros(len(self.lines), bool)
+        return _doubtful(self.drawing, self._ways, self.told)
 
     @cached_property
     def _ways(self) -> Ways:
@@ -152,10 +164,10 @@ class OwnInk:
         """Of each line that is not surely on its ink half its width in pixels, the stations in the order of
         the way, and what is over there.
         """
-        if not self.lines or not self.doubtful.any():
+        if not self.doubtful.any():
             return []
         ways, doubtful = self._ways, self.doubtful
-        found = zip(*_judged(self.drawing, ways, doubtful), strict=True)
+        found = zip(*_judged(self.drawing, ways, doubtful, self.told), strict=True)
         line, station, over = (np.concatenate(column) for column in found)
         of_line = (np.flatnonzero(line == number) for number in np.flatnonzero(doubtful))
         ordered = [own[np.argsort(station[own], kind="stable")] for own in of_line]
@@ -175,32 +187,36 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
     )
 
 
-def _doubtful(drawing: Drawing, ways: Ways) -> NDArray[np.bool_]:
+def _doubtful(drawing: Drawing, ways: Ways, told: Told) -> NDArray[np.bool_]:
     """Which lines are not surely on their ink: most are, and need not be judged."""
     doubtful = np.zeros(len(ways.judged), bool)
     least, pen = NEARLY.of(ways.half_px), _pen(drawing, ways)
     for part in parts(drawing, ways, _are_stations(ways, ways.judged), QUICK_PX, pen):
         asked = ~doubtful[ways.line[part.stations]]
-        line = ways.line[part.stations[asked]]
-        is_over, at = np.empty(len(line), bool), part.at[asked]
-        may_be_over(part.seen, part.ways, at, least[line], part.pen, part.room, is_over)
-        doubtful[line[is_over]] = True
+        line, at = ways.line[part.stations[asked]], part.at[asked]
+        key = part.key(at, least[line])
+        if key not in told:
+            told[key] = np.empty(len(line), bool)
+            may_be_over(part.seen, part.ways, at, least[line], part.pen, part.room, told[key])
+        doubtful[line[told[key]]] = True
     return doubtful
 
 
 def _judged(
-    drawing: Drawing, ways: Ways, which: NDArray[np.bool_]
+    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], told: Told
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
     """The stations of some lines, tile by tile: line, number of the place, and what is over."""
     pen = _pen(drawing, ways)
     for part in parts(drawing, ways, _are_stations(ways, which), TILE_PX, pen):
-        over = over_at(part.seen, part.ways, part.at, part.pen, part.room)
-        yield ways.line[part.stations], part.stations, over
+        key = part.key(part.at)
+        if key not in told:
+            told[key] = over_at(part.seen, part.ways, part.at, part.pen, part.room)
+        yield ways.line[part.stations], part.stations, told[key]
 
 
 class Part(NamedTuple):
     """A tile of the sheet with what lies about it: the darkness, the ways as they are seen from its corner,
-    the numbers of the stations in the tile and their pixels, the pen, and room to work in.
+    the numbers of the stations in the tile and their pixels, the pen, room to work in, and the corner.
     """
 
     seen: NDArray[np.float32]
@@ -209,6 +225,15 @@ class Part(NamedTuple):
     at: NDArray[np.int64]
     pen: PenOnInk
     room: Room
+    corner: NDArray[np.float32]
+
+    def key(self, *asked: NDArray[Any]) -> bytes:
+        """What tells the tile, with all that lies in it, from every other; and what is asked of it."""
+        line, ways = self.ways.line, self.ways
+        every: list[NDArray[Any]] = [self.corner, ways.places_px, line, *asked]
+        every += [ways.half_px[line], ways.judged[line]]
+        pen = repr((self.pen, self.seen.shape)).encode()
+        return sha1(b"".join([pen, *(each.tobytes() for each in every)])).digest()
 
 
 def parts(
@@ -228,7 +253,7 @@ def parts(
         corner = np.array([left, top], np.float32)
         at = np.round(ways.places_px[stations] - corner).astype(int)
         at = np.clip(at, 0, np.array(seen.shape)[::-1] - 1)
-        yield Part(seen, ways.seen_from(corner, near), stations, at, pen, room)
+        yield Part(seen, ways.seen_from(corner, near), stations, at, pen, room, corner)
 
 
 def _are_stations(ways: Ways, which: NDArray[np.bool_]) -> NDArray[np.bool_]:

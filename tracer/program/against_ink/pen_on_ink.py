@@ -120,23 +120,31 @@ def over_at(seen, ways, stations, pen, room):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _best(band, pen, spread, on_paper, on_ink):  # type: ignore[no-untyped-def]
     """Fill in what the pen that explains each box best draws on paper there, and what ink it leaves."""
-    side = 2 * round(pen.half_px) + 1
-    paper, left = np.empty(len(band.dark)), np.empty(len(band.dark))
     papers, lefts = np.empty(spread.shape), np.empty(spread.shape)
     least = np.full(spread.shape, np.inf)
     for share in pen.of_width:
-        for k in range(len(band.dark)):
-            beyond_px = band.beyond_px[k] - (share - 1) * band.half_px[k]
-            wrong = ink_at(beyond_px, 0.0, pen.softness_px) - band.dark[k]
-            paper[k] = max(wrong, 0.0) ** 2 - pen.noise
-            left[k] = max(-wrong, 0.0) ** 2 - pen.noise
-        in_boxes(band, paper, side, spread, papers)
-        in_boxes(band, left, side, spread, lefts)
+        beyond_px = band.beyond_px - (share - 1) * band.half_px
+        sums_of(band, beyond_px, pen, spread, (papers, lefts))
         for i in range(len(spread)):
             for j in range(spread.shape[1]):
                 both = papers[i, j] + lefts[i, j]
                 if both < least[i, j]:
                     least[i, j], on_paper[i, j], on_ink[i, j] = both, papers[i, j], lefts[i, j]
+
+
+@njit(cache=True)
+def sums_of(band, beyond_px, pen, spread, sums):  # type: ignore[no-untyped-def]
+    """Fill in what pens, beyond whose edge each pixel of a band is so far, draw on paper in the box about it,
+    and what ink they leave there.
+    """
+    side, (papers, lefts) = 2 * round(pen.half_px) + 1, sums
+    paper, left = np.empty(len(band.dark)), np.empty(len(band.dark))
+    for k in range(len(band.dark)):
+        wrong = ink_at(beyond_px[k], 0.0, pen.softness_px) - band.dark[k]
+        paper[k] = max(wrong, 0.0) ** 2 - pen.noise
+        left[k] = max(-wrong, 0.0) ** 2 - pen.noise
+    in_boxes(band, paper, side, spread, papers)
+    in_boxes(band, left, side, spread, lefts)
 
 
 @njit(cache=True)

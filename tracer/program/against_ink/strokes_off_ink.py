@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.median import median, percentile
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import at_lengths, lengths_mm
@@ -36,18 +37,16 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import CLEAR_WIDTHS, PAPER
-from morfax.tracer.program.against_ink.own_ink import PLACES_PX, Part, parts
+from morfax.tracer.program.against_ink.own_ink import PLACES_PX, parts
 from morfax.tracer.program.against_ink.pen_on_ink import (
-    Band,
     PenOnInk,
     Ways,
     band_of,
     clear,
-    in_boxes,
     most_about,
+    sums_of,
 )
 from morfax.tracer.program.against_ink.unexplained import Unexplained
-from morfax.tracer.tangles.pen import ink
 
 # All limits below were chosen by trial on crowded sheets.
 OFF = 0.08  # widths²: of crossings that are right to 0.1 mm none comes above
@@ -82,7 +81,10 @@ def strokes_off_ink(
     reach_px, paper = 2 * CLEAR_WIDTHS * half_px, 0.5 * noise.paper**2
     pen = PenOnInk(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, OFF)
     tiles = parts(drawing, ways, is_station, TILE_PX, pen)
-    found = [(part.stations, _off(part)) for part in tiles]
+    found = [
+        (part.stations, _off_at(part.seen, part.ways, part.at, part.pen, part.room))
+        for part in tiles
+    ]
     stations, off = (np.concatenate(column) for column in zip(*found, strict=True))
     is_off = from_memory[stations] & (off > _limit(off[~from_memory[stations]]))
     return list(_places(drawing, ways, stations[is_off], off[is_off]))
@@ -171,39 +173,29 @@ def _are_lone(ways: Ways, some: NDArray[np.int64]) -> NDArray[np.bool_]:
     return np.asarray(~(is_other & (off_px < about_px[:, None])).any(axis=1))
 
 
-def _off(part: Part) -> Array:
-    """By how much strokes are off their ink about each station of a tile, widths²."""
-    pen, shape = part.pen, part.seen.shape
-    band = band_of(part.seen, part.ways, pen, part.room)
-    clear(part.seen, band, part.room)
-    spread = part.room.spread[: part.seen.size].reshape(shape)
-    least, worst = np.full(shape, np.inf), np.zeros(shape)
-    own_px, usual_px = band.half_px, np.minimum(band.half_px, pen.half_px)
+@njit(cache=True)
+def _off_at(seen, ways, stations, pen, room):  # type: ignore[no-untyped-def]
+    """By how much strokes are off their ink about each station (m,) of a tile, widths²."""
+    band = band_of(seen, ways, pen, room)
+    clear(seen, band, room)
+    spread, side = room.spread[: seen.size].reshape(seen.shape), 2 * round(pen.half_px) + 1
+    least, worst = np.full(seen.shape, np.inf), np.zeros(seen.shape)
+    paper, left = np.empty(seen.shape), np.empty(seen.shape)
     # ink that two lines share is broad, and a stroke that goes on from there is not
-    pens_px = [own_px] if (own_px == usual_px).all() else [own_px, usual_px]
-    for half_px in (share * one_px for one_px in pens_px for share in pen.of_width):
-        paper, left = _sums(band, pen, half_px, spread)
-        is_less = paper + left < least
-        least = np.where(is_less, paper + left, least)
-        worst = np.where(is_less, np.maximum(paper, left), worst)
-    side = _side(pen)
-    most = [most_about(worst, place, side) for place in part.at]
-    return np.array(most) / (2 * pen.half_px) ** 2
-
-
-def _side(pen: PenOnInk) -> int:
-    """The side of a box as wide as the pen, in pixels."""
-    return 2 * round(pen.half_px) + 1
-
-
-def _sums(band: Band, pen: PenOnInk, half_px: Array, spread: Array) -> tuple[Array, Array]:
-    """What pens, half as wide as given for each pixel, draw on paper in the box about it, and leave."""
-    drawn, sums = np.empty(len(band.dark)), (np.empty(spread.shape), np.empty(spread.shape))
-    ink(band.beyond_px + band.half_px - half_px, 0.0, pen.softness_px, drawn)
-    wrong = drawn - band.dark
-    for signed, into in zip((wrong, -wrong), sums, strict=True):
-        in_boxes(band, np.maximum(signed, 0.0) ** 2 - pen.noise, _side(pen), spread, into)
-    return sums
+    own_px, usual_px = band.half_px, np.minimum(band.half_px, pen.half_px)
+    for pens in range(1 + np.any(own_px > usual_px)):
+        for share in pen.of_width:
+            half_px = share * (own_px if pens == 0 else usual_px)
+            sums_of(band, band.beyond_px + own_px - half_px, pen, spread, (paper, left))
+            for i in range(len(least)):
+                for j in range(least.shape[1]):
+                    if paper[i, j] + left[i, j] < least[i, j]:
+                        least[i, j] = paper[i, j] + left[i, j]
+                        worst[i, j] = max(paper[i, j], left[i, j])
+    off = np.empty(len(stations))
+    for k in range(len(off)):
+        off[k] = most_about(worst, stations[k], side) / (2 * pen.half_px) ** 2
+    return off
 
 
 def _places(

@@ -75,7 +75,7 @@ def with_chains(setup: Setup, own: OwnInk) -> OwnInk:
         ]
         if all(new is line for new, line in zip(mended, own.lines, strict=True)):
             break
-        own = OwnInk(own.drawing, mended)
+        own = own.mended(mended)
     return own
 
 

@@ -70,7 +70,7 @@ def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
         if all(new is line for line, new in pairs):
             break
         news = np.vstack([moved(line, new, MOVED) for line, new in pairs])
-        own = OwnInk(own.drawing, mended)
+        own = own.mended(mended)
     return own
 
 

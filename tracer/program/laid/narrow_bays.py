@@ -106,7 +106,7 @@ def _mended(
         if all(new is line for new, line in zip(mended, own.lines, strict=True)):
             break
         before = own.lines, left
-        own = OwnInk(own.drawing, mended)
+        own = own.mended(mended)
         left = left_by(setup, own)
         news = News.between(before, (mended, left))
     uncut = with_corners(setup, own)

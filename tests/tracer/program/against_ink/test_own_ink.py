@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 from morfax.jobs.remarks.on_ink import of_ink
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.against_ink import own_ink
 from morfax.tracer.program.against_ink.own_ink import NEARLY, SURE, OwnInk
 from morfax.tracer.program.against_ink.pen_on_ink import (
     Band,
@@ -105,6 +107,30 @@ def test_a_way_beside_its_line_is_found_where_it_leaves_and_not_beyond() -> None
     (stretch,) = OwnInk(drawing, [closed(way)]).beside(SURE)
     assert 10 < stretch.place_mm[0] < 17
     assert 6.0 < stretch.length_mm < 6.0 + 3 * WIDTH_MM
+
+
+def test_tiles_in_which_no_line_was_mended_are_not_held_against_their_ink_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two plates, each with its notch cut short, of which one is mended; it tells what it would afresh."""
+    down = np.array([0.0, 24.0])
+    drawing = inked(notched(DEEP_MM), notched(DEEP_MM) + down, seed=1)
+    cut, upper = closed(notched(DEEP_MM - 0.5)), closed(notched(DEEP_MM - 0.5) + down)
+    tiles, over = list[bytes](), own_ink.over_at
+
+    def counted(seen: Array, *rest: object) -> Array:
+        tiles.append(seen.tobytes())
+        return np.asarray(over(seen, *rest))
+
+    monkeypatch.setattr(own_ink, "over_at", counted)
+    own = OwnInk(drawing, [cut, upper])
+    before = list(own.beside(SURE))
+    of_both, _ = len(tiles), tiles.clear()
+    assert list(own.mended([cut, upper]).beside(SURE)) == before and not tiles
+    mended = own.mended([closed(notched(DEEP_MM)), upper])
+    (left,) = mended.beside(SURE)
+    assert left == before[1] and 0 < len(tiles) < 0.6 * of_both
+    assert list(OwnInk(drawing, mended.lines).beside(NEARLY)) == list(mended.beside(NEARLY))
 
 
 def test_an_open_line_that_cuts_a_notch_short_is_found_and_its_ends_are_not() -> None:

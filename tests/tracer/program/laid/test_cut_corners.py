@@ -88,9 +88,9 @@ def test_ink_that_a_way_explains_is_held_against_it_once(
     looked_at = list[int]()
     doubtful = own_ink._doubtful
 
-    def counted(drawing: Drawing, ways: Ways) -> np.ndarray:
+    def counted(drawing: Drawing, ways: Ways, told: own_ink.Told) -> np.ndarray:
         looked_at.append(len(ways.line))
-        return doubtful(drawing, ways)
+        return doubtful(drawing, ways, told)
 
     monkeypatch.setattr(own_ink, "_doubtful", counted)
     trace(inked(arc((16, 16), 10), seed=4))
