@@ -81,7 +81,9 @@ class BatchJob:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise FileFault(f"cannot make the folder {self.folder}: {error.strerror}") from None
+            raise FileFault(
+                f"cannot make the folder {self.folder}: {error.strerror}; give another one with -o"
+            ) from None
         listener.compiling("the head", ("motion", "tracer", "recorder"))
         with Manifest(self.folder) as manifest, closing(self._ended()) as rows:
             for row in rows:

@@ -34,7 +34,9 @@ class Manifest(Ending):
         try:
             self._stream = self._file.open("ab", buffering=0)
         except OSError as error:
-            raise FileFault(f"cannot write {self._file}: {error.strerror}") from None
+            raise FileFault(
+                f"cannot write {self._file}: {error.strerror}; give another folder with -o"
+            ) from None
         if is_cut_short:
             self._stream.write(b"\n")
 

@@ -40,6 +40,7 @@ class CompareResult:
     paths: tuple[Path, ...]
     drawing: Drawing | None
     within: bool | None
+    is_beside: bool = False  # whether a cutter's edge was compared, and not the path itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +92,8 @@ class CompareJob:
             **correction_settings.figures(drawing),
             **found.figures,
         }
-        return CompareResult(figures, found, tuple(paths), drawing, within)
+        is_beside = drawing is not None and bool(self.cutter_mm)
+        return CompareResult(figures, found, tuple(paths), drawing, within, is_beside)
 
     def _path(self, file: FilePath, by_hand: ByHand, listener: Listener) -> Path:
         """The path in a file, or that of the machine: of a program no faster than it is held well."""

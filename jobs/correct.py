@@ -109,12 +109,14 @@ class CorrectJob:
         has = f"there {'is' if count == 1 else 'are'} {count or 'none'}"
         if self.undo > count:
             raise WrongUse(
-                f"--undo {self.undo} takes back more corrections than there are: {has}"
+                f"--undo {self.undo} takes back more corrections than there are: {has}; give no more"
             )
         last = range(count - self.undo + 1, count + 1)
         for number in self.remove:
             if not 1 <= number <= count:
-                raise WrongUse(f"there is no correction {number}: {has}")
+                raise WrongUse(
+                    f"there is no correction {number}: {has}; `morfax correct` without options lists them"
+                )
         return tuple(sorted({*self.remove, *last}))
 
     def _write(

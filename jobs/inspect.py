@@ -54,7 +54,8 @@ class InspectJob:
         if self.picture is not None:
             if not is_program or self.tape.suffix.lower() != ".steps":
                 raise WrongUse(
-                    f"{self.tape} has no punched tape to draw; --picture is for .steps, leave it out"
+                    f"{self.tape} has no punched tape to draw; --picture is for .steps: leave it out, or see "
+                    "the path with `morfax play --picture`"
                 )
             medium.outgoing(self.picture, self.tape)
         if not is_program:

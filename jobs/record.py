@@ -66,7 +66,8 @@ class RecordJob:
         feed_mm_s = self.unit.feed_mm_s or FEED_MM_S
         if "fmt" in settings and not settings["fmt"].checked and not self.unit.plain:
             listener.note(
-                f"a reference of {self.reference_hz:g} Hz has no room for the check signal: the tape is bare"
+                f"a reference of {self.reference_hz:g} Hz has no room for the check signal: the tape is bare,"
+                " and nothing on it vouches for itself; a lower --reference-frequency has it, or say --plain"
             )
         # 2. the recording
         if has_feed and medium.is_outline(self.source) and self.unit.chosen(program).z:
@@ -152,7 +153,10 @@ class RecordJob:
                 reference_hz=self.reference_hz, cycles_per_mm=self.cycles_per_mm
             )
         except ValueError as refused:
-            raise WrongUse(f"such a tape cannot be recorded: {refused}") from None
+            raise WrongUse(
+                f"such a tape cannot be recorded: {refused}; leave --reference-frequency and --cycles-per-mm "
+                "out for a usual one"
+            ) from None
         return {"fmt": fmt}
 
     def _recorded(

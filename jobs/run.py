@@ -116,10 +116,18 @@ class RunJob:
     def prepared(self, panel: Panel | None = None) -> tuple[FilePath, Tracing]:
         """The program's name, and the head as it is set; raises WrongUse, CardFault and FileFault."""
         program_file = self._program_file()
-        usual = self.settings.with_usual_lines(self.unit.usual_lines(program_file))
-        tracing = Tracing.prepared(usual, panel)
+        tracing = Tracing.prepared(self._settled(program_file), panel)
         self.unit.check(program_file)
         return program_file, tracing.on_machine(self.unit, program_file)
+
+    def usual_lines(self) -> str | None:
+        """The lines that the cutter or the machine is for, where none are asked for; None: the one line."""
+        lines = self._settled(self._program_file()).line.lines
+        return lines if isinstance(lines, str) else None
+
+    def _settled(self, program_file: FilePath) -> TraceSettings:
+        """The settings, with the lines that the machine of a program is for."""
+        return self.settings.with_usual_lines(self.unit.usual_lines(program_file))
 
     def _program_file(self) -> FilePath:
         """The name of the program: a tape, or in the words of a machine if there is one."""

@@ -133,6 +133,11 @@ def format_speed_mm_s(speed_mm_s: float) -> str:
     return f"{_figures(speed_mm_s)} mm/s"
 
 
+def format_feed_mm_s(feed_mm_s: float) -> str:
+    """Feed of a program in mm/min, as its F says it, with four significant figures."""
+    return f"{_figures(60 * feed_mm_s)} mm/min"
+
+
 def format_frequency_hz(frequency_hz: float) -> str:
     """Frequency with six significant figures: kHz from 1000 Hz, Hz below."""
     if abs(frequency_hz) >= 1000:

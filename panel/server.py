@@ -60,7 +60,9 @@ def checked(host: str, token: str | None) -> Address:
         or not token.isascii()
         or not token.replace("-", "").replace("_", "").isalnum()
     ):
-        raise WrongUse(f"--token takes {LEAST_TOKEN} or more letters, digits, - and _")
+        raise WrongUse(
+            f"--token is {token[:20]!r}; it takes {LEAST_TOKEN} or more letters, digits, - and _"
+        )
     return Address(host, token=token)
 
 

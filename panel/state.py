@@ -27,6 +27,7 @@ def state(bench: Bench) -> dict[str, Any]:
         "drawing": now.drawing if now.drawing in bench.sources else None,
         "sources": sorted(bench.sources),
         "options": now.options,
+        "usual_lines": _usual_lines(bench),
         "can_undo": history.can_undo,
         "can_redo": history.can_redo,
         "picture": _picture(bench),
@@ -56,6 +57,19 @@ def _picture(bench: Bench) -> dict[str, Any] | None:
         "levels": len(picture.levels),
         "has_lines": lines is not None and bench.line_map is not None,
     }
+
+
+def _usual_lines(bench: Bench) -> str | None:
+    """The lines that are followed where none are chosen: those of the cutter or machine; None: one line."""
+    if bench.drawing is None:
+        return None
+    chosen = {"--lines", "--order"}
+    options = {name: value for name, value in bench.options.items() if name not in chosen}
+    try:
+        words = commands.run_words(bench.drawing, options, bench.folder)
+        return bench.command_line.run(words).usual_lines()
+    except (WrongUse, Fault):
+        return None
 
 
 def _commands(bench: Bench) -> dict[str, str]:

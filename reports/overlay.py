@@ -10,7 +10,7 @@ A .png is drawn by `bitmap`, which needs no matplotlib, other kinds by `vector`,
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
@@ -87,6 +87,7 @@ class Picture:
     stops_mm: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     led: WhoLed | None = None  # who led the head, in colours
     left_out: Sequence[Area] = ()  # ink along which no stroke was to run
+    path_called: str = ""  # in the legend, where the points do not lie on the path
 
 
 def draw(picture: Picture, file: FilePath) -> None:
@@ -191,7 +192,7 @@ def _contour(plate: Plate, picture: Picture) -> Colours | None:
     measured = _is_measured(picture)
     if runs := picture.path.runs():
         colour = UNMEASURED if measured else PLAIN
-        plate.add(Polyline(with_gaps(runs), colour, LINE_PT))
+        plate.add(Polyline(with_gaps(runs), colour, LINE_PT, label=picture.path_called))
     if not measured:
         return None
     assert picture.points_mm is not None and picture.error_mm is not None
@@ -258,7 +259,7 @@ def _enlarged(picture: Picture, place_mm: Array, number: int) -> Plate:
         view, title, WORDS_PT, numbers_pt=WORDS_PT, most_numbers=FEW_NUMBERS, names=None
     )
     _ground(plate, picture)
-    _contour(plate, picture)
+    _contour(plate, replace(picture, path_called=""))  # the whole contour's legend says it
     return plate
 
 

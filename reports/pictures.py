@@ -104,6 +104,7 @@ def draw_compared(result: CompareResult, names: str, file: FilePath) -> None:
         reference,
         found.points_mm,
         found.error_mm,
+        path_called="middle of the tool" if result.is_beside else "",
     )
     draw(picture, file)
     if result.drawing is not None:

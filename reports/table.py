@@ -28,6 +28,7 @@ _LENGTH_DECIMALS = 5  # of a mm; a smaller part is the rounding of the files
 _APART = "  "  # between columns; a table is never wrapped, so that a program can read it line by line
 
 _UNITS: dict[str, Callable[[Any], str]] = {
+    "_feed_mm_s": units.format_feed_mm_s,
     "_mm_s": units.format_speed_mm_s,
     "_per_mm": lambda value: f"{value:g} per mm",
     "_place_mm": lambda value: units.format_place_mm(*value[:2]),
@@ -137,7 +138,10 @@ def as_cells(rows: Sequence[Row]) -> list[list[str]]:
 def _told(key: str, value: Any) -> tuple[str, str]:
     """Label and value of a figure, as people read it."""
     suffix = next((suffix for suffix in _UNITS if f"_{key}".endswith(suffix)), "")
-    name = key if suffix == "_share" else key.removesuffix(suffix).removesuffix("_mm")
+    unit = suffix.removeprefix("_feed").removeprefix(
+        "_share"
+    )  # these are words of the name too
+    name = key.removesuffix(unit).removesuffix("_mm")
     label = _LABELS.get(name, name.replace("_", " "))
     if value is None:
         return label, "–"

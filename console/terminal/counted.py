@@ -26,18 +26,26 @@ CLEAR = "\r\x1b[K"  # back to the beginning of the line, and clear it
 def count_all(rows: Generator[BatchRow, None, None], tally: Tally, desk: Desk) -> None:
     """Count rows as they come; name each drawing that failed now, and say how far the batch is."""
     live = sys.stderr.isatty() and not desk.quiet
+    first = dict[str, str]()  # the first drawing with each fault
     said_s, clear = (0.0, CLEAR) if live else (time.monotonic(), "")
     with closing(rows):  # whatever happens ends the drawings that run
         for row in rows:
             tally.count(row)
             if not (row.is_well or row.kept):
-                click.echo(f"{clear}morfax: {row.file}: {row.ending}: {row.fault}", err=True)
+                click.echo(f"{clear}morfax: {_why(row, first)}", err=True)
             now_s = time.monotonic()
             if not desk.quiet and now_s - said_s >= EVERY_S[live]:
                 said_s = now_s
                 click.echo(f"{clear}{told(tally)}", nl=not live, err=True)
     if live:
         click.echo(CLEAR, nl=False, err=True)
+
+
+def _why(row: BatchRow, first: dict[str, str]) -> str:
+    """Why a drawing failed; of a fault that was told, whose it was."""
+    why = f"{row.ending}: {row.fault.removeprefix(row.file).strip()}"
+    told = first.setdefault(why, row.file)
+    return f"{row.file}: {why}" if told == row.file else f"{row.file}: {row.ending}, as {told}"
 
 
 def told(tally: Tally) -> str:

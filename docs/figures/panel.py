@@ -1,4 +1,4 @@
-"""The pictures of the panel: the page after a run, light and dark, on a desk and on a telephone."""
+"""The pictures of the panel: the page while the head runs, and after the run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs" / "pictures"
-SIZES = {1280: 800, 390: 844}  # a small desk, a telephone; CSS pixels
+SIZE = {"width": 1280, "height": 800}  # a small desk; CSS pixels
 RUN_MS = 200_000
 
 
@@ -33,13 +33,11 @@ def make(folder: Path = PICTURES) -> list[Path]:
             executable_path=shutil.which("chromium"), args=["--no-sandbox"]
         )
         try:
-            page = browser.new_page(viewport={"width": 1280, "height": SIZES[1280]})
+            page = browser.new_page(viewport=SIZE)
             page.goto(address)
-            _run(page, folder)
             return [
-                _taken(page, folder, theme, width)
-                for theme in ("light", "dark")
-                for width in SIZES
+                _running(page, folder / "panel-running.png"),
+                _run(page, folder / "panel.png"),
             ]
         finally:
             browser.close()
@@ -48,8 +46,8 @@ def make(folder: Path = PICTURES) -> list[Path]:
             server.stdout.close()
 
 
-def _run(page: Any, folder: Path) -> None:
-    """The way to a result, with a picture of the head at work."""
+def _running(page: Any, file: Path) -> Path:
+    """The head at work."""
     page.wait_for_selector("#lines li", timeout=RUN_MS)
     page.click("#which >> text=Contours")
     page.select_option("#field--machine", "grbl-router")
@@ -59,23 +57,19 @@ def _run(page: Any, folder: Path) -> None:
     page.wait_for_timeout(2500)
     page.click("#hold")
     page.wait_for_timeout(1200)
-    page.screenshot(path=folder / "panel-running.png")
+    page.screenshot(path=file)
+    return file
+
+
+def _run(page: Any, file: Path) -> Path:
+    """The result, with the machine somewhere on its way."""
     page.select_option("#pace", "")
     page.click("#hold")
     page.wait_for_selector("#result-card:not([hidden])", timeout=RUN_MS)
     page.locator("#machine .bar > input[type=range]").evaluate(
         "s => { s.value = 0.4 * s.max; s.dispatchEvent(new Event('input')); }"
     )
-
-
-def _taken(page: Any, folder: Path, theme: str, width: int) -> Path:
-    """One picture."""
-    page.set_viewport_size({"width": width, "height": SIZES[width]})
-    if page.get_attribute("html", "data-theme") != theme:
-        page.click("#theme")
-    page.evaluate("scrollTo(0, 0)")
     page.wait_for_timeout(900)
-    file = folder / f"panel-{theme}-{width}.png"
     page.screenshot(path=file)
     return file
 

@@ -1,6 +1,7 @@
 """The carriers of a tape: level and frequency of each track, measured without knowing the tape's format.
 
-The tracks are measured in windows of 4096 frames:
+The tracks are measured in windows of 4096 frames, from where the first of them is heard to where all are
+silent:
 
     level        root mean square of the track, against that of a full-scale sine                       (dB)
     frequency    the peak of the window's spectrum, by a parabola through the logarithms of three bins  (Hz)
@@ -8,6 +9,7 @@ The tracks are measured in windows of 4096 frames:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path as FilePath
@@ -20,8 +22,10 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.files import for_soundfile
 from morfax.motion.usual import AT_ONCE
+from morfax.recorder.sound.programme import LEAST_LEVEL
 
 WINDOW_FRAMES = 4096  # 85 ms at 48 kHz: bins of 12 Hz
+QUIET_DB = 20 * math.log10(LEAST_LEVEL * math.sqrt(2))  # of a sine: hiss before a tape is below
 SILENT_DB = -80.0  # under this level a track has no carrier whose frequency could be measured
 
 
@@ -89,7 +93,19 @@ def _carriers(
                 np.where(level_db > SILENT_DB, _peak_hz(windows, rate_hz), np.nan)
             )
     level, frequency = (np.vstack(rows[1:] or rows) for rows in (levels, frequencies))
-    return [CarrierReading(level[:, track], frequency[:, track]) for track in range(tracks)]
+    heard = _programme(level)
+    return [
+        CarrierReading(level[heard, track], frequency[heard, track]) for track in range(tracks)
+    ]
+
+
+def _programme(level_db: Array) -> slice:
+    """The windows between two silences of all tracks, without those in which the carriers come or go."""
+    heard = np.flatnonzero((level_db > QUIET_DB).any(axis=1))
+    if len(heard) < 3:
+        return slice(None)
+    first, last = int(heard[0]), int(heard[-1])
+    return slice(first + (first > 0), last + (last == len(level_db) - 1))
 
 
 def _peak_hz(windows: NDArray[np.float32], rate_hz: float) -> Array:

@@ -21,7 +21,10 @@ FEW = 6  # lines that are listed with their leads; of more the shortest
 def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
     """Remarks on a program whose closed lines were contoured."""
     if trace.fault is not None and contouring.asks:
-        yield "a line was lost, so morfax cannot know which lines are holes: some lines may be cut as traced"
+        yield (
+            "a line was lost, so morfax cannot know which lines are holes: some lines may be cut as traced; "
+            "mend the drawing where it was lost, and trace it again"
+        )
         return
     closed = [line for line in trace.lines if line.ending == "closed"]
     if contouring.lead_in is not None:
@@ -33,7 +36,10 @@ def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
     if open_lines and (asked or contouring.moves_start):
         numbers = ", ".join(map(str, open_lines))
         are = f"line {numbers} is" if len(open_lines) == 1 else f"lines {numbers} are"
-        yield f"{are} open and cut as traced: direction, start and leads are for closed lines"
+        yield (
+            f"{are} open and cut as traced: direction, start and leads are for closed lines; if a closed line"
+            " is meant, close its gap on the drawing, or by `morfax correct --bridge`"
+        )
 
 
 def of_order(trace: Trace, order: Sequence[int]) -> Iterator[str]:
@@ -50,7 +56,7 @@ def of_order(trace: Trace, order: Sequence[int]) -> Iterator[str]:
             numbers = ", ".join(map(str, late))
             yield (
                 f"--order cuts line {lines[outer].number} before line {numbers} inside it: the part may be"
-                " loose by then"
+                " loose by then; give the inner ones first"
             )
 
 

@@ -114,6 +114,13 @@ def _of_areas(ink: Balance) -> Iterator[str]:
             f"{are} broader than a line, and left out ({large_mm2:.0f} mm2; the largest, "
             f"{largest_mm2:.1f} mm2, at {x:.1f},{y:.1f} mm): {advice}"
         )
+    if ink.dots:
+        x, y, across_mm = ink.dots[0]
+        are = "1 dot is" if len(ink.dots) == 1 else f"{len(ink.dots)} dots are"
+        yield (
+            f"{are} broader than two lines, and left out (the largest, {across_mm:.1f} mm across, at {x:.1f},"
+            f"{y:.1f} mm): to have one in the program, draw it as a ring"
+        )
     if ink.letters_mm > 0:
         yield (
             f"{ink.letters_mm:.0f} mm of ink are lettering, and left out; --lettering all follows it"

@@ -62,6 +62,15 @@ def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
                 f"{uncut_mm:.0f} of {of_mm:.0f} mm of line {number} are not cut, because the cutter does not "
                 "reach them; the figures list the places"
             )
+    if left.stretches:
+        worst, count = left.stretches[0], len(left.stretches)
+        x, y = worst.place_mm
+        places = "1 place" if count == 1 else f"{count} places"
+        yield (
+            f"a cutter of {cutter.diameter_mm:g} mm does not reach into {places}, such as sharp inner "
+            f"corners: up to {worst.left_mm:.2f} mm of material stay there, most at {x:.1f},{y:.1f} mm; the "
+            "figures list them, and a thinner cutter leaves less"
+        )
     for number, count in Counter(line.number for line in beside.lines).items():
         if count > 1:
             yield (

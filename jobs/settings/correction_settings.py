@@ -62,7 +62,9 @@ class CorrectionSettings:
         if why_not is not None:
             if self.file is not None:
                 raise CardFault(f"{file} {why_not}; give another file with --corrections")
-            listener.note(f"{file} {why_not}, and is not used")
+            listener.note(
+                f"{file} {why_not}, and is not used; this drawing's own go into a file with --corrections"
+            )
             return None
         picture = corrections.picture
         if picture is not None and picture.sha256 not in ("", sha256_of(drawing)):
@@ -81,7 +83,7 @@ def sha256_of(file: FilePath) -> str:
         with file.open("rb") as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError as error:
-        raise FileFault(f"{file} cannot be read: {error.strerror}") from None
+        raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from None
 
 
 def tell(laid: OnSheet, listener: Listener) -> None:

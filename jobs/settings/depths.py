@@ -136,4 +136,7 @@ def of_tabs(trace: Trace) -> Iterator[str]:
             " come loose"
         )
     if not any(trace.tabs):
-        yield "no line that is cut is closed: there are no tabs"
+        yield (
+            "no line that is cut is closed: there are no tabs; close the part's outline on the drawing, or "
+            "leave --tabs out"
+        )

@@ -13,14 +13,19 @@ export function chosenNumbers(options) {
   return /^[\d,\s]+$/.test(text) ? text.split(",").map(Number) : [];
 }
 
-// Whether a line is among those that are set to be followed.
-export function isChosen(options, lines, number) {
-  const numbers = chosenNumbers(options);
+// The lines that are followed: those of --lines, else what the cutter or the machine is for.
+function linesOf(state) {
+  return state.options["--lines"] ?? state.usual_lines ?? "";
+}
+
+// Whether a line is among those that are followed.
+export function isChosen(state, number) {
+  const options = state.options, numbers = chosenNumbers(options), which = linesOf(state);
   if (numbers.length) return numbers.includes(number);
-  const line = lines.find((row) => row.line === number);
-  if (options["--lines"] === "all") return true;
-  if (options["--lines"] === "contours") return line?.in_contours ?? false;
-  if (options["--lines"] === "outer") return (line?.in_contours && line.inside === null) ?? false;
+  const line = state.sheet?.figures.lines.find((row) => row.line === number);
+  if (which === "all") return true;
+  if (which === "contours") return line?.in_contours ?? false;
+  if (which === "outer") return (line?.in_contours && line.inside === null) ?? false;
   return options["--start"] || options["--arrow"] ? true : number === 1;
 }
 
@@ -30,10 +35,11 @@ export function toggled(options, number) {
   return next.length ? next.sort((a, b) => a - b).join(",") : null;
 }
 
-export function showWhich(host, options, set) {
-  const now = options["--start"] || (options["--arrow"] && !options["--lines"]) ? "start" : (options["--lines"] ?? "");
+export function showWhich(host, state, set) {
+  const options = state.options, longest = state.usual_lines ? "1" : "", which = linesOf(state);
+  const now = options["--start"] || (options["--arrow"] && !which) ? "start" : (which === longest ? "" : which);
   host.replaceChildren(...WHICH.map(([value, text]) =>
-    element("button", { "aria-pressed": String(now === value), onclick: () => set({ "--lines": value || null, "--start": null, "--order": null, ...(value === "contours" ? {} : { "--arrow": null }) }) }, text)));
+    element("button", { "aria-pressed": String(now === value), onclick: () => set({ "--lines": value || longest || null, "--start": null, "--order": null, ...(value === "contours" ? {} : { "--arrow": null }) }) }, text)));
 }
 
 // What is set when a line is chosen or left out: it has no place in the order then.
@@ -47,10 +53,10 @@ export function showLines(host, state, set, under) {
   if (host.dataset.dragging) return;
   const lines = inOrder(state.options, state.sheet?.figures.lines ?? []);
   const { line: focused, handle: held } = document.activeElement?.dataset ?? {};
-  const chosen = state.options["--lines"] === "all" ? [] : lines.filter((row) => isChosen(state.options, lines, row.line)).map((row) => row.line);
+  const chosen = linesOf(state) === "all" ? [] : lines.filter((row) => isChosen(state, row.line)).map((row) => row.line);
   const place = (numbers) => set({ "--order": numbers.join(",") });
   host.replaceChildren(...lines.map((row) => {
-    const checked = isChosen(state.options, lines, row.line);
+    const checked = isChosen(state, row.line);
     const box = element("input", {
       type: "checkbox", checked, "data-line": row.line,
       onchange: () => set(choosing(state.options, row.line)),

@@ -114,10 +114,9 @@ function show(next) {
   showSources();
   showSize();
   sheet.show(state.picture, state.sheet?.pitch_mm ?? null);
-  const lines = state.sheet?.figures.lines ?? [];
   if (JSON.stringify([before?.options, before?.sheet]) !== JSON.stringify([state.options, state.sheet])) {
-    sheet.recolour((number) => isChosen(state.options, lines, number));
-    showWhich(by("which"), state.options, set);
+    sheet.recolour((number) => isChosen(state, number));
+    showWhich(by("which"), state, set);
     showLines(by("lines"), state, set, under);
     showArrows(by("arrows"), state.options, goTo, set);
     showCorrections(by("corrections"), state, goTo, (number) => act({ do: "correct", remove: number }));

@@ -142,6 +142,7 @@ class TapeReader:
                     raise _too_short(tape.frames, discriminator.filter_frames)
                 start = start.cut(lead if first_row else 0, len(start))
                 run = self._run(warrant, start, full_scale(held[-1]), discriminator)
+                self.notes = (*tape.notes, *warrant.notes)
                 # 3. row by row, to the end
                 yield from self._through(chain([start], rows), run, held, stands_mm)
 
@@ -154,7 +155,6 @@ class TapeReader:
     ) -> _Run:
         """What keeps watch over this time through the tape, as its first rows and frames tell."""
         begun = warrant.begin(start)
-        self.notes = warrant.notes
         bearings = self._bearings(first, start, begun, discriminator)
         fmt, start_mm = self._format, self._start_mm
 

@@ -5,6 +5,9 @@ Source: the international inch (1959), 25.4 mm; CSS 2.1, 4.3.2: a px is 1/96 inc
 
 from __future__ import annotations
 
+import math
+from pathlib import Path as FilePath
+
 from morfax.motion.units import MM_PER_INCH
 
 UNITS_MM = {
@@ -27,3 +30,21 @@ def unit_mm(unit: str) -> float:
     if unit not in UNITS_MM:
         raise ValueError(f"{unit!r} is no unit of drawings; give one of {', '.join(UNITS_MM)}")
     return UNITS_MM[unit]
+
+
+def overruled(file: FilePath, unit: str | None, stated_mm: float | None) -> list[str]:
+    """The note on a drawing whose own unit, so many mm, is not the one that is given by hand; or none."""
+    if (
+        unit is None
+        or stated_mm is None
+        or math.isclose(unit_mm(unit), stated_mm, rel_tol=1e-6)
+    ):
+        return []
+    own = next(
+        (name for name, mm in UNITS_MM.items() if math.isclose(mm, stated_mm)), "another unit"
+    )
+    times = unit_mm(unit) / stated_mm
+    return [
+        f"{file} says that it is in {own}: --unit {unit} makes it {times:.4g} times as large as it says; "
+        "leave --unit out to have it as it says"
+    ]

@@ -31,7 +31,7 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.motion.usual import INCREMENT_MM
 from morfax.recorder.drawings.curve_chords import bulged
-from morfax.recorder.drawings.drawn_units import NO_UNIT, unit_mm
+from morfax.recorder.drawings.drawn_units import NO_UNIT, overruled, unit_mm
 from morfax.recorder.drawings.outline import CadOutline
 
 if TYPE_CHECKING:
@@ -61,7 +61,10 @@ def read_dxf(file: FilePath, unit: str | None = None) -> CadOutline:
     from ezdxf.lldxf.const import DXFError
 
     try:
-        pieces, left_out = _pieces(file, unit)
+        document = _opened(file)
+        stated_mm = _stated_mm(document)
+        scale = _scale(file, document, stated_mm) if unit is None else unit_mm(unit)
+        pieces, left_out = _pieces(file, document, scale)
     except OSError as error:
         if error.errno is not None:
             raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from None
@@ -74,13 +77,14 @@ def read_dxf(file: FilePath, unit: str | None = None) -> CadOutline:
     if not pieces:
         raise DrawingFault(f"{file} holds no lines in its model space; save the part there")
     told = ", ".join(f"{count} {kind}" for kind, count in sorted(left_out.items()))
-    return CadOutline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
+    left = [f"{file}: {told} are no lines, and left out"] if told else []
+    return CadOutline.of(pieces, [*overruled(file, unit, stated_mm), *left])
 
 
-def _pieces(file: FilePath, unit: str | None) -> tuple[list[Array], Counter[str]]:
+def _pieces(
+    file: FilePath, document: Drawing, scale: float
+) -> tuple[list[Array], Counter[str]]:
     """The lines of a file, mm, and how many things of each kind are none."""
-    document = _opened(file)
-    scale = _scale(file, document, unit)
     pieces, left_out = list[Array](), Counter[str]()
     for count, entity in enumerate(_Shown.by(file, document).of(document.modelspace())):
         if count > MOST:
@@ -109,22 +113,28 @@ def _opened(file: FilePath) -> Drawing:
         return recover.readfile(file)[0]
 
 
-def _scale(file: FilePath, document: Drawing, unit: str | None) -> float:
-    """Length of the file's unit, mm."""
+def _stated_mm(document: Drawing) -> float | None:
+    """Length of the unit that the file states; None if it states none."""
     from ezdxf import units
     from ezdxf.enums import InsertUnits
 
-    if unit is not None:
-        return unit_mm(unit)
     if document.units == 0:
-        raise DrawingFault(NO_UNIT.format(file=file, why="$INSUNITS is 0 or not there"))
+        return None
     try:
         return float(
             units.conversion_factor(InsertUnits(document.units), InsertUnits.Millimeters)
         )
     except (KeyError, ValueError, TypeError):
-        why = f"$INSUNITS is {document.units}, which is no unit"
-        raise DrawingFault(NO_UNIT.format(file=file, why=why)) from None
+        return None
+
+
+def _scale(file: FilePath, document: Drawing, stated_mm: float | None) -> float:
+    """Length of the file's unit, mm; raises DrawingFault if it states none."""
+    if stated_mm is None:
+        what = " or not there" if document.units == 0 else ", which is no unit"
+        why = f"$INSUNITS is {document.units}{what}"
+        raise DrawingFault(NO_UNIT.format(file=file, why=why))
+    return stated_mm
 
 
 @dataclass(frozen=True, slots=True)

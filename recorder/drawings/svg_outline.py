@@ -26,8 +26,9 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.motion.usual import INCREMENT_MM
 from morfax.recorder.drawings.curve_chords import bezier, chords_of
+from morfax.recorder.drawings.drawn_units import overruled
 from morfax.recorder.drawings.outline import CadOutline
-from morfax.recorder.drawings.svg_sheet import sheet_of
+from morfax.recorder.drawings.svg_sheet import sheet_of, stated_mm
 
 if TYPE_CHECKING:
     from svgelements import Arc, Path
@@ -60,7 +61,8 @@ def read_svg(file: FilePath, unit: str | None = None) -> CadOutline:
         raise DrawingFault(f"{file} holds no lines; turn words into paths, and save it again")
     count = Counter(tag for tag in map(_tag, root.iter()) if tag in WORDS)
     told = ", ".join(f"{n} {tag}" for tag, n in sorted(count.items()))
-    return CadOutline.of(pieces, [f"{file}: {told} are no lines, and left out"] if told else [])
+    left = [f"{file}: {told} are no lines, and left out"] if told else []
+    return CadOutline.of(pieces, [*overruled(file, unit, stated_mm(file, root)), *left])
 
 
 def _root(file: FilePath) -> ElementTree.Element:

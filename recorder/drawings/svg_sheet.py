@@ -66,6 +66,14 @@ def sheet_of(file: FilePath, root: ElementTree.Element, unit: str | None) -> Svg
     return _from_zero(root, _laid(root, box, width_mm, high_mm))
 
 
+def stated_mm(file: FilePath, root: ElementTree.Element) -> float | None:
+    """Length of the unit that the file states; None if it states none."""
+    try:
+        return sheet_of(file, root, None).x_mm
+    except DrawingFault:
+        return None
+
+
 def _physical_mm(length: tuple[float, str] | None) -> float | None:
     """A length of the file, mm; None if there is none, or in a unit that is no length on paper."""
     known = length is not None and length[1] in PHYSICAL_MM

@@ -8,7 +8,7 @@
 Signals: frames (n, tracks) of full scale 1 in blocks in; those of the programme out, without a hole. It
 begins 0.2 s after all tracks have come up, when the recorder's own levels and speed have settled, and ends
 40 ms before all tracks fall by 12 dB and stay there for half a second; what is shorter is a dropout, and is
-given out.
+given out. Of a file only an end at which all tracks are silent is cut: one silent track is damage.
 
 Source: our own. Questions: a gap of half a second on all tracks ends the tape; its check signal, or its end,
 then says that it is not whole.
@@ -23,7 +23,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DeviceFault
-from morfax.recorder.sound.source import Frames, Stored, full_scale
+from morfax.recorder.sound.source import BLOCK_FRAMES, FileSource, Frames, Stored, full_scale
 
 WINDOW_S = 0.02  # in which a level is told: 100 cycles of a carrier
 SETTLING = 10  # windows of carriers before the programme begins, 0.2 s: chosen
@@ -141,3 +141,51 @@ def programme_within(blocks: Iterator[Stored], rate_hz: int) -> tuple[int, int] 
     )  # a recording that begins with carriers has no silence to leave
     last -= MARGIN if last < len(up) else 0
     return first * window, max(last, first) * window
+
+
+class Programme:
+    """A sound file without the silence before and behind its programme, as a source; `notes` tell of it.
+
+    What begins within silence has to stand for `stands_s`: the start of a tape may be missing.
+    """
+
+    stands_s = SETTLING * WINDOW_S  # as long as its carriers have had to settle
+
+    def __init__(self, file: FileSource, first: int, end: int) -> None:
+        self._file, self._first, self.frames = file, first, end - first
+        self.name, self.tracks, self.rate_hz = file.name, file.tracks, file.rate_hz
+        self.text, self.container, self.sample = file.text, file.container, file.sample
+        ends = ((first, "before"), (file.frames - end, "behind"))
+        silent = [f"{count / file.rate_hz:.2f} s {where} it" for count, where in ends if count]
+        self.notes = (
+            f"{file.name}: the tape stands between silences; {' and '.join(silent)} are left out, and "
+            "times count from where it begins",
+        )
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def stored_blocks(self, frames: int = BLOCK_FRAMES, first: int = 0) -> Iterator[Stored]:
+        """The frames of the programme from `first` on in blocks."""
+        left = self.frames - first
+        for block in self._file.stored_blocks(frames, self._first + first):
+            if left <= 0:
+                return
+            yield block[:left]
+            left -= len(block)
+
+
+def without_silence(file: FileSource) -> FileSource | Programme:
+    """The file, or its programme if it begins or ends in silence on all tracks."""
+    window = round(WINDOW_S * file.rate_hz)
+    if file.frames < SETTLING * window:
+        return file
+    before, behind = (
+        (_levels(full_scale(next(file.stored_blocks(window, at))), window) < LEAST_LEVEL).all()
+        for at in (0, file.frames - window)
+    )
+    found = programme_within(file.stored_blocks(), file.rate_hz) if before or behind else None
+    if found is None or found[0] == found[1]:
+        return file
+    return Programme(file, found[0] if before else 0, found[1] if behind else file.frames)

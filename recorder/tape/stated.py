@@ -52,7 +52,8 @@ def format_of(source: Source, by_hand: TapeEntries) -> TapeFormat:
     if stated is None and len(given) < len(_EXAMPLES):
         lacks = " ".join(example for name, example in _EXAMPLES.items() if name not in given)
         raise TapeFault(
-            f"{source.name} does not say its format (no text chunk); give {lacks}, or whatever the tape has"
+            f"{source.name} does not say its format (no text chunk); give its label with --label, or {lacks},"
+            " or whatever the tape has"
         )
     try:
         if stated is None:

@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Unpack
 
 from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
 from morfax.recorder.sound.pipe import FEWEST_TRACKS
+from morfax.recorder.sound.programme import Programme, without_silence
 from morfax.recorder.sound.source import (
     BLOCK_FRAMES,
     FileSource,
@@ -55,8 +57,11 @@ class Tape(Ending):
         """
         try:
             _check_tracks(source)
+            source = without_silence(source) if isinstance(source, FileSource) else source
             fmt = started(format_of(source, by_hand), by_hand.get("start_mm"))
             fmt = allowed(fmt, by_hand.get("still"), by_hand.get("alike"))
+            if isinstance(source, Programme):
+                fmt = replace(fmt, dwell_s=max(fmt.dwell_s, source.stands_s))
             return cls(source, fmt, columns_of(by_hand.get("order"), fmt.tracks))
         except BaseException:
             source.close()
@@ -89,6 +94,11 @@ class Tape(Ending):
     def sample(self) -> str:
         """Kind of sample: PCM_16, PCM_24, PCM_32 or FLOAT."""
         return self.source.sample
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be told of how it was opened: silence that was left out."""
+        return self.source.notes if isinstance(self.source, Programme) else ()
 
     @property
     def text(self) -> str:

@@ -227,6 +227,20 @@ def test_at_a_terminal_a_drawing_that_failed_has_a_line_of_its_own(
     assert lines == ["morfax: b.png: fault: no line", ""]
 
 
+def test_a_fault_that_many_drawings_have_is_told_once(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A folder of scans without a resolution filled the screen with one sentence."""
+    names, why = [f"{k}.png" for k in range(3)], "{} states no resolution; give --dpi 300"
+    rows = (BatchRow(name, "fault", fault=why.format(name)) for name in names)
+    count_all(rows, Tally(3), Desk())
+    assert capsys.readouterr().err.splitlines() == [
+        "morfax: 0.png: fault: states no resolution; give --dpi 300",
+        "morfax: 1.png: fault, as 0.png",
+        "morfax: 2.png: fault, as 0.png",
+    ]
+
+
 def test_a_folder_appears_whole_or_not_at_all(tmp_path: Path) -> None:
     results = LocalResults(tmp_path)
     with suppress(KeyboardInterrupt), results.folder("a") as folder:

@@ -59,7 +59,10 @@ def test_a_drawing_that_cannot_be_read_costs_no_other(scans: Path, scheduler: st
     rows = {
         Path(row.file).name: row for row in BatchJob("scans", "out", scheduler=scheduler).rows()
     }
-    assert rows["a.png"].fault == "scans/a.png cannot be read: No such file or directory"
+    assert (
+        rows["a.png"].fault
+        == "cannot read scans/a.png: No such file or directory; check the name"
+    )
     assert "scans/b.png" in rows["b.png"].fault and "/tmp" not in rows["b.png"].fault
 
 

@@ -67,7 +67,11 @@ def test_another_file_and_none(morfax: Morfax, scan: Path) -> None:
         (["--rub", "40,62", "--pen", "3mm"], 2, "--pen goes with --bridge"),
         (["--why", "coffee"], 2, "--why goes with a correction"),
         (["--list", "--undo"], 2, "--list changes nothing"),
-        (["--remove", "1"], 2, "there is no correction 1: there are none"),
+        (
+            ["--remove", "1"],
+            2,
+            "there is no correction 1: there are none; `morfax correct` without options",
+        ),
         (["--rub", "4000px,3px"], 9, "beside the sheet of 84.1 x 64.0 mm"),
         (["--no-corrections", "--rub", "40,62"], 2, "leave --no-corrections out"),
         (["--corrections", "no/x.toml", "--rub", "40,62"], 8, "the folder"),

@@ -27,6 +27,7 @@ def test_what_the_cutter_leaves_is_listed_and_the_edge_is_compared_with_the_draw
     assert answer.figures["cutter_diameter_mm"] == 3 and answer.figures["side"] == "outside"
     assert len(answer.figures["unreached"]) == 8  # one between each two teeth
     assert 0.59 < answer.figures["unreached"][0]["left_mm"] < 0.61
+    assert "does not reach into 8 places" in answer.err and "up to 0.60 mm" in answer.err
     compared = morfax("compare", SAMPLES / "gear.png", "gear.csv", "--cutter", "3mm", "--json")
     assert (
         compared.figures["path_to_ink"]["rms_mm"] < 0.006

@@ -15,6 +15,7 @@ from tests.console.conftest import Morfax
 UM = 1e-3
 PLAYED_WITHIN_MM = 3 * UM  # what the issue allows at any place
 RATE_HZ = 48000
+BY_HAND = ("--reference-frequency", "6kHz", "--cycles-per-mm", "20")
 
 
 def test_a_path_written_as_it_comes_is_the_path_written_whole(
@@ -174,6 +175,24 @@ def test_a_silent_track_is_told_and_what_was_played_before_is_kept(
     assert answer.figures["incomplete"] is True
     assert not (here / "broken.csv").exists()
     assert read_path("broken.incomplete.csv").t_s[-1] == pytest.approx(kept_s, abs=0.1)
+
+
+def test_a_recording_with_hiss_before_and_behind_the_tape_plays(
+    morfax: Morfax, here: Path, tape_file: Path, frames: np.ndarray
+) -> None:
+    """As a sound program records it: the recorder runs before the tape does, and after it."""
+    noise = np.random.default_rng(3)
+    before, behind = (noise.normal(0, 2e-3, (n * RATE_HZ, frames.shape[1])) for n in (2, 3))
+    heard = rewritten(tape_file, np.concatenate([before, frames / 3, behind]), "heard.wav")
+    assert morfax("play", tape_file, "-o", "tape.csv").exit_code == 0
+    answer = morfax("play", heard, "--label", tape_file, "-o", "heard.csv")
+    assert answer.exit_code == 0
+    assert "2.20 s before it and 3.02 s behind it are left out" in answer.err
+    apart = distance(read_path("heard.csv"), read_path("tape.csv"))
+    assert apart.hausdorff_mm < PLAYED_WITHIN_MM
+    carrier = morfax("inspect", heard, *BY_HAND, "--json").figures["track_1_reference"]
+    assert carrier["from_hz"] == pytest.approx(6000, abs=1)  # and not a peak of the hiss
+    assert carrier["lowest_level_db"] == pytest.approx(carrier["level_db"], abs=1)
 
 
 def test_a_motion_too_fast_for_the_tape_is_refused(morfax: Morfax, here: Path) -> None:

@@ -48,7 +48,8 @@ def test_the_file_is_made_added_to_undone(bracket: DrawingFile) -> None:
     with pytest.raises(WrongUse, match="no correction 2: there is 1"):
         CorrectJob(bracket, remove=(2,)).run()
     with pytest.raises(
-        WrongUse, match="--undo 2 takes back more corrections than there are: there is 1"
+        WrongUse,
+        match="--undo 2 takes back more corrections than there are: there is 1; give no",
     ):
         CorrectJob(bracket, undo=2).run()
 
@@ -101,7 +102,8 @@ def test_corrections_of_another_picture(bracket: DrawingFile) -> None:
     assert other.open(heard).corrected is None
     assert heard.said[0] == (
         "note",
-        "bracket.morfax.toml belongs to bracket.png, and this is bracket.tif, and is not used",
+        "bracket.morfax.toml belongs to bracket.png, and this is bracket.tif, and is not used; this "
+        "drawing's own go into a file with --corrections",
     )
     # 3. another picture under the old name
     shutil.copy(SAMPLES / "cam.png", bracket.file)

@@ -42,6 +42,25 @@ def test_each_setting_is_in_the_command_that_is_shown(page: TestClient, bench: B
     assert "--order 3,1" in command(page)
 
 
+def test_the_page_knows_the_lines_that_machine_and_cutter_are_for(
+    page: TestClient, bench: Bench
+) -> None:
+    """A laser takes all the ink, and a cutter the contours, though nobody has chosen: the page shows it."""
+
+    def usual() -> Any:
+        return page.get("/state").json()["state"]["usual_lines"]
+
+    assert usual() is None
+    does(page, bench, do="set", option="--machine", value="grbl-laser")
+    assert usual() == "all"
+    does(page, bench, do="set", option="--lines", value="1")  # the longest alone
+    assert usual() == "all" and "--lines 1" in command(page)
+    does(page, bench, do="set", options={"--cutter": "1mm", "--lines": None})
+    assert usual() == "contours"
+    does(page, bench, do="set", option="--start", value="26,30")
+    assert usual() is None
+
+
 @pytest.mark.parametrize(
     ("option", "value", "said"),
     [

@@ -202,3 +202,15 @@ def test_files_of_ones_own_are_chosen_dropped_and_refused_in_words(
     page.select_option("#field--machine", "")
     soon(lambda: "own/" not in command(page))
     page.wait_for_selector("#run-button:not([disabled])", timeout=RUN_MS)
+
+
+def test_a_press_below_a_field_counts_though_its_help_goes_with_the_focus(page: Any) -> None:
+    """The help of a field that was typed into went as the button below was pressed, which moved away."""
+    page.wait_for_selector("#lines li", timeout=RUN_MS)
+    page.focus("#field--width")
+    api.expect(page.locator("#field--width-help")).to_be_visible()
+    page.click("#which >> text=All ink")
+    shows(page, "--lines all")
+    page.click("#which >> text=Longest")
+    api.expect(page.locator("#command")).not_to_contain_text("--lines all", timeout=WAIT_MS)
+    api.expect(page.locator("#field--width-help")).to_be_hidden()

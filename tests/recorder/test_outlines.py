@@ -93,8 +93,10 @@ def test_a_dxf_s_spline_is_within_a_micrometre(tmp_path: Path) -> None:
 def test_a_dxf_is_in_its_own_unit(tmp_path: Path, unit: int, mm: float) -> None:
     file = dxf(tmp_path / "a.dxf", lambda d: d.modelspace().add_line((1, 2), (3, 4)), unit)
     assert read_outline(file).contours_mm[0] == pytest.approx(mm * np.array([[1, 2], [3, 4]]))
-    as_inches = read_outline(file, "in").contours_mm[0]
-    assert as_inches == pytest.approx(25.4 * np.array([[1, 2], [3, 4]]))
+    as_inches = read_outline(file, "in")
+    assert as_inches.contours_mm[0] == pytest.approx(25.4 * np.array([[1, 2], [3, 4]]))
+    said = [note for note in as_inches.notes if f"{25.4 / mm:.4g} times as large" in note]
+    assert len(said) == (mm != 25.4)
 
 
 @pytest.mark.parametrize("version", ["R12", "R2010"])

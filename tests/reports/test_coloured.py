@@ -10,6 +10,7 @@ from PIL import Image
 
 from morfax.motion.arrays import Array
 from morfax.motion.motion import Path
+from morfax.reports import overlay
 from morfax.reports.canvas import DPI
 from morfax.reports.coloured import SHADES, error_lines
 from morfax.reports.overlay import Picture, draw, shortened
@@ -101,3 +102,14 @@ def test_a_long_name_does_not_hide_what_the_colours_mean() -> None:
     assert len(short) == 80
     assert short.startswith("a_name_of_a_file") and short.endswith(said)
     assert shortened("a" + said, 80) == "a" + said
+
+
+def test_the_path_of_a_tool_that_runs_beside_the_line_is_named() -> None:
+    """What its edge touches is coloured; the thin line beside that was in no legend."""
+    places = np.column_stack([np.linspace(0, 90, 50), np.full(50, 30.0), np.full(50, -1.0)])
+    edge = places[:, :2] + [0, 0.1]
+    path = Path(np.arange(50.0), places)
+    beside = Picture("cut", path, None, None, edge, np.full(50, UM), path_called="middle")
+    main = overlay._laid_out(beside, overlay.view_of(beside), 0)[1]
+    assert "middle" in [mark.label for mark in main.legend]
+    assert not overlay._enlarged(beside, edge[0], 1).legend

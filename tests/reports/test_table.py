@@ -45,6 +45,11 @@ def test_text_tells_each_figure_in_the_unit_that_reads_best() -> None:
     assert lines["within tolerance"].endswith("yes")
 
 
+def test_a_feed_is_told_as_the_program_says_it() -> None:
+    assert as_text({"fastest_feed_mm_s": 10.0}).split("  ") == ["fastest feed", "600 mm/min"]
+    assert as_text({"largest_speed_mm_s": 10.0}).split("  ") == ["largest speed", "10 mm/s"]
+
+
 def test_dictionaries_inside_become_one_table() -> None:
     *_, head, played, ink = as_text(FIGURES).splitlines()
     assert head.split() == ["RMS", "largest"]

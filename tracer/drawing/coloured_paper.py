@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 SAMPLES = 200  # columns and rows of the pixels that are looked at, at the most
 # grey levels of 255: half; paper whose lightest channel is darker bears light lines, as a blueprint does
 LIGHT = 128
-EVEN = 0.75  # of its lightest channel: yellowed paper comes to 0.8
+EVEN = 0.75  # of its lightest channel, chosen: paper that is hardly yellowed stays as it is
 
 
 def levels_on_white(image: Image) -> list[int] | None:

@@ -114,7 +114,9 @@ def _unreadable(file: Path, error: Exception) -> Fault:
             f"{file} is too large for the memory of this computer; scan it at a lower resolution"
         )
     if isinstance(error, OSError) and error.errno is not None:
-        return FileFault(f"{file} cannot be read: {error.strerror}")
+        return FileFault(
+            f"cannot read {file}: {error.strerror}; check the file and who may read it"
+        )
     return DrawingFault(f"{file} is a damaged image ({error}); scan or save it again")
 
 

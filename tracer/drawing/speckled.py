@@ -75,8 +75,9 @@ def on_larger_pixels(picture: NDArray[Any], times: int) -> NDArray[Any]:
 def note(times: int, pitch_mm: float) -> str:
     """What the operator should know of a sheet whose pixels are taken so many times larger."""
     return (
-        f"the ink is full of specks and holes, as of chalk or crayon: {times} x {times} pixels are taken as "
-        f"one of {times * pitch_mm:.2g} mm, and what is finer than that is not followed"
+        f"the ink is full of specks and holes, as of chalk, crayon or a noisy scan: {times} x {times} pixels "
+        f"are taken as one of {times * pitch_mm:.2g} mm, and what is finer than that is not followed; of a "
+        "filled shape --edge follows the outline"
     )
 
 

@@ -111,7 +111,7 @@ class Follower(RunEnds):
         """What decides the way on from here, but positions, turns and the sheet."""
         view, guides = self.view, replace(self._ways_out.junctions, places_mm=[])
         seen = id(view.cells.darkness), view.level, view.width_mm, view.usual_mm
-        memory = self.junction, guides, self._tangles.strands, self._agreement, self._anchor
+        memory = self.junction, guides, self._tangles.state, self._agreement, self._anchor
         return self.carriage.mark(), seen, memory, self._at_tip, self._went_slowly
 
     def follow(

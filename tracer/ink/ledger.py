@@ -46,6 +46,7 @@ class Balance(NamedTuple):
     `letters_mm` of lettering were left out, `lettering_mm` followed. `areas`: solid areas and letters that
     were left out. `hatching`: families of strokes that are hatching, and were followed. `pale`: lines too
     pale to be ink. `single`: stretches of doubled ink (see `doubled`) along which only one stroke runs.
+    `dots`: specks that are broader than two lines, and no solid areas: place X, Y and mm across.
     """
 
     followed_mm: float
@@ -59,6 +60,7 @@ class Balance(NamedTuple):
     hatching: tuple[Hatching, ...] = ()
     pale: tuple[Pale, ...] = ()
     single: tuple[Patch, ...] = ()
+    dots: tuple[Patch, ...] = ()
     outlines_asked: bool = False  # round the solid areas
 
     @property
@@ -128,7 +130,21 @@ def balance(
         tuple(hatching(ways)),
         tuple(pale_lines(sheet.drawing)),
         _longest_first(single.values()),
+        _longest_first(_dots(sheet, specks & (left.solid_px == 0), thinned.usual_mm)),
     )
+
+
+def _dots(sheet: Sheet, specks: NDArray[np.bool_], usual_mm: float) -> Iterator[Patch]:
+    """The specks that are broader than two lines: their places, and how far across."""
+    rows, pitch_mm = sheet.drawing.darkness.shape[0], sheet.drawing.pitch_mm
+    for top, bottom, left, right in sheet.patches.boxes[specks].tolist():
+        across_mm = min(bottom - top, right - left) * pitch_mm
+        if HALF * across_mm > usual_mm:
+            x_mm, y_mm = (
+                HALF * (left + right) * pitch_mm,
+                (rows - HALF * (top + bottom)) * pitch_mm,
+            )
+            yield round(x_mm, 1), round(y_mm, 1), round(across_mm, 1)
 
 
 def _line_lengths_mm(sheet: Sheet, left: InkLeft, usual_mm: float) -> Array:

@@ -33,6 +33,7 @@ from morfax.motion.polyline import area_mm2, evenly, length_mm
 from morfax.tracer.sensing.leg import TURNS_BACK
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import bent_rule, beside_itself, pen
+from morfax.tracer.tangles.figured import Figured
 from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
@@ -195,35 +196,38 @@ def _drawn(ink: SeenInk, rule: Rule) -> Rule:
 def _settled_bay(ink: SeenInk, start: Rule) -> Rule | None:
     """The same of a bay; None also if the pen runs out and back along one line."""
     rule = _settled(ink, start)
+    if rule is not None and _changes_over(rule):
+        rule = _settled(ink, _turned_back(rule))
     return rule if rule is not None and _is_apart(rule, ink.width_mm) else None
+
+
+def _changes_over(rule: Rule) -> bool:
+    """Whether a rule's way is shorter by its corners in the other order: within the ink of both sides of a
+    slender bay it changes over from one to the other, which no ink shows.
+    """
+    return _sides_mm(_turned_back(rule)) < _sides_mm(rule)
+
+
+def _turned_back(rule: Rule) -> Rule:
+    """A rule by its corners in the other order."""
+    return rule._replace(corners_mm=rule.corners_mm[::-1], rounded=rule.rounded[::-1])
+
+
+def _sides_mm(rule: Rule) -> float:
+    """How long the sides of a rule are from corner to corner."""
+    return length_mm(np.vstack([rule.first_mm, rule.corners_mm, rule.last_mm]))
 
 
 def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     """A rule moved to where the pen leaves the ink that is there; None if the pen becomes another, or comes
     off the ink.
     """
-    size, is_rounded = start.corners_mm.size, bool(start.rounded.any())
-
-    def rule_of(figures: Array) -> Rule:
-        radius_mm = float(figures[size]) if is_rounded else 0.0
-        corners_mm, half_mm = figures[:size].reshape(-1, 2), float(figures[-1])
-        return start._replace(corners_mm=corners_mm, radius_mm=radius_mm, half_mm=half_mm)
-
-    seen, drawn = ink.for_kernel(), np.empty(len(ink.darkness))
-    ends_and_rounded = np.array([start.first_mm, start.last_mm]), start.rounded
-
-    def wrong(figures: Array) -> Array:
-        bent_rule.wrong(seen, ends_and_rounded, figures, drawn)
-        return drawn.copy()
-
-    def changes(figures: Array) -> Array:
-        out = np.empty((len(ink.darkness), len(figures)))
-        bent_rule.changes(seen, ends_and_rounded, figures.copy(), out)
-        return out
-
-    radius = [start.radius_mm] if is_rounded else []
+    size, radius = start.corners_mm.size, [start.radius_mm] if start.rounded.any() else []
     figures = np.r_[start.corners_mm.ravel(), radius, start.half_mm]
-    rule = rule_of(fitted(wrong, figures, STEPS * len(figures), changes))
+    shape = Figured.rule(np.array([start.first_mm, start.last_mm]), start.rounded)
+    found = fitted(shape, ink.for_kernel(), figures, STEPS * len(figures))
+    corners_mm, radius_mm = found[:size].reshape(-1, 2), float(found[size]) if radius else 0.0
+    rule = start._replace(corners_mm=corners_mm, radius_mm=radius_mm, half_mm=float(found[-1]))
     least, most = LIKE_PEN
     is_pen = least * ink.half_mm < rule.half_mm < most * ink.half_mm
     return _drawn(ink, rule) if is_pen and ink.holds(rule.way) else None

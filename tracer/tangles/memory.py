@@ -56,7 +56,7 @@ class Tangles:
         return copied
 
     @property
-    def strands(self) -> tuple[list[Redrawing], float]:
+    def state(self) -> tuple[list[Redrawing], float]:
         """The redrawings of the tangles so far, and the lens's softness, mm: what decides by which strand a
         line leads through again, and by which rule.
         """

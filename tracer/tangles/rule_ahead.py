@@ -6,7 +6,7 @@
 
 The wave shows that the ink is one line, which neither ends nor forks. So a folding rule is laid along its way
 to a place at which the ink is as broad as the line, and the head runs over the corners of that, to the middle
-of the side before the last: the last ends where the ink was cut, and not where it turns.
+of the longest side; where there is another it is not the last, which ends where the ink was cut.
 
 Signals: a view and the leg by which the head comes in; the way on, or None, out.
 
@@ -39,8 +39,8 @@ from morfax.tracer.tangles.tangle import CLEAN_FRONTS, LEAST_BROAD, MOST_BROAD, 
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
 EVERY_MM = 0.1  # of the way behind there is a place; by trial
-# for each width of its length, as misfit: a right rule leaves less. Of teeth at 200 to 600 dpi right ones
-# left 0.001 to 0.012, and of those with a corner too few nearly all 0.03 and more
+# for each width of its length, as misfit: a right rule leaves less; by trial on teeth at 200 to 600 dpi, of
+# which those that were looked at left 0.001 to 0.012
 LEFT = 0.014
 CLEAN = 2  # fronts one after the other as broad as the line: there a rule may end; by trial
 

@@ -251,8 +251,9 @@ def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan, slack: float) -> bool:
     `slack`: what a tick may leave unexplained beyond that.
     """
     beside_mm = aside_mm(way.own, plan.stretches)
-    on_paper = sketch.view.darkness_along(np.vstack(plan.stretches)) < sketch.view.level
-    if beside_mm >= longest_mm(sketch.view) or on_paper.any():
+    if beside_mm >= longest_mm(sketch.view):
+        return False
+    if (sketch.view.darkness_along(np.vstack(plan.stretches)) < sketch.view.level).any():
         return False
     if way.misfit > CLEAR or _is_scribble(way, beside_mm, _width(sketch)):
         return True

@@ -249,6 +249,14 @@ def test_a_silent_track_is_a_fault_at_once(tmp_path: Path) -> None:
         next(iter(by_hand(tape(tmp_path / "t.wav", frames))))
 
 
+def test_a_tape_whose_start_is_erased_on_all_tracks_is_a_fault(tmp_path: Path) -> None:
+    """It looks like one that a sound program has recorded, but for what moves where it begins."""
+    frames = tracks(swing, SECONDS)
+    frames[: RATE_HZ // 2] = 0
+    with pytest.raises(TapeFault, match=r"starts while \w moves"):
+        next(iter(by_hand(tape(tmp_path / "t.wav", frames))))
+
+
 def test_a_tape_of_a_moment_is_a_fault(tmp_path: Path) -> None:
     with pytest.raises(TapeFault, match="ends after 40 frames; it must be longer"):
         join(by_hand(tape(tmp_path / "t.wav", tracks(swing, 0.5)[:40])))

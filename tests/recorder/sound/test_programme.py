@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
+import soundfile
 
 from morfax.recorder.sound.programme import (
     MARGIN,
     SETTLING,
+    Programme,
     between_silences,
     programme_within,
+    without_silence,
 )
+from morfax.recorder.sound.source import FileSource
 
 RATE_HZ = 48_000
 WINDOW = 960  # 20 ms
@@ -61,3 +66,37 @@ def test_what_comes_in_live_is_the_same_programme(size: int) -> None:
     frames = recording(50, 100, 40)
     heard = np.vstack(list(between_silences(blocks(frames, size), RATE_HZ, 9.0, "it")))
     assert len(heard) == (100 - SETTLING - MARGIN) * WINDOW
+
+
+def opened(file: Path, frames: np.ndarray) -> FileSource:
+    """The recording in a sound file."""
+    soundfile.write(file, frames, RATE_HZ, subtype="FLOAT")
+    return FileSource(file)
+
+
+def test_a_file_is_read_from_behind_the_silence_to_before_it(tmp_path: Path) -> None:
+    file = opened(tmp_path / "a.wav", recording(50, 100, 40))
+    heard = without_silence(file)
+    assert heard.frames == (100 - SETTLING - MARGIN) * WINDOW
+    read = np.concatenate(list(heard.stored_blocks(7_001, 480)))
+    assert read.shape == (heard.frames - 480, 2) and (read > 0.19).all()
+    heard.close()
+
+
+@pytest.mark.parametrize("windows", [(0, 100), (100,), (50, SETTLING, 50), (0, 3)])
+def test_a_file_without_a_programme_between_silences_stays_as_it_is(
+    tmp_path: Path, windows: tuple[int, ...]
+) -> None:
+    file = opened(tmp_path / "a.wav", recording(*windows))
+    assert without_silence(file) is file
+    file.close()
+
+
+def test_a_track_that_is_silent_alone_is_damage_and_stays(tmp_path: Path) -> None:
+    frames = recording(0, 100, 40)
+    frames[: 30 * WINDOW, 0] = 0
+    heard = without_silence(opened(tmp_path / "a.wav", frames))
+    assert isinstance(heard, Programme)
+    assert heard.frames == (100 - MARGIN) * WINDOW
+    assert len(heard.notes) == 1 and "before" not in heard.notes[0]
+    heard.close()

@@ -30,9 +30,11 @@ def test_what_is_given_by_hand_goes_before_the_text(tmp_path: Path) -> None:
 
 def test_a_tape_without_text_needs_two_figures(tmp_path: Path) -> None:
     soundfile.write(tmp_path / "a.wav", np.zeros((100, 5)), 44_100)
-    with pytest.raises(TapeFault, match="give --reference-frequency 6kHz --cycles-per-mm 20"):
+    with pytest.raises(
+        TapeFault, match="--label, or --reference-frequency 6kHz --cycles-per-mm 20"
+    ):
         Tape.open(tmp_path / "a.wav")
-    with pytest.raises(TapeFault, match="give --cycles-per-mm 20"):
+    with pytest.raises(TapeFault, match="or --cycles-per-mm 20"):
         Tape.open(tmp_path / "a.wav", reference_hz=6000)
     with Tape.open(
         tmp_path / "a.wav", reference_hz=6000, cycles_per_mm=20, start_mm=(1, 2)

@@ -151,7 +151,7 @@ def test_what_is_no_image_is_told(tmp_path: Path, grey: Grey) -> None:
 def test_a_file_that_is_not_there_or_cannot_be_read_is_told(tmp_path: Path) -> None:
     with pytest.raises(FileFault, match="does not exist"):
         Drawing.open(tmp_path / "missing.png")
-    with pytest.raises(FileFault, match="cannot be read"):
+    with pytest.raises(FileFault, match="cannot read"):
         Drawing.open(tmp_path)
 
 

@@ -178,6 +178,15 @@ def test_what_cannot_be_followed_is_in_the_balance() -> None:
     )  # by the area of the ink
 
 
+def test_a_dot_broader_than_two_lines_is_told_and_a_full_stop_is_not() -> None:
+    """No solid area yet: the pupil of an eye on a colouring page went without a word."""
+    told = trace_ink(inked(SQUARE, specks=[dot((25, 20), 1.4), dot((20, 20), 0.7)], seed=1))
+    assert told.ink is not None and not told.ink.solids
+    ((x, y, across_mm),) = told.ink.dots
+    assert (x, y) == pytest.approx((25, 20), abs=0.1)
+    assert across_mm == pytest.approx(1.4, abs=0.2)
+
+
 def test_three_lines_through_one_place_keep_their_partners() -> None:
     lines = [
         polyline((5, 20), (45, 20)),

@@ -46,6 +46,14 @@ def test_a_bay_is_laid_true_round_its_bar_of_ink(corners: Array, noise: float) -
     assert rule is not None and off_mm(rule, corners) < 30 * UM
 
 
+def test_a_rule_whose_sides_change_places_within_their_ink_is_laid_without_that() -> None:
+    """Within the ink of both sides of a slender tip a pen may cross over, which no ink shows."""
+    tip = np.array([(3.3, 6), (3.5, 1), (3.7, 6)])
+    changed = folding_rule.sharp(FIRST, LAST, tip[::-1], HALF_MM)
+    rule = explained(ink_of(tip), [changed])
+    assert rule is not None and off_mm(rule, tip) < 30 * UM
+
+
 @pytest.mark.parametrize("corners", [SQUARE, ROUND], ids=["square", "round"])
 def test_a_bay_whose_end_the_head_cut_short_is_laid_true(corners: Array) -> None:
     cut = np.array([(3.1, 6), (3.15, 3.6), (3.5, 3.5), (3.85, 3.6), (3.9, 6)])

@@ -104,7 +104,7 @@ def unexplained(setup: Setup, own: OwnInk) -> tuple[Unexplained, ...]:
 
 
 def _of_closed(setup: Setup, lines: Sequence[Line]) -> list[Unexplained]:
-    """What those of some lines that should leave none of their ink leave, but for stretches beside it."""
+    """What those of some lines that must account for all their ink leave, but for stretches beside it."""
     sheet, gap_mm = setup.sheet, setup.settings.gap_mm
     closed = [line for line in lines if line.ending == "closed"]
     found = [*ink_beside(sheet, lines), *bare_ways(sheet, closed, gap_mm)]
@@ -132,8 +132,8 @@ def is_about(place: Unexplained, others: Sequence[Unexplained], lines: Sequence[
     return any(math.dist(place.place_mm, other.place_mm) < about_mm for other in others)
 
 
-def _leave_none(sheet: Sheet, lines: Sequence[Line]) -> list[Line]:
-    """Those of some lines that leave none of their ink: that came round, or ended where ink goes on."""
+def _accountable(sheet: Sheet, lines: Sequence[Line]) -> list[Line]:
+    """Those of some lines that must account for all their ink: that came round, or ended where it goes on."""
     return [
         line
         for line in lines
@@ -159,8 +159,8 @@ def _ends_in_ink(sheet: Sheet, line: Line) -> bool:
 
 
 def ink_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Unexplained]:
-    """Ink of the patches of those of some lines that leave none of theirs, beside all ways."""
-    patches, whole = sheet.patches, _leave_none(sheet, lines)
+    """Ink, beside all ways, of the patches of those of some lines that must account for all of theirs."""
+    patches, whole = sheet.patches, _accountable(sheet, lines)
     if not whole:
         return
     # 1. the patches on which they run, and how wide the widest of them is

@@ -24,14 +24,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly, length_mm, lengths_mm, nearest_mm
+from morfax.motion.polyline import length_mm, lengths_mm, nearest_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import (
-    OFF,
     REACH,
     Clean,
     UsualPen,
@@ -41,13 +40,12 @@ from morfax.tracer.program.against_ink.off_ink import (
     without_lone_pixels,
     wrong_about,
 )
-from morfax.tracer.program.laid.bay_run import Bay, apart, laid
+from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
     LEGS,
     OF_LOOP,
     STILL_LEFT,
-    along_mm,
     is_bare,
     is_clear,
     rest_of,
@@ -55,12 +53,14 @@ from morfax.tracer.program.laid.line_parts import (
 from morfax.tracer.program.laid.spline_fit import (
     CORNER_RAD,
     MAYBE_RAD,
+    PRICE,
     about_corners,
     corners_of,
     explained,
     left_by,
     turns_rad,
 )
+from morfax.tracer.program.laid.way_ink import BayInk, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -84,7 +84,7 @@ def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:
         # lines of about one width are one pen's
         width_mm = next(iter(ways.values())).line.width_mm
         like = {k for k, way in ways.items() if abs(way.line.width_mm / width_mm - 1) < AS_WIDE}
-        clean = [Clean(ways[k].places, np.flatnonzero(ways[k].by_cell)) for k in like]
+        clean = [Clean(ways[k].way, np.flatnonzero(ways[k].by_cell)) for k in like]
         felt = felt_at(setup.sheet.drawing, clean, width_mm)
         for k in like:
             way = ways.pop(k)
@@ -94,28 +94,8 @@ def bent(setup: Setup, lines: Sequence[Line]) -> list[Line]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Way:
-    """One of some lines, its way a step from place to place, and the lines beside it."""
-
-    setup: Setup
-    line: Line
-    beside: BoxedLines
-
-    @cached_property
-    def step_mm(self) -> float:
-        """From place to place."""
-        return STEP_WIDTHS * self.line.width_mm
-
-    @cached_property
-    def is_closed(self) -> bool:
-        """Whether the way comes round."""
-        return self.line.ending == "closed"
-
-    @cached_property
-    def places(self) -> Array:
-        """Places (n, 2) mm of the way."""
-        way = self.line.loop_mm if self.is_closed else self.line.places_mm
-        return evenly(way, self.step_mm)
+class _Way(WayInk):
+    """The way of one of some lines, and the ink about it."""
 
     @cached_property
     def by_cell(self) -> NDArray[np.bool_]:
@@ -123,24 +103,24 @@ class _Way:
         line = self.line
         _, leaders = line.led.thinned(line.xy_mm, THINNED)
         lengths = lengths_mm(line.places_mm)
-        at = np.searchsorted(lengths, np.arange(len(self.places)) * self.step_mm)
+        at = np.searchsorted(lengths, np.arange(len(self.way)) * self.step_mm)
         return np.asarray(leaders[np.minimum(at, len(leaders) - 1)] == CELL)
 
     @cached_property
     def turning(self) -> NDArray[np.bool_]:
         """Whether the way turns at each place."""
-        count, over = len(self.places), round(TURNS_OVER / STEP_WIDTHS)
+        count, over = len(self.way), round(TURNS_OVER / STEP_WIDTHS)
         at = np.arange(-over, count + over)
-        way = self.places[at % count if self.is_closed else np.clip(at, 0, count - 1)]
+        way = self.way[at % count if self.is_closed else np.clip(at, 0, count - 1)]
         return np.asarray(turns_rad(way, TURNS_OVER)[over:-over] > MAYBE_RAD)
 
     @cached_property
     def corners(self) -> list[int]:
         """The places at which it turns sharply; of a closed way those a round before and behind, too."""
         if not self.is_closed:
-            return corners_of(turns_rad(self.places))
-        count, over = len(self.places), round(LEGS[0] / STEP_WIDTHS)
-        on = self.places[np.arange(-over, count + over) % count]
+            return corners_of(turns_rad(self.way))
+        count, over = len(self.way), round(LEGS[0] / STEP_WIDTHS)
+        on = self.way[np.arange(-over, count + over) % count]
         found = corners_of(turns_rad(on)[over:-over])
         return [at + k * count for at in found for k in (-1, 0, 1)]
 
@@ -155,22 +135,12 @@ class _Way:
     def bent(self, felt: UsualPen) -> Line:
         """The line as it is, or along the splines that explain its ink better."""
         bays = [bay for off in self._off(felt) if (bay := self._bay(*off, felt)) is not None]
-        bays = apart(bays, self.round_mm)
-        return laid(self.setup, self.line, bays, self.round_mm) if bays else self.line
-
-    @cached_property
-    def round_mm(self) -> float:
-        """How long the way is: no whole number of steps."""
-        return length_mm(self.line.places_mm)
-
-    def _at_mm(self, place: int) -> float:
-        """How far along the way a place is."""
-        return along_mm(place, len(self.places), self.step_mm, self.round_mm)
+        return self.along(bays)
 
     def _off(self, felt: UsualPen) -> Iterator[tuple[int, int]]:
         """The stretches that are off their ink, from which place to which."""
         leg = round(LEGS[0] / STEP_WIDTHS)
-        off = np.zeros(len(self.places), bool)
+        off = np.zeros(len(self.way), bool)
         for first, last in _runs(self._between_ends(~self.by_cell), leg, self.is_closed):
             if not self.turning[np.arange(first, last + 1) % len(off)].any():
                 continue  # straight on over a crossing, it is on its ink
@@ -188,12 +158,12 @@ class _Way:
 
     def _seen(self, first: int, last: int, felt: UsualPen) -> tuple[SeenInk, Array]:
         """The ink about a stretch, as the line's pen left it, and the stretch."""
-        way, drawing = self.places, self.setup.sheet.drawing
+        way, drawing = self.way, self.setup.sheet.drawing
         own = way[np.arange(first, last + 1) % len(way)]
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
         ways = [(rest, 0.0) for rest in rest_of(way, first, last, self.is_closed)]
-        for line in self.beside.reaching(low, high, self.line):
+        for line in self.lines.reaching(low, high, self.line):
             ways.append((line.places_mm, 0.5 * (line.width_mm - self.line.width_mm)))
         near = [(part, wider) for way, wider in ways for part in _within(way, low, high)]
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
@@ -201,7 +171,7 @@ class _Way:
 
     def _bay(self, first: int, last: int, felt: UsualPen) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""
-        count, leg = len(self.places), round(LEGS[0] / STEP_WIDTHS)
+        count, leg = len(self.way), round(LEGS[0] / STEP_WIDTHS)
         first = _off_corners(first - leg, self.corners, -1)
         last = _off_corners(last + leg, self.corners, 1)
         if last - first > min(2 * leg + LONGEST / STEP_WIDTHS, OF_LOOP * count):
@@ -221,10 +191,10 @@ class _Way:
         longer_mm = length_mm(spline.way) - length_mm(own)
         if longer_mm > LONGER * width_mm and turns_rad(own, TURNS_OVER).max() < CORNER_RAD:
             return None
-        if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
+        if gain < PRICE or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
             return None
         rule = LaidWay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
-        return Bay(self._at_mm(first), self._at_mm(last), rule, gain)
+        return self.as_bay(BayInk(first, last, own, ink), rule, gain)
 
 
 def _runs(chosen: NDArray[np.bool_], apart: int, is_closed: bool) -> Iterator[tuple[int, int]]:

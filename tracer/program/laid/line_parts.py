@@ -66,14 +66,6 @@ def rest_of(way: Array, first: int, last: int, is_closed: bool) -> tuple[Array, 
     return way[: first + 1], way[last:]
 
 
-def along_mm(place: int, count: int, step_mm: float, round_mm: float) -> float:
-    """How far along a way of so many places, a step apart, one of them is. One below 0, or beyond the last,
-    is another round's; a round is no whole number of steps.
-    """
-    rounds, at = divmod(place, count)
-    return rounds * round_mm + at * step_mm
-
-
 def is_beside(own: Array, line: Line, lines: BoxedLines) -> bool:
     """Whether another of some lines comes so near to a stretch (n, 2) mm of one that they share ink."""
     near_mm = BESIDE * line.width_mm

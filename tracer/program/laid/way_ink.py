@@ -24,7 +24,7 @@ from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH, along_mm, rest_of
+from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH, rest_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import folding_rule, pen
@@ -101,11 +101,14 @@ class WayInk:
 
     def as_bay(self, seen: BayInk, rule: Rule | LaidWay, gain: float) -> Bay:
         """What is laid in place of a stretch."""
-        first_mm, last_mm = (
-            along_mm(place, len(self.way), self.step_mm, self.round_mm)
-            for place in (seen.first, seen.last)
-        )
-        return Bay(first_mm, last_mm, rule, gain)
+        return Bay(self._along_mm(seen.first), self._along_mm(seen.last), rule, gain)
+
+    def _along_mm(self, place: int) -> float:
+        """How far along the way one of its places is. One below 0, or beyond the last, is another round's; a
+        round is no whole number of steps.
+        """
+        rounds, at = divmod(place, len(self.way))
+        return rounds * self.round_mm + at * self.step_mm
 
     def along(self, bays: list[Bay]) -> Line:
         """The line with the head run along those of some bays that lie apart."""
