@@ -23,13 +23,13 @@ def of_unexplained(trace: Trace) -> Iterator[str]:
 
 
 def _said(kind: Kind, places: Sequence[Unexplained], line: str) -> str:
-    """What is said of the places of a kind on a line; the first of them is the worst."""
+    """What is said of the places of a kind on a line, with the worst of them, which come first."""
     (one, several), text = SAID[kind]
-    worst = places[0]
-    (x, y), mm = worst[:2]
+    worst, further = places[0], places[1:3]
     many = f"1 {one}" if len(places) == 1 else f"{len(places)} {several}"
-    at = f"{x:.1f},{y:.1f} mm"
-    return text.format(many=many, at=at, mm=mm, line=line, dpi=worst.wants_dpi)
+    at, *then = (f"{x:.1f},{y:.1f}" for (x, y), *_ in (worst, *further))
+    at += f" mm (then {' and '.join(then)} mm)" if then else " mm"
+    return text.format(many=many, at=at, mm=worst.length_mm, line=line, dpi=worst.wants_dpi)
 
 
 # of each kind: one and several of its places, and the text, in which {mm} is what the worst place measures

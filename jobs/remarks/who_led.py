@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from morfax.tracer.following.line import Line
     from morfax.tracer.program.program import Trace
 
-# of the way: below that the operator is told; the figure that was asked for
+# of the way outside of corners, junctions and tangles, which memory runs on any drawing: below that the
+# operator is told. Of 25 fetched sheets those followed well have 0.72 and more, coarse ones 0.25 to 0.54
 LEAST_CELL_SHARE = 0.6
 # the `LEADERS` as a reader of the figures understands them
 IN_WORDS = ("its_own_cell", "places_felt_ahead", "memory_of_corners", "redrawn_tangles")
@@ -82,11 +83,12 @@ class WhoLed:
 
     def remarks(self) -> Iterator[str]:
         """A remark if the cell led less than it should."""
-        if self.cell_share < LEAST_CELL_SHARE:
+        share = self.cell_on_lines_share
+        if share < LEAST_CELL_SHARE:
             yield (
-                f"the swinging cell led the head only {100 * self.cell_share:.0f} % of the way, places felt"
-                " ahead and memory led the rest: --picture shows where; check the path there, or scan at"
-                " a higher resolution"
+                f"the swinging cell led the head only {100 * share:.0f} % of the way between corners and"
+                " crossings, places felt ahead led the rest: --picture shows where; check the path there, or"
+                " scan at a higher resolution"
             )
 
 

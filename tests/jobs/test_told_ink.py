@@ -11,10 +11,12 @@ import pytest
 
 from morfax.jobs.listener import Silent
 from morfax.jobs.remarks.on_ink import of_ink
+from morfax.jobs.remarks.on_unexplained import of_unexplained
 from morfax.jobs.settings.line_settings import LineSettings
 from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.tracing.tracing import Tracing
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.lines.selection import Others
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_ink import trace_ink
@@ -214,3 +216,14 @@ def test_a_bar_across_a_contour_is_told_and_the_advice_follows_it() -> None:
     assert float(told.split()[1]) == pytest.approx(40.0, rel=0.1)
     said, endings = said_of(drawing, LineSettings(lines="all"))
     assert sorted(endings) == ["closed", "ended"] and said == []
+
+
+@pytest.mark.parametrize(
+    ("count", "named"),
+    [(1, "at 1.0,5.0 mm:"), (4, "at 1.0,5.0 mm (then 2.0,5.0 and 3.0,5.0 mm):")],
+)
+def test_of_many_places_the_worst_three_are_named(count: int, named: str) -> None:
+    found = trace_ink(inked(polyline((4, 14), (24, 14)), seed=1))
+    places = tuple(Unexplained((k, 5.0), 9.0 - k, "beside") for k in range(1, count + 1))
+    (said,) = of_unexplained(replace(found, unexplained=places))
+    assert f"{count} place" in said and "the longest 8.0 mm" in said and named in said

@@ -155,8 +155,9 @@ def _lines(
     are_lines &= broad_px < BROAD * usual_px + BROAD_PX
     are_lines[0] = False
     dark = _usual(darkness[rows, columns], patch, count)
-    are_lines &= dark < FULL
     level = levels[boxes[:, 1] // PART_PX, boxes[:, 0] // PART_PX]
+    # paper beside ink is dark behind the spot alone
+    are_lines &= (level < dark) & (dark < FULL)
     are_lines &= (long_px >= LEAST_STROKE_MM / pitch_mm) | (dark > TWICE * level)
     if not are_lines.any():
         return None

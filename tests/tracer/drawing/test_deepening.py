@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.polyline import nearest_mm
-from morfax.tracer.drawing.deepening import ABOVE_NOISE, LEAST
+from morfax.tracer.drawing.deepening import ABOVE_NOISE, LEAST, _lines
 from morfax.tracer.drawing.drawing import Drawing, Reading
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
@@ -168,3 +168,15 @@ def test_the_shade_of_a_filled_shape_is_no_pale_line() -> None:
     plain = Drawing.of(scan, Scale())
     assert plain.shapes is not None and plain.shapes.any()
     assert np.array_equal(np.asarray(drawing.darkness), np.asarray(plain.darkness))
+
+
+@pytest.mark.parametrize(("dark", "is_line"), [(0.0, False), (0.3, True)])
+def test_paper_between_inks_is_no_pale_line(dark: float, is_line: bool) -> None:
+    """Behind the spot a row of it between a beam and a staff is as dark as one; its darkness, 0, was divided
+    by.
+    """
+    strip = np.zeros((60, 60), np.uint8)
+    strip[30, 10:45] = 1
+    levels = np.full((1, 1), LEAST, np.float32)
+    found = _lines(strip, np.full(strip.shape, dark, np.float32), 2.0, levels, 0.17)
+    assert (found is not None) == is_line
