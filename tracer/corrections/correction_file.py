@@ -86,9 +86,9 @@ def without(text: str, numbers: tuple[int, ...]) -> str:
     return "".join(left).rstrip("\n") + "\n"
 
 
-def write_text(file: FilePath, text: str, name: str | None = None) -> Corrections:
+def write_text(file: FilePath, text: str) -> Corrections:
     """Check a text, and write it whole or not at all; what it holds. Raises CardFault and FileFault."""
-    held = parse_corrections(text, name or file.name)
+    held = parse_corrections(text, file.name)
     if len(text.encode()) > LARGEST_BYTES:
         raise FileFault(
             f"cannot write {file}: it would have more than {LARGEST_BYTES} bytes; take corrections away"

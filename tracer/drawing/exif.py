@@ -30,9 +30,7 @@ def camera(exif: Exif) -> Camera | None:
     if not any(tag in tags for tag in (EXPOSURE_S, APERTURE, FOCAL_MM)):
         return None
     make, model = _text(exif.get(MAKE)), _text(exif.get(MODEL))
-    return Camera(
-        make, model, _above_zero(tags.get(FOCAL_MM)), _above_zero(tags.get(FOCAL_35MM))
-    )
+    return Camera(make, model, _above_zero(tags.get(FOCAL_35MM)))
 
 
 def resolution_dpi(exif: Exif) -> tuple[float, float] | None:

@@ -162,7 +162,7 @@ def _kept(grey: Any, paper: Paper, marked: NDArray[np.int32]) -> Tiles:
 
 def softened(tiles: Tiles, spot_px: float) -> Iterator[tuple[int, int, Any]]:
     """The bands with ink behind a spot (standard deviation): first row, first column, and the picture."""
-    for top, bottom, _, columns in tiles.bands():
+    for top, bottom, columns in tiles.bands():
         yield top, columns.start, soft(tiles, spot_px, (top, bottom), columns)
 
 
@@ -188,7 +188,7 @@ def _ink_contrast(tiles: Tiles, least: float, pitch_mm: float) -> float:
     strokes = strokes_of(patches, least, pitch_mm)
     every = max(1, int(patches.areas[strokes].sum()) // FEW_PX)
     inked = []
-    for top, bottom, _, columns in tiles.bands():
+    for top, bottom, columns in tiles.bands():
         mask = patches.painted(strokes, top, bottom, columns.start, columns.stop).view(bool)
         inked.append(tiles[top:bottom, columns][mask][::every])
     return float(np.percentile(np.concatenate(inked), DARKER))

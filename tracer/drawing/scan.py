@@ -46,8 +46,7 @@ class Camera(NamedTuple):
 
     make: str | None = None
     model: str | None = None
-    focal_mm: float | None = None  # focal length of the lens
-    focal_35mm: float | None = None  # the same for a frame of 36 x 24 mm
+    focal_35mm: float | None = None  # focal length of the lens for a frame of 36 x 24 mm
 
 
 @dataclass(frozen=True, slots=True)

@@ -107,19 +107,16 @@ class Tiles:
         _shrunk(self.number, self.kept, self.unit / by**2, by, out)
         return out
 
-    def bands(
-        self, height: int = BAND_PX, halo: int = 0
-    ) -> Iterator[tuple[int, int, slice, slice]]:
-        """First row and last row + 1 of each band that has ink, its rows and columns with a halo."""
+    def bands(self) -> Iterator[tuple[int, int, slice]]:
+        """First row and last row + 1 of each band that has ink, and the columns with ink."""
         rows, columns = self.shape
-        for top in range(0, rows, height):
-            bottom = min(rows, top + height)
-            inner = slice(max(0, top - halo), min(rows, bottom + halo))
-            inked = self.number[inner.start >> SHIFT : -(-inner.stop >> SHIFT)] != PAPER
+        for top in range(0, rows, BAND_PX):
+            bottom = min(rows, top + BAND_PX)
+            inked = self.number[top >> SHIFT : -(-bottom >> SHIFT)] != PAPER
             found = np.flatnonzero(inked.any(axis=0))
             if len(found):
                 left, right = int(found[0]) * TILE_PX, int(found[-1] + 1) * TILE_PX
-                yield top, bottom, inner, slice(max(0, left - halo), min(columns, right + halo))
+                yield top, bottom, slice(left, min(columns, right))
 
 
 Kept = NDArray[np.float32] | Tiles  # the darkness of a sheet, large or not

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -48,6 +48,9 @@ from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, TIP_RAD
 from morfax.tracer.sensing.leg import STRAIGHT, Leg, leg_of, turn
 from morfax.tracer.sensing.view import View
+
+if TYPE_CHECKING:
+    from morfax.tracer.tangles.likeness import Patch
 
 # Chosen by trial on racks of teeth and on rounds, drawn with known truth.
 PLACES = 8  # of a leg, which bends little
@@ -205,9 +208,7 @@ class _Two(NamedTuple):
 
 def _better(planner: Planner, sides: _Sides, round_mm: Array, over: _Over) -> _Two | None:
     """The two corners in place of a way (n, 2) round; None if they do not go before it."""
-    from morfax.tracer.tangles.least_squares import fitted
     from morfax.tracer.tangles.likeness import Patch, Pen
-    from morfax.tracer.tangles.seen_ink import STEPS
 
     # 1. the ink about the round
     view, pen = planner.view, Pen.of(planner.view, sides.incoming)
@@ -230,7 +231,7 @@ def _better(planner: Planner, sides: _Sides, round_mm: Array, over: _Over) -> _T
         return None
     # 2. the side that leaves least unexplained
     likest = min(sides.along_mm, key=lambda it: patch.misfit(sides.way(it, long_mm)))
-    along_mm = fitted(lambda it: patch.wrong(sides.way(it, long_mm)), likest, STEPS)
+    along_mm = _settled(sides, patch, likest, long_mm)
     room_mm = along_mm[0] + ahead_mm(planner.stands[0], sides.incoming)
     if not (room_mm > 0 and np.abs(along_mm - likest).max() < sides.room_mm):
         return None
@@ -241,6 +242,25 @@ def _better(planner: Planner, sides: _Sides, round_mm: Array, over: _Over) -> _T
     gain = by_round - left
     explains = gain > over.gain * usual and left < over.left * usual
     return _Two(sides, along_mm, gain) if explains else None
+
+
+def _settled(sides: _Sides, patch: Patch, along_mm: Array, long_mm: float) -> Array:
+    """Where the legs end, moved to where a pen along the side between leaves least of a patch's ink."""
+    from morfax.tracer.tangles.figured import Figured
+    from morfax.tracer.tangles.least_squares import fitted
+    from morfax.tracer.tangles.seen_ink import STEPS
+
+    for _ in range(2):  # straight on, and once more: a leg may bend
+        way = sides.way(along_mm, long_mm)
+        moved = (
+            sides.way(along_mm + by, long_mm) - sides.way(along_mm - by, long_mm)
+            for by in np.eye(2)
+        )
+        shape = Figured.moved(
+            way, 0.5 * np.stack(list(moved), axis=1), np.zeros(len(way), bool)
+        )
+        along_mm = along_mm + fitted(shape, patch.for_kernel(), np.zeros(2), STEPS)
+    return along_mm
 
 
 def _plan(planner: Planner, two: _Two) -> Plan:

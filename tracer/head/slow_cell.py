@@ -23,7 +23,6 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.contour import distances_mm
 from morfax.motion.median import OUTLIERS, ROBUST, median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import length_mm, lengths_mm
@@ -231,12 +230,9 @@ def heads_along(tried: Tried, way: Array) -> bool:
 
 
 def keeps_to(positions: Array, stretch: FeltStretch) -> bool:
-    """Whether positions (n, 2) mm stay nearer to the way of a stretch than it allows."""
-    if not len(positions):
-        return False
-    if _is_beside(positions, np.ascontiguousarray(stretch.way), float(stretch.within_mm)):
-        return True
-    return float(distances_mm(positions[::CHECKED], [stretch.way]).max()) < stretch.within_mm
+    """Whether positions (n, 2) mm, which go along a way, stay nearer to it than its stretch allows."""
+    way = np.ascontiguousarray(stretch.way)
+    return len(positions) > 0 and bool(_is_beside(positions, way, float(stretch.within_mm)))
 
 
 @njit(cache=True, _nrt=False)

@@ -118,6 +118,13 @@ class FeltSheet:
         doubled = self.doubled
         return doubled.is_sure and self.measured[number].width_mm > BROADER * doubled.pen_mm
 
+    @property
+    def shared_mm(self) -> Array:
+        """Places (n, 2) along the stretches that are known to be two lines'."""
+        doubled = self.doubled.stations if self.doubled.is_sure else ()
+        some = (self.felt[n].places_mm for n in {*doubled, *self.together, *self.beside})
+        return np.vstack([np.empty((0, 2)), *some])
+
     def without_cells(self) -> FeltSheet:
         """The stretches as they were felt, without what the cells saw: that is as large as the sheet."""
         felt = [replace(run, view=run.view.without_cells()) for run in self.felt]

@@ -1,14 +1,16 @@
-"""Struck off: a stroke that ends in ink which another stroke draws ends where it comes to that ink.
+"""Struck off: ink that one stroke draws is no other stroke's; what is left of that ends where it comes there.
 
-Signals: strokes and the sheet's darkness in; the strokes without those ends out.
+Signals: strokes and the sheet's darkness in; the strokes without what others draw out.
 
     ───────────────────────      the other stroke         where the ink is no broader than one pen's it is one
        ╲__________                the end of this one      stroke's: this one ends where it comes to the other
 
-Two lines that lie beside each other have their ink together, as broad as the two of them: half-way between
-the rims of the two pens is ink, if there are two lines, and paper, if there is one. Pens that lie nearer to
-each other than ink of two lines tells (see `doubled`) are one. Each place along an end has a vote, and the
-stroke is cut where most votes are for it. The shorter strokes are cut first; what is cut off is no stroke
+Two lines that lie beside each other have their ink together, as broad as the two of them: beyond both rims of
+one pen, by a quarter of what parts them, is ink if there are two, and not if there is one. Pens that lie
+nearer to each other than ink of two lines tells (see `doubled`) are one, and so are those in lines of few
+pixels, which tell none. Each place along a stroke has a vote, and the stroke is cut where most votes are for
+it: at its ends, and in its middle where it goes along another for longer than lines do that cross or touch,
+and the ink is not known to be two lines'. The shorter strokes are cut first; what is cut off is no stroke
 into which another could end.
 
 Source: our own.
@@ -17,7 +19,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +35,7 @@ from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.thinning import Indices
+from morfax.tracer.ink.doubled import SureWidths
 from morfax.tracer.ink.track import InkStroke
 from morfax.tracer.limits import LONGER_WIDTHS, WIDER
 
@@ -47,30 +50,25 @@ HALF = 0.5  # of a line's darkness: what is darker is ink
 LEAST = 0.5  # widths: so little is not cut off, and so little that is left is no stroke
 
 
-def struck_off(drawing: Drawing, strokes: Sequence[InkStroke]) -> list[InkStroke]:
-    """The strokes without the ends along which others run in the same ink."""
+def struck_off(
+    drawing: Drawing, strokes: Sequence[InkStroke], shared_mm: Array
+) -> list[InkStroke]:
+    """The strokes without the stretches along which others run in the same ink; `shared_mm`: places (n, 2)
+    along ink that is known to be two lines'.
+    """
     if not strokes:
         return []
-    sheet, kept = _Struck.of(drawing, strokes), dict[int, InkStroke]()
-    doubtful = sheet.doubtful(strokes)
+    sheet, kept = _Struck.of(drawing, strokes, shared_mm), dict[int, list[InkStroke]]()
     for n in sorted(range(len(strokes)), key=lambda n: strokes[n].length_mm):
-        stroke = strokes[n]
-        cuts_mm = [0.0, 0.0]
-        for last in (False, True):
-            if doubtful[n, int(last)]:
-                cuts_mm[last] = sheet.cut_mm(n, last)
-        if sum(cuts_mm) > 0:
-            is_left = stroke.length_mm - sum(cuts_mm) > LEAST * stroke.width_mm
-            kept |= {n: stroke.part(*cuts_mm)} if is_left else {}
-        else:
-            kept[n] = stroke
-    return [kept[n] for n in sorted(kept)]
+        kept[n] = list(sheet.left_of(n, strokes[n]))
+    return [stroke for n in sorted(kept) for stroke in kept[n]]
 
 
 @dataclass(frozen=True, slots=True)
 class _Struck:
     """Places along all strokes: where, (n, 2) mm, and the directions there; the stroke of each, how far along
-    it and how wide it is, mm; whether it is the stroke's still. `firsts`: of each stroke, and n.
+    it and how wide it is, mm; whether it is the stroke's still, and in ink that is two lines'. `firsts`: of
+    each stroke, and n. A line no wider than `sure_mm` tells no width.
     """
 
     drawing: Drawing
@@ -81,11 +79,13 @@ class _Struck:
     widths_mm: Array
     firsts: Indices
     every_mm: float
+    sure_mm: float
     are_left: NDArray[np.bool_]
+    are_shared: NDArray[np.bool_]
     near: Neighbours
 
     @classmethod
-    def of(cls, drawing: Drawing, strokes: Sequence[InkStroke]) -> _Struck:
+    def of(cls, drawing: Drawing, strokes: Sequence[InkStroke], shared_mm: Array) -> _Struck:
         """The places of some strokes, nothing of which is cut off."""
         widths_mm = np.array([stroke.width_mm for stroke in strokes])
         every_mm = EVERY * median(widths_mm)
@@ -103,48 +103,50 @@ class _Struck:
             widths_mm[numbers],
             firsts,
             every_mm,
+            SureWidths.of(drawing).least_mm,
             np.ones(len(places), bool),
+            Neighbours(shared_mm).nearest(places)[0] < BESIDE * widths_mm[numbers],
             Neighbours(places),
         )
 
-    def doubtful(self, strokes: Sequence[InkStroke]) -> NDArray[np.bool_]:
-        """Which beginnings and ends of open strokes come into the ink of others within a width, (n, 2)."""
-        first, behind = self.firsts[:-1, None], self.firsts[1:, None]
-        on = np.minimum(np.arange(round(1 / EVERY)), behind - first - 1)
-        ends = np.stack([first + on, behind - 1 - on], axis=1)
-        are_one = self._votes(ends.ravel()).reshape(ends.shape) > 0
-        return are_one.any(axis=2) & ~np.array([[stroke.closed] for stroke in strokes])
-
-    def cut_mm(self, number: int, last: bool) -> float:
-        """Cut off the end of a stroke that is others' ink; its length, mm."""
+    def left_of(self, number: int, stroke: InkStroke) -> Iterator[InkStroke]:
+        """What is left of a stroke: all of it, if it closes or comes into others' ink nowhere."""
         own = np.arange(self.firsts[number], self.firsts[number + 1])
-        own = own[self.are_left[own]][:: -1 if last else 1]
-        width_mm = self.widths_mm[own[0]] if len(own) else 0.0
-        count = best = votes = 0
-        some = max(1, round(LONGER_WIDTHS * width_mm / self.every_mm))
-        for first in range(0, len(own), some):
-            for k, vote in enumerate(self._votes(own[first : first + some]).tolist()):
-                votes += vote
-                if votes > best:
-                    best, count = votes, first + k + 1
-            if votes < best - some // 2:
-                break
-        if (count - 1) * self.every_mm < LEAST * width_mm:
-            return 0.0
-        self.are_left[own[: count - 1]] = False  # the last one is where it comes there
-        return (count - 1) * self.every_mm
+        width = round(1 / EVERY)
+        looked_at = np.unique(np.r_[own[:width], own[::width], own[-width:]])
+        if stroke.closed or self._votes(looked_at).max() < 0:
+            yield stroke
+            return
+        some = round(LONGER_WIDTHS * stroke.width_mm / self.every_mm)
+        # 1. its ends, and then what is others' ink for longer, the longest first
+        for way in (own, own[::-1]):
+            count = _of_end(self._votes(way), some)
+            if count * self.every_mm >= LEAST * stroke.width_mm:
+                self.are_left[way[:count]] = False
+        are_shared = self.are_shared[own]
+        while (span := _most(np.where(are_shared, -1, self._votes(own)), some)) is not None:
+            self.are_left[own[slice(*span)]] = False
+        # 2. the pieces between
+        are_left = np.r_[False, self.are_left[own], False]
+        for first, behind in np.flatnonzero(np.diff(are_left)).reshape(-1, 2).tolist():
+            begin_mm, end_mm = first * self.every_mm, (len(own) - behind) * self.every_mm
+            if behind - first == len(own):
+                yield stroke
+            elif stroke.length_mm - begin_mm - end_mm > LEAST * stroke.width_mm:
+                yield stroke.part(begin_mm, end_mm)
 
     def _votes(self, some: Indices) -> Indices:
         """1 for each of some places that lies in the ink of another line alone, -1 for the others."""
         places, widths_mm = self.places[some], self.widths_mm[some]
         apart_mm, aside = self._beside(some)
-        # half-way between the rims of the two pens, on this one's side
-        middles = places + aside
-        outward = -unit(aside)
-        halfway = places + 0.5 * aside + 0.5 * widths_mm[:, None] * outward
-        is_ink = self._darkness(halfway) > HALF * self._darkness(middles)
-        is_one = np.isfinite(apart_mm) & ((apart_mm < SAME * widths_mm) | ~is_ink)
-        return np.where(is_one, 1, -1)
+        # beyond the rims of a pen half-way between the two
+        beyond = 0.5 * widths_mm[:, None] * unit(aside) + 0.25 * aside
+        halfway = places + 0.5 * aside
+        rims = self._darkness(np.stack([halfway - beyond, halfway + beyond]))
+        is_ink = rims.min(axis=0) > HALF * self._darkness(places + aside)
+        sure_mm = np.where(widths_mm > self.sure_mm, SAME * widths_mm, BESIDE * widths_mm)
+        is_one = np.isfinite(apart_mm) & ((apart_mm < sure_mm) | ~is_ink)
+        return np.where(is_one & self.are_left[some], 1, -1)
 
     def _beside(self, some: Indices) -> tuple[Array, Array]:
         """How far the nearest other line lies beside each of some places, mm, infinite if none does; and the
@@ -156,8 +158,10 @@ class _Struck:
         normals = left_of(along)
         aside, ahead = (np.sum(off * way[:, None], axis=2) for way in (normals, along))
         is_other = self.stroke[others] != self.stroke[some, None]
-        come_mm = np.abs(self.come_mm[others] - self.come_mm[some, None])
-        is_other |= come_mm > LONGER_WIDTHS * widths_mm
+        # the line itself, where it comes back: of both passes the one that is met first is struck off
+        onward = self.come_mm[others] - self.come_mm[some, None]
+        onward *= 1 if some[-1] >= some[0] else -1
+        is_other |= onward > LONGER_WIDTHS * widths_mm
         cosines = np.abs(np.sum(self.along[others] * along[:, None], axis=2))
         is_beside = is_other & self.are_left[others] & (cosines > ALONG_COS)
         is_beside &= np.abs(aside) < BESIDE * widths_mm
@@ -167,10 +171,33 @@ class _Struck:
         return apart[rows, nearest], aside[rows, nearest, None] * normals
 
     def _darkness(self, places: Array) -> Array:
-        """The sheet's darkness at some places (n, 2) mm."""
+        """The sheet's darkness at some places (..., 2) mm."""
         darkness, pitch_mm = self.drawing.darkness, self.drawing.pitch_mm
-        rows = darkness.shape[0] - places[:, 1] / pitch_mm - 0.5
-        return between(darkness, rows, places[:, 0] / pitch_mm - 0.5, edge_goes_on=False)
+        rows = darkness.shape[0] - places[..., 1] / pitch_mm - 0.5
+        return between(darkness, rows, places[..., 0] / pitch_mm - 0.5, edge_goes_on=False)
+
+
+def _of_end(votes: Indices, some: int) -> int:
+    """How many of a stroke's first places lie in others' ink, up to the last, where it comes there."""
+    total = best = count = 0
+    for k, vote in enumerate(votes.tolist()):
+        total += vote
+        if total > best:
+            best, count = total, k
+        if total < best - some // 2:
+            break
+    return count
+
+
+def _most(votes: Indices, some: int) -> tuple[int, int] | None:
+    """Between which of a stroke's places most votes are for it, more than some; None if nowhere."""
+    come = np.r_[0, np.cumsum(votes)]
+    gained = come - np.minimum.accumulate(come)
+    behind = int(np.argmax(gained))
+    if gained[behind] <= some:
+        return None
+    first = behind - int(np.argmin(come[behind::-1]))
+    return first + 1, behind - 1  # without the places where it comes there and leaves
 
 
 def _directions(way: Array) -> Array:

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion import nesting
+from morfax.motion.faults import LineFault
 from morfax.tracer.following.line import Line
+from morfax.tracer.following.start import put_down
 from morfax.tracer.program.arrows import turned_round
 from morfax.tracer.program.lines import order, selection
 from morfax.tracer.program.setup import Setup
@@ -39,8 +41,21 @@ def in_cutting_order(setup: Setup, lines: list[Line]) -> list[Line]:
 
 
 def _turned(setup: Setup, line: Line, taken: set[int]) -> Line:
-    """A line followed from its other end, along none of the patches of others."""
-    return turned_round(kept_off(setup, taken - patches_of(setup.sheet, line)), line)
+    """A line followed from its other end, along none of the patches of others; as it was, if that is no open
+    end of ink: from there the head would run to the line's beginning, and come back along it as it was.
+    """
+    here = kept_off(setup, taken - patches_of(setup.sheet, line))
+    return turned_round(here, line) if line.is_of_net or _ends_open(here, line) else line
+
+
+def _ends_open(setup: Setup, line: Line) -> bool:
+    """Whether the head that is put down where a line ends stands at an open end of its ink."""
+    end_mm = line.place(len(line.xy_mm) - 1)
+    try:
+        stance, _ = next(put_down(setup.sheet, end_mm, setup.settings))
+    except LineFault:
+        return False
+    return stance.at_end
 
 
 def _as_told(

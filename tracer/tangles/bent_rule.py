@@ -129,12 +129,12 @@ def changes(ink, rule, figures, out):  # type: ignore[no-untyped-def]
         figures[i] = old
         moves[:, i] = (moved - way) / NUDGE_MM
     # 2. what that darkens, and what a wider pen does
-    pen_ink = pen.Ink(ink.places_mm, ink.darkness, ink.known_mm, figures[-1], ink.softness_mm)
+    half_mm, away_mm = figures[-1], moved_way.away_from_ink(ink, way)
+    pen_ink = pen.Ink(ink.places_mm, ink.darkness, ink.known_mm, half_mm, ink.softness_mm)
     sharp = np.zeros(len(way), np.bool_)
-    moved_way.changes(pen_ink, way, sharp, moves, out[:, :last])
-    away_mm = moved_way.away_from_ink(ink, way)
+    moved_way.changes(pen_ink, (way, moves, sharp), away_mm, out[:, :last])
     for k in range(len(away_mm)):
-        out[k, last] = pen.fades_at(away_mm[k], figures[-1], ink.softness_mm)
+        out[k, last] = pen.fades_at(away_mm[k], half_mm, ink.softness_mm)
 
 
 @njit(cache=True)

@@ -23,13 +23,12 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from morfax.motion import arrays
-from morfax.motion.arrays import NOT_ZERO, Array
-from morfax.motion.compiled import njit
-from morfax.motion.plane import NOTHING_MM2, left_of, unit
+from morfax.motion.arrays import Array
+from morfax.motion.plane import left_of, unit
 from morfax.motion.polyline import area_mm2, between_corners
 from morfax.tracer.drawing.components import INK
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import core_ink
+from morfax.tracer.tangles.figured import Figured
 from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
@@ -113,41 +112,30 @@ def explained(ink: SeenInk) -> Core | None:
 
 def filled_misfit(ink: SeenInk, core: Core) -> float:
     """How much the same shape filled with ink leaves unexplained."""
-    drawn = np.empty(len(ink.places_mm))
-    _ink(ink.places_mm, *core[:3], ink.softness_mm, True, drawn)
-    return ink.misfit(drawn)
+    return ink.misfit(_drawn(ink, core, is_filled=True))
 
 
 def with_misfit(ink: SeenInk, core: Core) -> Core:
     """A core with its misfit."""
+    return core._replace(misfit=ink.misfit(_drawn(ink, core)))
+
+
+def _drawn(ink: SeenInk, core: Core, *, is_filled: bool = False) -> Array:
+    """Darkness (n,) that a pen leaves along a core's way, and within it if it is filled."""
     drawn = np.empty(len(ink.places_mm))
-    _ink(ink.places_mm, *core[:3], ink.softness_mm, False, drawn)
-    return core._replace(misfit=ink.misfit(drawn))
+    core_ink.ink(ink.places_mm, tuple(core[:3]), ink.softness_mm, is_filled, drawn)
+    return drawn
 
 
 def _settled(ink: SeenInk, start: Core) -> Core | None:
     """A core moved to where the pen leaves the ink that is there; None if the pen becomes another, or the way
     runs off that ink, or turns back and forth.
     """
-    count, is_sharp = len(start.points_mm), start.radius_mm == 0
-    drawn = np.empty(len(ink.places_mm))
-
-    def core_of(figures: Array) -> Core:
-        radius_mm = 0.0 if is_sharp else abs(float(figures[2 * count]))
-        return Core(figures[: 2 * count].reshape(-1, 2), radius_mm, float(figures[-1]))
-
-    def wrong(figures: Array) -> Array:
-        _ink(ink.places_mm, *core_of(figures)[:3], ink.softness_mm, False, drawn)
-        return drawn - ink.darkness
-
-    def changes(figures: Array) -> Array:
-        out = np.empty((len(drawn), len(figures)))
-        _changes(ink.places_mm, *core_of(figures)[:3], ink.softness_mm, out)
-        out[:, 2 * count : -1] *= np.sign(figures[2 * count : -1])  # of a radius below 0
-        return out
-
-    figures = np.r_[start.points_mm.ravel(), [] if is_sharp else start.radius_mm, start.half_mm]
-    core = core_of(fitted(wrong, figures, STEPS * len(figures), changes))
+    count, radius = start.points_mm.size, [start.radius_mm] if start.radius_mm > 0 else []
+    figures = np.r_[start.points_mm.ravel(), radius, start.half_mm]
+    found = fitted(Figured.core(), ink.for_kernel(), figures, STEPS * len(figures))
+    radius_mm = abs(float(found[count])) if radius else 0.0
+    core = Core(found[:count].reshape(-1, 2), radius_mm, float(found[-1]))
     is_pen = 0.5 * ink.half_mm < core.half_mm < 2 * ink.half_mm
     is_loop = is_pen and core.is_convex and ink.holds(np.vstack(core.stretches()))
     return with_misfit(ink, core) if is_loop else None
@@ -203,80 +191,3 @@ def _within(polygon: Array, half_mm: float) -> Array:
     before = np.roll(inward, 1, axis=0)
     spread = np.maximum(1 + np.sum(inward * before, axis=1), SHARPEST)
     return np.asarray(polygon + half_mm * (inward + before) / spread[:, None])
-
-
-@njit(cache=True)
-def _ink(places, points, radius_mm, half_mm, softness_mm, is_filled, out):  # type: ignore[no-untyped-def]
-    """Darkness (n,) that a pen leaves at places (n, 2) along the way at a radius from points (m, 2), and
-    within it if it is filled.
-    """
-    sides = _sides(points)
-    for k in range(len(places)):
-        from_core_mm, _, _ = _from_core(places[k, 0], places[k, 1], points, sides)
-        away_mm = from_core_mm - radius_mm
-        away_mm = away_mm if is_filled else abs(away_mm)
-        out[k] = pen.ink_at(away_mm, half_mm, softness_mm)
-
-
-@njit(cache=True)
-def _changes(places, points, radius_mm, half_mm, softness_mm, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n, f) with by how much each coordinate of the points, the radius, if there is a column for
-    it, and half the pen's width darken the places, per mm (see `moved_way`).
-    """
-    sides, last = _sides(points), out.shape[1] - 1
-    for k in range(len(places)):
-        x, y = places[k, 0], places[k, 1]
-        from_core_mm, i, share = _from_core(x, y, points, sides)
-        away_mm = from_core_mm - radius_mm
-        fades = pen.fades_at(abs(away_mm), half_mm, softness_mm)
-        out[k, :] = 0.0
-        out[k, last] = fades
-        # the way comes nearer as the radius grows, or the core comes nearer, to a place outside of it
-        by = math.copysign(fades, away_mm)
-        if last > 2 * len(points):
-            out[k, last - 1] = by
-        if fades == 0.0 or abs(from_core_mm) < NOT_ZERO:
-            continue
-        j = (i + 1) % len(points)
-        dx = by * (x - points[i, 0] - share * sides[i, 0]) / from_core_mm
-        dy = by * (y - points[i, 1] - share * sides[i, 1]) / from_core_mm
-        out[k, 2 * i] += (1 - share) * dx
-        out[k, 2 * i + 1] += (1 - share) * dy
-        out[k, 2 * j] += share * dx
-        out[k, 2 * j + 1] += share * dy
-
-
-@njit(cache=True)
-def _sides(points):  # type: ignore[no-untyped-def]
-    """The sides of a polygon (m, 2) from each point to the next: x, y and the square of the length (m, 3)."""
-    sides = np.empty((len(points), 3))
-    for i in range(len(points)):
-        j = (i + 1) % len(points)
-        vx, vy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
-        sides[i, 0], sides[i, 1], sides[i, 2] = vx, vy, vx * vx + vy * vy + NOTHING_MM2
-    return sides
-
-
-@njit(cache=True)
-def _from_core(x, y, points, sides):  # type: ignore[no-untyped-def]
-    """Distance of a place from a point, a stretch or a polygon (m, 2) with its sides, negative within a
-    polygon; the nearest side, and at which share of it.
-
-    The root is taken only of squares that are, but for rounding, the least so far: it takes longest.
-    """
-    inside, best, best2, side, share = False, math.inf, math.inf, 0, 0.0
-    for i in range(len(points)):
-        vx, vy = sides[i, 0], sides[i, 1]
-        wx, wy = x - points[i, 0], y - points[i, 1]
-        t = min(max((wx * vx + wy * vy) / sides[i, 2], 0.0), 1.0)
-        ax, ay = wx - t * vx, wy - t * vy
-        square = ax * ax + ay * ay
-        if square <= best2:
-            away_mm = math.hypot(ax, ay)
-            if away_mm < best:
-                best, side, share = away_mm, i, t
-            best2 = square * (1 + arrays.ROUNDED)
-        j = (i + 1) % len(points)
-        if (points[i, 1] > y) != (points[j, 1] > y) and x < points[i, 0] + wy * vx / vy:
-            inside = not inside
-    return -best if inside else best, side, share

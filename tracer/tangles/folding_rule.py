@@ -33,6 +33,7 @@ from morfax.motion.polyline import area_mm2, evenly, length_mm
 from morfax.tracer.sensing.leg import TURNS_BACK
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import bent_rule, beside_itself, pen
+from morfax.tracer.tangles.figured import Figured
 from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
@@ -202,28 +203,12 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     """A rule moved to where the pen leaves the ink that is there; None if the pen becomes another, or comes
     off the ink.
     """
-    size, is_rounded = start.corners_mm.size, bool(start.rounded.any())
-
-    def rule_of(figures: Array) -> Rule:
-        radius_mm = float(figures[size]) if is_rounded else 0.0
-        corners_mm, half_mm = figures[:size].reshape(-1, 2), float(figures[-1])
-        return start._replace(corners_mm=corners_mm, radius_mm=radius_mm, half_mm=half_mm)
-
-    seen, drawn = ink.for_kernel(), np.empty(len(ink.darkness))
-    ends_and_rounded = np.array([start.first_mm, start.last_mm]), start.rounded
-
-    def wrong(figures: Array) -> Array:
-        bent_rule.wrong(seen, ends_and_rounded, figures, drawn)
-        return drawn.copy()
-
-    def changes(figures: Array) -> Array:
-        out = np.empty((len(ink.darkness), len(figures)))
-        bent_rule.changes(seen, ends_and_rounded, figures.copy(), out)
-        return out
-
-    radius = [start.radius_mm] if is_rounded else []
+    size, radius = start.corners_mm.size, [start.radius_mm] if start.rounded.any() else []
     figures = np.r_[start.corners_mm.ravel(), radius, start.half_mm]
-    rule = rule_of(fitted(wrong, figures, STEPS * len(figures), changes))
+    shape = Figured.rule(np.array([start.first_mm, start.last_mm]), start.rounded)
+    found = fitted(shape, ink.for_kernel(), figures, STEPS * len(figures))
+    corners_mm, radius_mm = found[:size].reshape(-1, 2), float(found[size]) if radius else 0.0
+    rule = start._replace(corners_mm=corners_mm, radius_mm=radius_mm, half_mm=float(found[-1]))
     least, most = LIKE_PEN
     is_pen = least * ink.half_mm < rule.half_mm < most * ink.half_mm
     return _drawn(ink, rule) if is_pen and ink.holds(rule.way) else None

@@ -64,3 +64,9 @@ class Patch:
         distance, drawn = pen.away_from(self.places_mm, way), np.empty(len(self.places_mm))
         pen.ink(distance, self.half_mm, self.softness_mm, drawn)
         return drawn - self.darkness
+
+    def for_kernel(self) -> pen.Ink:
+        """The same for kernels; nothing is drawn there anyway."""
+        known_mm = np.full(len(self.darkness), pen.NOWHERE_MM)
+        places = np.ascontiguousarray(self.places_mm)
+        return pen.Ink(places, self.darkness, known_mm, self.half_mm, self.softness_mm)

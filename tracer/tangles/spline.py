@@ -30,7 +30,8 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import left_of, unit
-from morfax.tracer.tangles import moved_way, pen
+from morfax.tracer.tangles import moved_way
+from morfax.tracer.tangles.figured import Figured
 from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import SeenInk
 
@@ -113,19 +114,10 @@ class Strip(NamedTuple):
 
     def settled(self, ink: SeenInk) -> Array:
         """Its way (m, 2) mm where a pen along it leaves least of the ink unexplained."""
-        seen = ink.for_kernel()
-
-        def wrong(figures: Array) -> Array:
-            return wrong_along(ink, self.moved(figures), self.sharp)
-
-        def changes(figures: Array) -> Array:
-            out = np.empty((len(seen.places_mm), self.figures))
-            moved_way.changes(seen, self.moved(figures), self.sharp, self.moves, out)
-            return out
-
         if not self.figures:
             return self.way_mm
-        return self.moved(fitted(wrong, np.zeros(self.figures), MOST_STEPS, changes))
+        shape = Figured.moved(self.way_mm, self.moves, self.sharp)
+        return self.moved(fitted(shape, ink.for_kernel(), np.zeros(self.figures), MOST_STEPS))
 
 
 def _leaves(own: Array) -> Array:
@@ -183,39 +175,19 @@ def _cubics(weights_mm: Array, places_mm: Array, clamped: tuple[bool, bool]) -> 
     return share
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def nearest_pieces(places, way, out):  # type: ignore[no-untyped-def]
     """Fill `out` (n, 2) with how far places (n, 2) mm are from a way (m, 2) mm, and at which of its places,
     fractions included.
     """
+    pieces = moved_way.pieces_of(way)
     for k in range(len(places)):
-        piece, share, away_mm = moved_way.nearest(way, places[k, 0], places[k, 1])
+        piece, share, away_mm = moved_way.nearest(pieces, places[k, 0], places[k, 1])
         out[k, 0], out[k, 1] = away_mm, piece + share
 
 
 def wrong_along(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
-    """What a pen along a way (m, 2) mm draws too dark at each place of an ink, (n,); `sharp` are its corners.
-
-    A pen's ink is round at a corner, a plotting program's may come to a point: neither is too little.
-    """
-    return wrong_at(ink, way, sharp)[0]
-
-
-def wrong_at(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
-    """The same, and at which place of the way, fractions included, each place of the ink is, (2, n)."""
-    out = np.empty((2, len(ink.places_mm)))
-    _wrong(ink.for_kernel(), np.ascontiguousarray(way), sharp, out)
+    """What a pen along a way (m, 2) mm, with some corners, draws too dark at places of an ink, (n,)."""
+    out = np.empty(len(ink.places_mm))
+    moved_way.wrong(ink.for_kernel(), np.ascontiguousarray(way), sharp, out)
     return out
-
-
-@njit(cache=True, _nrt=False)
-def _wrong(ink, way, sharp, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (2, n) with what a pen along a way (m, 2) mm draws too dark at each place of the ink, and at
-    which place of the way, fractions included, that is.
-    """
-    for k in range(len(ink.places_mm)):
-        i, t, away_mm = moved_way.nearest(way, ink.places_mm[k, 0], ink.places_mm[k, 1])
-        drawn = pen.ink_at(min(away_mm, ink.known_mm[k]), ink.half_mm, ink.softness_mm)
-        out[0, k], out[1, k] = drawn - ink.darkness[k], i + t
-        if out[0, k] < 0 and moved_way.at_corner(i, t, sharp):
-            out[0, k] = 0.0

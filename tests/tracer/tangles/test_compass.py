@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.plane import cross
 from morfax.motion.polyline import area_mm2, length_mm, with_places
-from morfax.tracer.tangles import compass
+from morfax.tracer.tangles import compass, core_ink
 from morfax.tracer.tangles.compass import Core, explained
-from morfax.tracer.tangles.least_squares import Of
+from morfax.tracer.tangles.figured import Figured
+from morfax.tracer.tangles.pen import Ink
 from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import UM, arc
 from tests.tracer.tangles.pen_ink import HALF_MM, apart_mm, ink_along
@@ -138,8 +139,8 @@ def test_the_way_of_a_core_is_closed_and_as_long_as_its_sides_and_arcs(
 
 def from_core(x: float, y: float, points: NDArray[np.float64]) -> float:
     """The distance of a place from the core of some points, by the kernels' plain Python."""
-    sides = compass._sides.py_func(points)
-    from_core_mm, side, share = compass._from_core.py_func(x, y, points, sides)
+    sides = core_ink._sides.py_func(points)
+    from_core_mm, side, share = core_ink._from_core.py_func(x, y, points, sides)
     foot = points[side] + share * sides[side, :2]
     assert math.dist(foot, (x, y)) == pytest.approx(abs(from_core_mm))
     return float(from_core_mm)
@@ -246,13 +247,13 @@ def test_what_each_figure_of_a_core_changes_is_the_slope_of_its_ink(
         out = np.empty(len(places))
         now_mm = float(figures[size]) if radius_mm else 0.0
         core = figures[:size].reshape(-1, 2), now_mm, float(figures[-1])
-        compass._ink(places, *core, 0.06, False, out)
+        core_ink.ink(places, core, 0.06, False, out)
         return out
 
     slopes, plain = (np.empty((len(places), len(figures))) for _ in range(2))
     core = np.ascontiguousarray(points), radius_mm, HALF_MM
-    compass._changes(places, *core, 0.06, slopes)
-    compass._changes.py_func(places, *core, 0.06, plain)
+    core_ink.changes(places, core, 0.06, slopes)
+    core_ink.changes.py_func(places, core, 0.06, plain)
     assert np.allclose(slopes, plain, atol=1e-9)
     for k, step in enumerate(1e-5 * np.eye(len(figures))):
         off = np.abs((drawn(figures + step) - drawn(figures - step)) / 2e-5 - slopes[:, k])
@@ -265,18 +266,12 @@ def test_a_loop_at_the_far_corner_of_a_sheet_is_laid_in_a_few_steps(
 ) -> None:
     """A figure that was moved by a share of itself was moved by half of what ink fades over there."""
     here, far = ink_of(way, noise=0.04), np.array([210.0, 297.0])
-    asked, fitted = list[int](), compass.fitted
+    core, fitted = explained(here), compass.fitted
 
-    def counted(wrong: Of, figures: Array, most: int, changes: Of | None = None) -> Array:
-        def one_more(now: Array) -> Array:
-            asked[-1] += 1
-            return wrong(now)
+    def in_few(drawn: Figured, ink: Ink, figures: Array, most: int) -> Array:
+        return fitted(drawn, ink, figures, min(most, 30))
 
-        asked.append(0)
-        return fitted(one_more, figures, most, changes)
-
-    monkeypatch.setattr(compass, "fitted", counted)
-    core, there = explained(here), explained(here._replace(places_mm=here.places_mm + far))
+    monkeypatch.setattr(compass, "fitted", in_few)
+    there = explained(here._replace(places_mm=here.places_mm + far))
     assert core is not None and there is not None
     assert np.abs(there.points_mm - far - core.points_mm).max() < 1e-3 * UM
-    assert np.median(asked) < 30

@@ -107,8 +107,9 @@ def test_what_each_figure_changes_is_the_slope_of_what_is_wrong() -> None:
     figures = np.random.default_rng(3).normal(0, 0.02, strip.figures)
     seen, way = ink.for_kernel(), strip.moved(figures)
     slopes, plain = (np.empty((len(seen.places_mm), strip.figures)) for _ in range(2))
-    moved_way.changes(seen, way, strip.sharp, strip.moves, slopes)
-    moved_way.changes.py_func(seen, way, strip.sharp, strip.moves, plain)
+    moved, near_mm = (way, strip.moves, strip.sharp), moved_way.away_from_ink(seen, way)
+    moved_way.changes(seen, moved, near_mm, slopes)
+    moved_way.changes.py_func(seen, moved, near_mm, plain)
     assert np.allclose(slopes, plain, atol=1e-9)
     by = 1e-4
     for k in range(strip.figures):

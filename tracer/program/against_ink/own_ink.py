@@ -135,6 +135,14 @@ class OwnInk:
                 yield BesideInk(place_mm, long_mm, bool(over[worst] > sure))
 
     @cached_property
+    def doubtful(self) -> NDArray[np.bool_]:
+        """Which lines, of those that closed or ended, are not surely on their ink."""
+        drawing, ways = self.drawing, self._ways
+        if not ways.judged.any() or drawing.grainy or not drawing.noise.softness_px > 0:
+            return np.zeros(len(ways.judged), bool)
+        return _doubtful(drawing, ways)
+
+    @cached_property
     def _ways(self) -> Ways:
         """The ways of the lines."""
         return _ways(self.drawing, self.lines)
@@ -144,14 +152,10 @@ class OwnInk:
         """Of each line that is not surely on its ink half its width in pixels, the stations in the order of
         the way, and what is over there.
         """
-        drawing = self.drawing
-        if not drawing.noise.softness_px > 0 or drawing.grainy or not self.lines:
+        if not self.lines or not self.doubtful.any():
             return []
-        ways = self._ways
-        doubtful = _doubtful(drawing, ways) if ways.judged.any() else ways.judged
-        if not doubtful.any():
-            return []
-        found = zip(*_judged(drawing, ways, doubtful), strict=True)
+        ways, doubtful = self._ways, self.doubtful
+        found = zip(*_judged(self.drawing, ways, doubtful), strict=True)
         line, station, over = (np.concatenate(column) for column in found)
         of_line = (np.flatnonzero(line == number) for number in np.flatnonzero(doubtful))
         ordered = [own[np.argsort(station[own], kind="stable")] for own in of_line]

@@ -31,7 +31,6 @@ from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import (
-    OFF,
     REACH,
     Clean,
     UsualPen,
@@ -54,6 +53,7 @@ from morfax.tracer.program.laid.line_parts import (
 from morfax.tracer.program.laid.spline_fit import (
     CORNER_RAD,
     MAYBE_RAD,
+    PRICE,
     about_corners,
     corners_of,
     explained,
@@ -191,7 +191,7 @@ class _Way(WayInk):
         longer_mm = length_mm(spline.way) - length_mm(own)
         if longer_mm > LONGER * width_mm and turns_rad(own, TURNS_OVER).max() < CORNER_RAD:
             return None
-        if gain < OFF or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
+        if gain < PRICE or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
             return None
         rule = LaidWay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
         return self.as_bay(BayInk(first, last, own, ink), rule, gain)

@@ -36,6 +36,7 @@ from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
+from morfax.tracer.program.laid.corner_chains import with_chains
 from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
 from morfax.tracer.program.laid.news import moved
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
@@ -59,6 +60,7 @@ def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
     if not is_clear(own.drawing) or setup.operator.reads_marks(own.lines):
         return own
     news: Array | None = None
+    own = with_chains(setup, own)
     for _ in range(ROUNDS):
         lines = own.lines
         left = [place for place in own.beside(NEARLY) if not place.is_sure]

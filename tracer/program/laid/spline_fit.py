@@ -121,11 +121,13 @@ def _turned_in_all_rad(way: Array) -> float:
     return float(_turned_rad(steps[:-1], steps[1:]).sum())
 
 
-def corners_of(turned_rad: Array) -> list[int]:
+def corners_of(
+    turned_rad: Array, over_widths: float = TURNS_OVER, least: float = CORNER_RAD
+) -> list[int]:
     """The places at which a way turns sharply, each the sharpest of those about it."""
-    apart, found = round(TURNS_OVER / STEP_WIDTHS), list[int]()
+    apart, found = round(over_widths / STEP_WIDTHS), list[int]()
     for at in np.argsort(-turned_rad).tolist():
-        if turned_rad[at] < CORNER_RAD:
+        if turned_rad[at] < least:
             break
         if all(abs(at - other) > apart for other in found):
             found.append(at)
