@@ -55,7 +55,7 @@ def draw_speed(file: Path) -> None:
         ylabel="speed, % of the programmed one",
         xlim=(0, 90),
     )
-    axes.legend(fontsize=8, ncols=2)
+    figure.legend(fontsize=8, ncols=3, loc="outside upper center")  # the curves fill the axes
     figure.savefig(file, dpi=DPI)
     plt.close(figure)
 

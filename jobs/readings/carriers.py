@@ -22,10 +22,8 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.files import for_soundfile
 from morfax.motion.usual import AT_ONCE
-from morfax.recorder.sound.programme import LEAST_LEVEL
 
 WINDOW_FRAMES = 4096  # 85 ms at 48 kHz: bins of 12 Hz
-QUIET_DB = 20 * math.log10(LEAST_LEVEL * math.sqrt(2))  # of a sine: hiss before a tape is below
 SILENT_DB = -80.0  # under this level a track has no carrier whose frequency could be measured
 
 
@@ -101,7 +99,10 @@ def _carriers(
 
 def _programme(level_db: Array) -> slice:
     """The windows between two silences of all tracks, without those in which the carriers come or go."""
-    heard = np.flatnonzero((level_db > QUIET_DB).any(axis=1))
+    from morfax.recorder.sound.programme import LEAST_LEVEL
+
+    quiet_db = 20 * math.log10(LEAST_LEVEL * math.sqrt(2))  # of a sine
+    heard = np.flatnonzero((level_db > quiet_db).any(axis=1))
     if len(heard) < 3:
         return slice(None)
     first, last = int(heard[0]), int(heard[-1])

@@ -174,7 +174,7 @@ def _of_unread(trace: Trace) -> Iterator[str]:
     if trace.unread and trace.operator.marks == "auto":
         what = "1 tick or dot" if trace.unread == 1 else f"{trace.unread} ticks and dots"
         yield (
-            f"{what} on the lines did not stop the head: without a reference point or a card they are ink; "
+            f"{what} did not stop the head: without a reference point or a card they are ink; "
             "if they are stops or holes, give --marks on"
         )
 

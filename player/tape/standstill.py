@@ -89,9 +89,8 @@ class Bearings:
         """The fault of a phase that no motion explains."""
         return LockFault(
             f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at "
-            f"{time_s:.3f} s, position "
-            f"{position_mm:.3f} mm; {SURE_CYCLES:g} is allowed; look for a splice, dropout or "
-            "sudden stop there",
+            f"{time_s:.3f} s, position {position_mm:.3f} mm; {SURE_CYCLES:g} is allowed; look for a splice, "
+            "dropout or sudden stop there",
             axis=self.names[axis],
             time_s=time_s,
             error_cycles=surprise,
@@ -114,10 +113,12 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
             f"{4 / 3 * reference_hz:.0f} Hz"
         )
     if not abs(found_hz / reference_hz - 1) <= REFERENCE_BAND:
+        own = f"the tape's own (--reference-frequency {found_hz:.0f}Hz)"
+        if 8 * found_hz > 3 * fmt.sample_rate_hz:  # a third more is to be on the tape too
+            own = "the tape without the hiss before it"
         raise TapeFault(
             f"track 1 carries {found_hz:.0f} Hz where the reference of {reference_hz:g} Hz should be, within "
-            f"{REFERENCE_BAND:.0%}; give the tape's own (--reference-frequency {found_hz:.0f}Hz), or its "
-            "tracks in order"
+            f"{REFERENCE_BAND:.0%}; give {own}, or its tracks in order"
         )
     rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
     levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
@@ -161,10 +162,9 @@ def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
     axis = int(np.argmax(moved))
     if moved[axis] >= SURE_CYCLES:
         raise TapeFault(
-            f"the tape starts while {names[axis].upper()} moves, and states a standstill: its start "
-            "is missing, so where "
-            "it starts from is not known; get the whole tape, or go on from a place (--resume-at "
-            "0.1s --from X,Y,Z)"
+            f"the tape starts while {names[axis].upper()} moves, and should stand: its start is missing, "
+            "so where it starts is not known; get the whole tape, or go on from a place (--resume-at 0.1s"
+            " --from X,Y,Z)"
         )
 
 

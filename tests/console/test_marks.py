@@ -79,9 +79,7 @@ def test_ticks_without_a_reference_point_stop_nothing_until_they_are_called_mark
     cv2.line(sheet, (380, 250), (420, 250), 0, 6)
     Image.fromarray(sheet).save("plate.png", dpi=(300, 300))
     plain = morfax("trace", "plate.png", "-o", "plate.csv", "--json")
-    assert (
-        places(plain) == [] and "1 tick or dot on the lines did not stop the head" in plain.err
-    )
+    assert places(plain) == [] and "1 tick or dot did not stop the head" in plain.err
     assert "--marks on" in plain.err
     marked = morfax("trace", "plate.png", "-o", "marked.csv", "--json", "--marks", "on")
     assert [stop["mark"] for stop in marked.figures["stops"]] == ["tick"]

@@ -18,7 +18,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise, zip_longest
+from itertools import accumulate, pairwise, zip_longest
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -112,8 +112,13 @@ class Trace:
 
     @property
     def line_width_mm(self) -> float:
-        """Width of the first line, mm."""
-        return self.lines[0].width_mm
+        """Width of the line, mm; of several lines half of the way is along narrower ones."""
+        lines = sorted((line.width_mm, line.length_mm) for line in self.lines)
+        come_mm = accumulate(length_mm for _, length_mm in lines)
+        half_mm = 0.5 * sum(length_mm for _, length_mm in lines)
+        return next(
+            width for (width, _), mm in zip(lines, come_mm, strict=True) if mm >= half_mm
+        )
 
     @property
     def roughness_mm(self) -> float | None:

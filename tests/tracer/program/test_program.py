@@ -233,3 +233,12 @@ def test_of_several_passes_the_first_has_the_lead_in_and_the_last_the_lead_out(
     raised = np.flatnonzero(positions[:, 2] > EXACT_MM)
     assert np.diff(raised).max() == len(positions) - len(raised) + 1  # up before and after only
     assert np.abs(np.diff(positions[:, :2], axis=0)).max() < 2 * STEP_MM
+
+
+def test_the_width_of_several_lines_is_that_along_most_of_their_way() -> None:
+    """Not that of the first one: a broad letter, cut first, stood for a whole page of a fine pen."""
+    letter = replace(OPEN, width_mm=1.4, number=1)
+    assert (
+        Trace((letter, replace(LINE, width_mm=0.6), OPEN), Operator(WORK)).line_width_mm == 0.6
+    )
+    assert Trace((letter,), Operator(WORK)).line_width_mm == 1.4

@@ -207,7 +207,8 @@ def _places(
     while len(left):
         at = ways.places_px[stations[left]]
         is_near = np.hypot(*(at - at[0]).T) < about_px
-        long_px = np.hypot(*np.ptp(at[is_near], axis=0))
+        # a place of one station is as long as what that stands for
+        long_px = max(np.hypot(*np.ptp(at[is_near], axis=0)), STATION_PX * PLACES_PX)
         column, row = at[0].tolist()
         place_mm = (column + 0.5) * pitch_mm, (rows - row - 0.5) * pitch_mm
         yield Unexplained(place_mm, float(long_px) * pitch_mm, "off")

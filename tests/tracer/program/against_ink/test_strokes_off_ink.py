@@ -9,7 +9,8 @@ from morfax.jobs.remarks.on_ink import of_ink
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL, STATIONS, Led
-from morfax.tracer.program.against_ink.strokes_off_ink import strokes_off_ink
+from morfax.tracer.program.against_ink.pen_on_ink import Ways
+from morfax.tracer.program.against_ink.strokes_off_ink import _places, strokes_off_ink
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import Points, inked, polyline
@@ -43,6 +44,14 @@ def test_a_corner_that_is_missing_in_another_line_is_told(
     (said,) = of_ink(Trace(tuple(lines), unexplained=(place,)), several=True)
     x, y = place.place_mm
     assert f"do not match the ink at 1 place, the worst at {x:.1f},{y:.1f} mm" in said
+
+
+def test_a_place_of_one_station_has_a_length() -> None:
+    """0 mm of a stroke off its ink were listed."""
+    drawing, at = inked(ACROSS), np.array([[100, 100]], np.float32)
+    ways = Ways(at, np.zeros(1, np.int32), np.array([3.0]), np.ones(1, bool))
+    (place,) = _places(drawing, ways, np.array([0]), np.array([1.0]))
+    assert drawing.pitch_mm < place.length_mm < WIDTH_MM
 
 
 @pytest.mark.parametrize("seed", [None, 3, 4])
