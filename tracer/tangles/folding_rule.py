@@ -240,11 +240,15 @@ def _turned(before: Array, place: Array, after: Array) -> float:
 
 
 def _is_apart(rule: Rule, width_mm: float) -> bool:
-    """Whether a rule does not cross itself, and its sides stay apart, or begin apart and meet in a point."""
+    """Whether a rule does not cross itself, and its sides stay apart, or begin apart and meet in a point;
+    those of one corner may run together all the way.
+    """
     corners, step_mm = rule.corners_mm, STEP_WIDTHS * width_mm
     way = evenly(rule.way, step_mm)
     if len(crossings_of(way, np.arange(len(way) - 1))):
         return False
+    if len(corners) == 1:
+        return True  # a tip, as narrow as it may be: a pen that runs out along a tick turns twice more
     if len(corners) > 2:
         at_first = _turned(rule.first_mm, corners[0], corners[1])
         at_last = _turned(corners[-2], corners[-1], rule.last_mm)

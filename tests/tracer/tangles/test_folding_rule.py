@@ -62,6 +62,14 @@ def test_a_bay_whose_end_the_head_cut_short_is_laid_true(corners: Array) -> None
     assert rule is not None and off_mm(rule, corners) < 30 * UM
 
 
+def test_a_tip_is_laid_though_its_sides_run_together() -> None:
+    """One of 4 degrees, as of a comb's tooth, to within 20 um; another rule ran out into its ink and back."""
+    needle = np.array([(3.3, 6.0), (3.5, 0.8), (3.7, 6.0)])
+    cut = np.array([(3.3, 6.0), (3.47, 1.2), (3.53, 1.2), (3.7, 6.0)])
+    rule = explained(ink_along(needle, PITCH_MM, SIDE_PX), folding_rule.along(cut, HALF_MM))
+    assert rule is not None and apart_mm(rule.way, needle) < 20 * UM
+
+
 def test_one_line_out_is_no_bay() -> None:
     """A tick of one line is followed out and back, and no two sides explain it."""
     tick = np.array([(3.5, 6), (3.5, 3), (3.5, 6)])
