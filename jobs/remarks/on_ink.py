@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 LEFT_SHARE = 0.01  # of all the ink: more that was not followed is worth a remark
 # of the ink that is joined to a line: if the line is less, the rest is worth a remark
 FEW_SHARE = 0.7
+ENDED_SHARE = 0.9  # the same of a line that ended; one that was followed all along was 0.96 of it and more
 AS_LONG = 0.03  # of a line's length: lengths by the ink of a patch are true to that
 # an edge that strays further is rough: clean outlines of seven parts stray by 0 to 8 um, at 150 to
 # 600 dpi, quiet or noisy
@@ -235,8 +236,9 @@ def _of_joined(trace: Trace) -> Iterator[str]:
 
 
 def _of_rest(line: Line) -> Iterator[str]:
-    """One line that is the smaller part of the ink in which lines cross or touch."""
-    if line.length_mm < FEW_SHARE * line.ink_mm:
+    """One line that is the smaller part of the ink in which lines cross or touch, or ended in that."""
+    share = ENDED_SHARE if line.ending == "ended" else FEW_SHARE
+    if line.length_mm < share * line.ink_mm:
         yield (
             f"about {line.ink_mm - line.length_mm:.0f} mm of ink that is joined to the line was not "
             "followed: "

@@ -53,6 +53,21 @@ def test_skips_are_crossed_and_told_unless_a_gap_is_set() -> None:
     assert endings == ["ended"] and not any("skipped" in text for text in said)
 
 
+@pytest.mark.parametrize(
+    ("ending", "share", "is_told"),
+    [("ended", 0.8, True), ("ended", 0.95, False), ("closed", 0.8, False)],
+)
+def test_the_ink_beyond_the_end_of_a_line_is_told(
+    ending: Literal["ended", "closed"], share: float, is_told: bool
+) -> None:
+    """A line that comes round may cross others; one that ends should end where its ink does."""
+    drawn = trace(inked(polyline((4, 5), (24, 5), (24, 15)), seed=1))
+    (line,) = drawn.lines
+    line = replace(line, ending=ending, ink_mm=line.length_mm / share)
+    said = of_ink(replace(drawn, lines=(line,)), several=False)
+    assert any("joined to the line was not followed" in text for text in said) == is_told
+
+
 def test_a_hole_in_pieces_is_told_and_the_advice_follows_it() -> None:
     """A hole of 2.5 mm radius in five pieces of 2.4 mm, in a ring in which the pen has skipped."""
     hole = [arc((20.0, 20.0), 2.5, 72.0 * k, 72.0 * k + 45) for k in range(5)]
