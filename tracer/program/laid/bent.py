@@ -31,6 +31,7 @@ from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import (
+    OFF,
     REACH,
     Clean,
     UsualPen,
@@ -191,7 +192,9 @@ class _Way(WayInk):
         longer_mm = length_mm(spline.way) - length_mm(own)
         if longer_mm > LONGER * width_mm and turns_rad(own, TURNS_OVER).max() < CORNER_RAD:
             return None
-        if gain < PRICE or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
+        # an open stroke may turn within the ink of another, which a spline explains as well
+        least = PRICE if self.is_closed else OFF
+        if gain < least or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
             return None
         rule = LaidWay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
         return self.as_bay(BayInk(first, last, own, ink), rule, gain)
