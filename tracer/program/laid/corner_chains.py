@@ -30,7 +30,7 @@ from morfax.motion.polyline import nearest_mm
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
-from morfax.tracer.program.against_ink.own_ink import OwnInk
+from morfax.tracer.program.against_ink.own_ink import NEARLY, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS, is_whole
@@ -45,6 +45,7 @@ from morfax.tracer.tangles.seen_ink import GAIN
 # In widths of the line, by trial on racks, saws and ratchets drawn with known truth:
 SIDE = 5.0  # of a longer side both corners have legs of their own
 OVER = 0.4  # on either side of a place, by how much the way turns there
+NEAR = 2.0  # from a corner of a chain to a place that runs beside its ink
 OFF = 0.4  # that a corner lies off the way, at the most: the head cuts none by more
 # a way that turns by more about a place may have a corner there: one that rounds a corner turns by less
 TURNED_RAD = math.radians(20)
@@ -67,13 +68,18 @@ class _Corner(NamedTuple):
 
 def with_chains(setup: Setup, own: OwnInk) -> OwnInk:
     """Lines, held against their ink, with their chains of corners laid."""
+    asked = own.doubtful
     for _ in range(ROUNDS):
-        every, lines = BoxedLines.of(own.lines), zip(own.lines, own.doubtful, strict=True)
+        left_mm = np.array([place.place_mm for place in own.beside(NEARLY)])
+        if not len(left_mm):
+            break
+        every, before = BoxedLines.of(own.lines), own.lines
         mended = [
-            _Chains(setup, line, every).mended() if is_doubtful else line
-            for line, is_doubtful in lines
+            _Chains(setup, line, every, left_mm).mended() if is_asked else line
+            for line, is_asked in zip(before, asked, strict=True)
         ]
-        if all(new is line for new, line in zip(mended, own.lines, strict=True)):
+        asked = np.array([new is not line for new, line in zip(mended, before, strict=True)])
+        if not asked.any():
             break
         own = own.mended(mended)
     return own
@@ -81,7 +87,9 @@ def with_chains(setup: Setup, own: OwnInk) -> OwnInk:
 
 @dataclass(frozen=True, eq=False)
 class _Chains(WayInk):
-    """The chains of corners of one of some lines."""
+    """The chains of corners of one of some lines, of which some places (n, 2) mm run beside their ink."""
+
+    left_mm: Array
 
     def mended(self) -> Line:
         """The line as it is, or along the corners that explain its ink better."""
@@ -107,8 +115,12 @@ class _Chains(WayInk):
         corners = list(map(_Corner, at - reach[:-1], at, at + reach[1:], places))
         ends = [0, *(1 + np.flatnonzero(~is_near[1:-1])).tolist(), len(at)]
         for first, last in pairwise(ends):
-            if last - first > 1:
+            if last - first > 1 and self._is_beside(places[first:last]):
                 yield corners[first:last]
+
+    def _is_beside(self, corners_mm: Array) -> bool:
+        """Whether the way runs beside its ink near to some corners (n, 2) mm."""
+        return bool(nearest_mm(corners_mm, self.left_mm).min() < NEAR * self.line.width_mm)
 
     def _turns(self) -> list[int]:
         """The places at which the way turns most of those about them."""
