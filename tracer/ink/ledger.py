@@ -139,11 +139,9 @@ def _dots(sheet: Sheet, specks: NDArray[np.bool_], usual_mm: float) -> Iterator[
     rows, pitch_mm = sheet.drawing.darkness.shape[0], sheet.drawing.pitch_mm
     for top, bottom, left, right in sheet.patches.boxes[specks].tolist():
         across_mm = min(bottom - top, right - left) * pitch_mm
-        if HALF * across_mm > usual_mm:
-            x_mm, y_mm = (
-                HALF * (left + right) * pitch_mm,
-                (rows - HALF * (top + bottom)) * pitch_mm,
-            )
+        if across_mm > 2 * usual_mm:
+            x_mm = 0.5 * (left + right) * pitch_mm
+            y_mm = (rows - 0.5 * (top + bottom)) * pitch_mm
             yield round(x_mm, 1), round(y_mm, 1), round(across_mm, 1)
 
 

@@ -18,13 +18,14 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import accumulate, pairwise, zip_longest
+from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from morfax.motion.by_number import listed
 from morfax.motion.faults import LineFault
+from morfax.motion.median import weighted_median
 from morfax.motion.motion import MOTION_RATE_HZ, Motion
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.lines.selection import NO_OTHERS, Others
@@ -113,12 +114,10 @@ class Trace:
     @property
     def line_width_mm(self) -> float:
         """Width of the line, mm; of several lines half of the way is along narrower ones."""
-        lines = sorted((line.width_mm, line.length_mm) for line in self.lines)
-        come_mm = accumulate(length_mm for _, length_mm in lines)
-        half_mm = 0.5 * sum(length_mm for _, length_mm in lines)
-        return next(
-            width for (width, _), mm in zip(lines, come_mm, strict=True) if mm >= half_mm
-        )
+        widths_mm = [line.width_mm for line in self.lines]
+        half_way_mm = weighted_median(widths_mm, [line.length_mm for line in self.lines])
+        assert half_way_mm is not None  # a trace has lines
+        return half_way_mm
 
     @property
     def roughness_mm(self) -> float | None:

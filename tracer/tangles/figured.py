@@ -59,9 +59,7 @@ def wrong(figured, ink, figures, out):  # type: ignore[no-untyped-def]
     if figured.kind == RULE:
         bent_rule.wrong(ink, (figured.ends_mm, figured.rounded), figures, out)
     elif figured.kind == CORE:
-        points, radius_mm = _core_of(figures)
-        core = points, abs(radius_mm), figures[-1]
-        core_ink.ink(ink.places_mm, core, ink.softness_mm, False, out)
+        core_ink.ink(ink.places_mm, _core_of(figures), ink.softness_mm, False, out)
         out -= ink.darkness
     else:
         moved_way.wrong(ink, _moved(figured, figures), figured.sharp, out)
@@ -73,10 +71,8 @@ def changes(figured, ink, figures, out):  # type: ignore[no-untyped-def]
     if figured.kind == RULE:
         bent_rule.changes(ink, (figured.ends_mm, figured.rounded), figures, out)
     elif figured.kind == CORE:
-        points, radius_mm = _core_of(figures)
-        core = points, abs(radius_mm), figures[-1]
-        core_ink.changes(ink.places_mm, core, ink.softness_mm, out)
-        if radius_mm < 0:
+        core_ink.changes(ink.places_mm, _core_of(figures), ink.softness_mm, out)
+        if len(figures) % 2 == 0 and figures[-2] < 0:  # a radius below 0 is drawn as one above
             out[:, -2] *= -1.0
     else:
         way = _moved(figured, figures)
@@ -86,10 +82,12 @@ def changes(figured, ink, figures, out):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _core_of(figures):  # type: ignore[no-untyped-def]
-    """The points (m, 2) of a core and the distance from it, 0 where that is no figure."""
+    """A core of some figures: its points (m, 2), the distance from it, 0 where that is no figure, and half
+    the pen's width, mm.
+    """
     count = (len(figures) - 1) // 2
     radius_mm = figures[2 * count] if len(figures) > 2 * count + 1 else 0.0
-    return figures[: 2 * count].reshape(-1, 2), radius_mm
+    return figures[: 2 * count].reshape(-1, 2), abs(radius_mm), figures[-1]
 
 
 @njit(cache=True)

@@ -233,8 +233,8 @@ def _settled(ink: SeenInk, start: Rule) -> Rule | None:
     return _drawn(ink, rule) if is_pen and ink.holds(rule.way) else None
 
 
-def _turned(before: Array, place: Array, after: Array) -> float:
-    """By how much a way turns at a place, rad."""
+def turned_rad(before: Array, place: Array, after: Array) -> float:
+    """By how much a way turns at a place (x, y) mm between two others."""
     (x, y), (u, v) = place - before, after - place
     return abs(math.atan2(x * v - y * u, x * u + y * v))
 
@@ -250,8 +250,8 @@ def _is_apart(rule: Rule, width_mm: float) -> bool:
     if len(corners) == 1:
         return True  # a tip, as narrow as it may be: a pen that runs out along a tick turns twice more
     if len(corners) > 2:
-        at_first = _turned(rule.first_mm, corners[0], corners[1])
-        at_last = _turned(corners[-2], corners[-1], rule.last_mm)
+        at_first = turned_rad(rule.first_mm, corners[0], corners[1])
+        at_last = turned_rad(corners[-2], corners[-1], rule.last_mm)
         if max(at_first, at_last) > TURNS_BACK:
             return False
         mouth = corners[[0, -1]]

@@ -58,11 +58,11 @@ class Tangles:
         return copied
 
     @property
-    def state(self) -> tuple[list[Redrawing], float]:
-        """The redrawings of the tangles so far, and the lens's softness, mm: what decides by which strand a
-        line leads through again, and by which rule.
+    def state(self) -> tuple[list[Redrawing], float, Leg | None]:
+        """The redrawings of the tangles so far, the lens's softness, mm, and the side that the last rule led
+        onto: what decides by which strand a line leads through again, and by which rule.
         """
-        return [redrawing for _, redrawing in self._known], self._softness_mm
+        return [redrawing for _, redrawing in self._known], self._softness_mm, self._side
 
     def way_out(self, view: View, approach: Approach) -> tuple[Plan | None, bool]:
         """The way out of the tangle ahead, and whether it explains the tangle's ink.

@@ -4,12 +4,17 @@ no side of them is a leg, and where they stand close their inks run together.
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
 from morfax.motion.contour import distance
 from morfax.tracer.program.trace import trace
+from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.tangles.memory import Tangles
 from tests.tracer.inked import UM, inked, polyline
 
 # two thirds of a pixel of 85 um: the head that runs by legs alone leaves millimetres of such teeth out
@@ -49,3 +54,12 @@ def test_teeth_with_sides_of_few_widths_are_followed_all_along(
     run = trace(inked(line, seed=1)).lines[0]
     assert run.ending == "closed"
     assert distance(line, run.xy_mm).path_to_reference.max_mm < CORNER_MM
+
+
+def test_the_side_that_a_rule_led_onto_decides_the_way_on() -> None:
+    """Heads that remember other sides are not the same: one of them may come onto a side as its rule lay."""
+    memory = Tangles()
+    before = pickle.dumps(memory.state)
+    memory._side = Leg(np.array([5.0, 5.0]), 0.0, 0.0, 0.5, np.empty((0, 3)))
+    assert pickle.dumps(memory.state) != before
+    assert pickle.dumps(copy.deepcopy(memory).state) == pickle.dumps(memory.state)

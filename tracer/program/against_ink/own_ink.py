@@ -112,7 +112,7 @@ class _Tiles(NamedTuple):
         return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
 
 
-Told = dict[bytes, NDArray[Any]]
+ByTile = dict[bytes, NDArray[Any]]  # what was told of tiles, by all that lies in them
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +123,7 @@ class OwnInk:
 
     drawing: Drawing
     lines: Sequence[Line]
-    told: Told = field(default_factory=dict)
+    told: ByTile = field(default_factory=dict)
 
     def mended(self, lines: Sequence[Line]) -> OwnInk:
         """The lines with some of them mended: tiles in which they are as they were are told of at once."""
@@ -187,7 +187,7 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
     )
 
 
-def _doubtful(drawing: Drawing, ways: Ways, told: Told) -> NDArray[np.bool_]:
+def _doubtful(drawing: Drawing, ways: Ways, told: ByTile) -> NDArray[np.bool_]:
     """Which lines are not surely on their ink: most are, and need not be judged."""
     doubtful = np.zeros(len(ways.judged), bool)
     least, pen = NEARLY.of(ways.half_px), _pen(drawing, ways)
@@ -203,7 +203,7 @@ def _doubtful(drawing: Drawing, ways: Ways, told: Told) -> NDArray[np.bool_]:
 
 
 def _judged(
-    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], told: Told
+    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], told: ByTile
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
     """The stations of some lines, tile by tile: line, number of the place, and what is over."""
     pen = _pen(drawing, ways)

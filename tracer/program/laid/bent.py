@@ -56,12 +56,11 @@ from morfax.tracer.program.laid.spline_fit import (
     MAYBE_RAD,
     PRICE,
     about_corners,
-    corners_of,
     explained,
     left_by,
     turns_rad,
 )
-from morfax.tracer.program.laid.way_ink import BayInk, WayInk
+from morfax.tracer.program.laid.way_ink import WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -118,12 +117,8 @@ class _Way(WayInk):
     @cached_property
     def corners(self) -> list[int]:
         """The places at which it turns sharply; of a closed way those a round before and behind, too."""
-        if not self.is_closed:
-            return corners_of(turns_rad(self.way))
-        count, over = len(self.way), round(LEGS[0] / STEP_WIDTHS)
-        on = self.way[np.arange(-over, count + over) % count]
-        found = corners_of(turns_rad(on)[over:-over])
-        return [at + k * count for at in found for k in (-1, 0, 1)]
+        count, rounds = len(self.way), (-1, 0, 1) if self.is_closed else (0,)
+        return [at + k * count for at in self.corners_at() for k in rounds]
 
     @property
     def may_be_off(self) -> bool:
@@ -197,7 +192,7 @@ class _Way(WayInk):
         if gain < least or nearest_mm(spline.way, own).max() > MOST_ASIDE * width_mm:
             return None
         rule = LaidWay(spline.stretches(), 0.5 * self.line.width_mm, spline.misfit)
-        return self.as_bay(BayInk(first, last, own, ink), rule, gain)
+        return self.as_bay(first, last, rule, gain)
 
 
 def _runs(chosen: NDArray[np.bool_], apart: int, is_closed: bool) -> Iterator[tuple[int, int]]:

@@ -25,7 +25,6 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.plane import cross
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.following.line import Line
@@ -34,12 +33,12 @@ from morfax.tracer.program.against_ink.own_ink import NEARLY, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS, is_whole
-from morfax.tracer.program.laid.spline_fit import FOLDED_RAD, corners_of, turns_rad
+from morfax.tracer.program.laid.spline_fit import FOLDED_RAD
 from morfax.tracer.program.laid.way_ink import BayInk, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import folding_rule
-from morfax.tracer.tangles.folding_rule import ROUNDING, Rule
+from morfax.tracer.tangles.folding_rule import ROUNDING, Rule, turned_rad
 from morfax.tracer.tangles.seen_ink import GAIN
 
 # In widths of the line, by trial on racks, saws and ratchets drawn with known truth:
@@ -54,8 +53,8 @@ LEG = round(LEGS[0] / STEP_WIDTHS)
 
 
 class _Corner(NamedTuple):
-    """A corner: the number of the place of the way at which it is, and of those on its sides
-    that it reaches to; where it is, mm, by which radius it is rounded, and whether the way leaves its ink.
+    """A corner: the number of the place of the way at which it is, and of those on its sides that it reaches
+    to; where it is, mm, by which radius it is rounded, and whether the way leaves ink about it.
     """
 
     first: int
@@ -63,7 +62,7 @@ class _Corner(NamedTuple):
     last: int
     place_mm: Array
     radius_mm: float = 0.0
-    is_asked: bool = True
+    is_asked: bool = False
 
 
 def with_chains(setup: Setup, own: OwnInk) -> OwnInk:
@@ -99,7 +98,7 @@ class _Chains(WayInk):
 
     def _chains(self) -> Iterator[list[_Corner]]:
         """The chains of corners of which each is near to the next, in the order of the way."""
-        count, at = len(self.way), np.sort(self._turns())
+        count, at = len(self.way), np.sort(self.corners_at(OVER, TURNED_RAD))
         if len(at) < 2:
             return
         far = round(2 * SIDE / STEP_WIDTHS)
@@ -122,14 +121,6 @@ class _Chains(WayInk):
         """Whether the way runs beside its ink near to some corners (n, 2) mm."""
         return bool(nearest_mm(corners_mm, self.left_mm).min() < NEAR * self.line.width_mm)
 
-    def _turns(self) -> list[int]:
-        """The places at which the way turns most of those about them."""
-        if not self.is_closed:
-            return corners_of(turns_rad(self.way, OVER), OVER, TURNED_RAD)
-        count = len(self.way)
-        on = self.way[np.arange(-LEG, count + LEG) % count]
-        return corners_of(turns_rad(on, OVER)[LEG:-LEG], OVER, TURNED_RAD)
-
     @cached_property
     def _inks(self) -> dict[tuple[int, int], BayInk | None]:
         """The ink about stretches that was looked at, by their first and last place."""
@@ -144,16 +135,15 @@ class _Chains(WayInk):
 
     def _bays(self, chain: list[_Corner]) -> Iterator[Bay]:
         """What is laid along those runs of a chain's corners that explain the ink, and the way does not."""
-        asked = [self._leaves_ink(chain, k) for k in range(len(chain))]
         chain = [
-            each._replace(is_asked=is_asked)
-            for each, is_asked in zip(chain, asked, strict=True)
+            corner._replace(is_asked=self._leaves_ink(chain, k))
+            for k, corner in enumerate(chain)
         ]
-        for sweep in range(SWEEPS if any(asked) else 0):
+        for sweep in range(SWEEPS):
             for k in range(len(chain)):
                 chain[k] = self._settled(chain, k, is_first=sweep == 0)
             for k in range(len(chain) - 2, 0, -1):
-                turned = _turned_rad(*(corner.place_mm for corner in chain[k - 1 : k + 2]))
+                turned = turned_rad(*(corner.place_mm for corner in chain[k - 1 : k + 2]))
                 if chain[k].is_asked and not TURNED_RAD < turned < FOLDED_RAD:
                     _leave_out(chain, k)
         gains = [self._gain(chain, k) for k in range(len(chain))]
@@ -208,7 +198,7 @@ class _Chains(WayInk):
         first, last = run[0].first, run[-1].last
         ends_mm = self.way[first % len(self.way)], self.way[last % len(self.way)]
         way = _along(run, ends_mm, 0.5 * self.line.width_mm)
-        return Bay(self._along_mm(first), self._along_mm(last), way, gain)
+        return self.as_bay(first, last, way, gain)
 
 
 def _about(chain: Sequence[_Corner], k: int) -> Sequence[_Corner]:
@@ -233,12 +223,6 @@ def _ends_mm(
 def _middle_mm(one: _Corner, other: _Corner) -> Array:
     """The middle of the side between two corners."""
     return np.asarray(0.5 * (one.place_mm + other.place_mm))
-
-
-def _turned_rad(before_mm: Array, place_mm: Array, after_mm: Array) -> float:
-    """By how much a way over three places turns at the middle one."""
-    come, gone = place_mm - before_mm, after_mm - place_mm
-    return abs(math.atan2(cross(come, gone), float(come @ gone)))
 
 
 def _leave_out(chain: list[_Corner], k: int) -> None:

@@ -148,7 +148,9 @@ class _Corners(WayInk):
             return None
         seen = self.about(first - leg, last + leg, np.empty((0, 2)))
         found = None if seen is None else self._by_legs(seen, rule)
-        return self.as_bay(seen, *found) if seen and found and found[1] > PRICE else None
+        if seen is None or found is None or found[1] <= PRICE:
+            return None
+        return self.as_bay(seen.first, seen.last, *found)
 
     def _bay(self, first: int, last: int, is_asked: NDArray[np.bool_]) -> Bay | None:
         """The rule in place of a stretch, if it explains the ink better, of which that of some places is
@@ -165,7 +167,7 @@ class _Corners(WayInk):
         found = self._by_ink(seen) if by_ink else None
         if found is None and legs is not None:
             found = self._by_legs(seen, legs)
-        return None if found is None else self.as_bay(seen, *found)
+        return None if found is None else self.as_bay(seen.first, seen.last, *found)
 
     def _by_ink(self, seen: BayInk) -> tuple[Rule, float] | None:
         """The rule that explains the ink of a stretch better than the way does, and by how much."""

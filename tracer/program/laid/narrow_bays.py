@@ -202,7 +202,7 @@ class _Bays(WayInk):
         rule = self.explained(seen.ink, rules)
         gain = self._gain(seen, rule, suspect) if rule is not None else None
         if rule is not None and gain is not None:
-            return self.as_bay(seen, rule, gain)
+            return self.as_bay(seen.first, seen.last, rule, gain)
         if not suspect.is_beside_itself and not len(suspect.beyond_mm):
             return None
         bay = self._rim_bay(seen, suspect)
@@ -226,7 +226,7 @@ class _Bays(WayInk):
             if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rule.way)):
                 continue
             if gain is not None and (best is None or gain > best.gain):
-                best = self.as_bay(seen, rule, gain)
+                best = self.as_bay(seen.first, seen.last, rule, gain)
         return best
 
     def _gain(self, seen: BayInk, rule: Rule | LaidWay, suspect: Suspect) -> float | None:

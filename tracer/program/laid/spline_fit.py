@@ -122,12 +122,12 @@ def _turned_in_all_rad(way: Array) -> float:
 
 
 def corners_of(
-    turned_rad: Array, over_widths: float = TURNS_OVER, least: float = CORNER_RAD
+    turned_rad: Array, over_widths: float = TURNS_OVER, least_rad: float = CORNER_RAD
 ) -> list[int]:
     """The places at which a way turns sharply, each the sharpest of those about it."""
     apart, found = round(over_widths / STEP_WIDTHS), list[int]()
     for at in np.argsort(-turned_rad).tolist():
-        if turned_rad[at] < least:
+        if turned_rad[at] < least_rad:
             break
         if all(abs(at - other) > apart for other in found):
             found.append(at)

@@ -24,7 +24,8 @@ from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH, rest_of
+from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, REACH, rest_of
+from morfax.tracer.program.laid.spline_fit import CORNER_RAD, TURNS_OVER, corners_of, turns_rad
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import folding_rule, pen
@@ -99,9 +100,20 @@ class WayInk:
         half = max(round(0.5 * long_mm / self.step_mm), 1)
         return at - half, at + half
 
-    def as_bay(self, seen: BayInk, rule: Rule | LaidWay, gain: float) -> Bay:
-        """What is laid in place of a stretch."""
-        return Bay(self._along_mm(seen.first), self._along_mm(seen.last), rule, gain)
+    def corners_at(
+        self, over_widths: float = TURNS_OVER, least_rad: float = CORNER_RAD
+    ) -> list[int]:
+        """The places at which the way turns by more than an angle over so many widths, the sharpest first."""
+        if not self.is_closed:
+            return corners_of(turns_rad(self.way, over_widths), over_widths, least_rad)
+        count, over = len(self.way), round(LEGS[0] / STEP_WIDTHS)
+        on = self.way[np.arange(-over, count + over) % count]
+        turned_rad = turns_rad(on, over_widths)[over:-over]
+        return corners_of(turned_rad, over_widths, least_rad)
+
+    def as_bay(self, first: int, last: int, rule: Rule | LaidWay, gain: float) -> Bay:
+        """What is laid in place of a stretch from one place to another."""
+        return Bay(self._along_mm(first), self._along_mm(last), rule, gain)
 
     def _along_mm(self, place: int) -> float:
         """How far along the way one of its places is. One below 0, or beyond the last, is another round's; a

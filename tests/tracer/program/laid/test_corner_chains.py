@@ -13,6 +13,7 @@ from morfax.tracer.program.laid.corner_chains import with_chains
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, inked, polyline
+from tests.tracer.program.laid.ways import turned
 
 PEN_MM = 0.7
 # a third of a pixel of 0.127 mm, at 200 dpi, and half of one at 300: the head alone is 60 to 190 um off
@@ -33,11 +34,9 @@ def bar(row: Array) -> Array:
     return np.vstack([row, [row[-1] - [0, 5], row[0] - [0, 5], row[0]]])
 
 
-def turned(places: Array, by_rad: float) -> Array:
-    """Places (n, 2) mm turned, on a sheet."""
-    cosine, sine = np.cos(by_rad), np.sin(by_rad)
-    there = places @ np.array([[cosine, sine], [-sine, cosine]])
-    return polyline(*map(tuple, there - there.min(axis=0) + 5))
+def drawn_at(places: Array, by_rad: float) -> Array:
+    """A line over some corners (n, 2) mm, turned, on a sheet."""
+    return polyline(*map(tuple, turned(places, by_rad)))
 
 
 def furthest_mm(drawn: Array, line: Line) -> float:
@@ -57,14 +56,14 @@ BROAD, NARROW, SHORT = (0.8, 0.8, 1.6, 0.3), (0.5, 0.9, 1.5, 0.4), (0.7, 1.0, 1.
 def test_a_closed_line_has_all_corners_of_its_teeth(
     sizes_mm: tuple[float, float, float, float], dpi: float, turned_rad: float
 ) -> None:
-    drawn = turned(bar(teeth(*sizes_mm)), turned_rad)
+    drawn = drawn_at(bar(teeth(*sizes_mm)), turned_rad)
     (line,) = trace(inked(drawn, width_mm=PEN_MM, dpi=dpi, seed=3)).lines
     assert line.ending == "closed"
     assert furthest_mm(drawn, line) < OFF_MM
 
 
 def test_an_open_line_has_all_corners_of_its_teeth() -> None:
-    drawn = turned(teeth(*SHORT), 2.0)
+    drawn = drawn_at(teeth(*SHORT), 2.0)
     (line,) = trace(inked(drawn, width_mm=PEN_MM, dpi=200, seed=3)).lines
     assert line.ending == "ended"
     assert furthest_mm(drawn, line) < OFF_MM
@@ -76,14 +75,14 @@ def test_tips_that_were_drawn_round_stay_round() -> None:
     tip = np.column_stack([0.7 + 0.7 * np.cos(up), 1.2 + 0.7 * np.sin(up)])
     tooth = np.vstack([[0, 0], tip, [1.4, 0]])
     row = np.vstack([tooth + np.array([2.6 * k, 0]) for k in range(8)])
-    drawn = turned(bar(np.vstack([[-4, 0], row, [24, 0]])), 0.3)
+    drawn = drawn_at(bar(np.vstack([[-4, 0], row, [24, 0]])), 0.3)
     (line,) = trace(inked(drawn, width_mm=PEN_MM, dpi=300, seed=3)).lines
     assert line.ending == "closed"
     assert furthest_mm(drawn, line) < 60 * UM  # two thirds of a pixel
 
 
 def test_a_line_on_its_ink_stays_as_the_head_ran() -> None:
-    drawn = turned(bar(teeth(3.0, 3.0, 4.0, 1.0)), 0.3)
+    drawn = drawn_at(bar(teeth(3.0, 3.0, 4.0, 1.0)), 0.3)
     drawing = inked(drawn, seed=3)
     own = OwnInk(drawing, trace(drawing).lines)
     assert with_chains(Setup(drawing.sheet), own) is own

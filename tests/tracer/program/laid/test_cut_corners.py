@@ -18,6 +18,7 @@ from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
 from morfax.tracer.tangles import folding_rule
 from tests.tracer.inked import arc, inked, polyline
+from tests.tracer.program.laid.ways import turned
 
 TEETH = 6
 PITCH_MM, HIGH_MM = (
@@ -26,13 +27,6 @@ PITCH_MM, HIGH_MM = (
 )  # of teeth that are 1 mm broad at their tips, and as broad at their roots
 # two thirds of a pixel; where the head rounds the corners of such teeth it is 0.085 mm off
 OFF_MM = 0.05
-
-
-def turned(places: np.ndarray, by_rad: float) -> np.ndarray:
-    """Places (n, 2) mm turned, on a sheet."""
-    cosine, sine = np.cos(by_rad), np.sin(by_rad)
-    there = places @ np.array([[cosine, sine], [-sine, cosine]])
-    return np.asarray(there - there.min(axis=0) + 4)
 
 
 def rack() -> np.ndarray:
@@ -88,7 +82,7 @@ def test_ink_that_a_way_explains_is_held_against_it_once(
     looked_at = list[int]()
     doubtful = own_ink._doubtful
 
-    def counted(drawing: Drawing, ways: Ways, told: own_ink.Told) -> np.ndarray:
+    def counted(drawing: Drawing, ways: Ways, told: own_ink.ByTile) -> np.ndarray:
         looked_at.append(len(ways.line))
         return doubtful(drawing, ways, told)
 

@@ -27,3 +27,10 @@ def run_along(way: Points, ending: str = "closed", **more: Any) -> Line:
 def steps_mm(line: Line) -> Points:
     """How far it is from each position of a line to the next, mm."""
     return np.asarray(np.hypot(*np.diff(line.xy_mm, axis=0).T))
+
+
+def turned(places: Points, by_rad: float) -> Points:
+    """Places (n, 2) mm turned, on a sheet."""
+    cosine, sine = np.cos(by_rad), np.sin(by_rad)
+    there = places @ np.array([[cosine, sine], [-sine, cosine]])
+    return np.asarray(there - there.min(axis=0) + 4)
