@@ -7,10 +7,9 @@ rows. Out: level of each track (amplitude, full scale 1), frequency of the refer
     zero of an axis = mean of its phase over the first 50 ms   (phase changer 155, until the drive stands)
 
 A track that starts at another phase, by another head or by constant skew, only has another zero. A tape is
-refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not
-the reference. A row cannot be trusted when a phase lies a quarter of a cycle or more from where its motion
-was taking it (beyond half a cycle it would be counted as another turn). What a lost level means is in
-dropouts.py.
+refused when a track is silent or has no carrier, or when the strongest tone of track 1 is not the reference.
+A row cannot be trusted when a phase lies a quarter of a cycle or more from where its motion was taking it
+(beyond half a cycle it would be counted as another turn). What a lost level means is in dropouts.py.
 
 Source: patent ES 361967, figure 5 (phase changer 155, triggers 152 and 154, fault circuit 162). Questions:
 the patent sets the zero by hand and says nothing of levels. A tape that moves from its very first row has no
@@ -88,9 +87,9 @@ class Bearings:
     def _jump(self, axis: int, surprise: float, time_s: float, position_mm: float) -> LockFault:
         """The fault of a phase that no motion explains."""
         return LockFault(
-            f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at "
-            f"{time_s:.3f} s, position {position_mm:.3f} mm; {SURE_CYCLES:g} is allowed; look for a splice, "
-            "dropout or sudden stop there",
+            f"the phase of {self.names[axis].upper()} jumps by {surprise:+.2f} cycle at {time_s:.3f} s, "
+            f"position {position_mm:.3f} mm; {SURE_CYCLES:g} is allowed; look for a splice, dropout or "
+            "sudden stop there",
             axis=self.names[axis],
             time_s=time_s,
             error_cycles=surprise,
@@ -106,20 +105,7 @@ def take_bearings(frames: Float32s, phases: Phases, fmt: TapeFormat) -> Bearings
     for track, mean_square in enumerate(power):
         _demand_signal(track, float(mean_square), names)
     found_hz = strongest_hz(frames[:, 0], fmt.sample_rate_hz)
-    if abs(found_hz * CYCLES_PER_SUBCARRIER / reference_hz - 1) <= REFERENCE_BAND:
-        raise TapeFault(
-            f"track 1 carries the check signal of {found_hz:.0f} Hz and not the carrier of {reference_hz:g} "
-            f"Hz: the band of its recorder ends below; take one that passes {2 / 3 * reference_hz:.0f} to "
-            f"{4 / 3 * reference_hz:.0f} Hz"
-        )
-    if not abs(found_hz / reference_hz - 1) <= REFERENCE_BAND:
-        own = f"the tape's own (--reference-frequency {found_hz:.0f}Hz)"
-        if 8 * found_hz > 3 * fmt.sample_rate_hz:  # a third more is to be on the tape too
-            own = "the tape without the hiss before it"
-        raise TapeFault(
-            f"track 1 carries {found_hz:.0f} Hz where the reference of {reference_hz:g} Hz should be, within "
-            f"{REFERENCE_BAND:.0%}; give {own}, or its tracks in order"
-        )
+    _demand_reference(found_hz, fmt)
     rows = max(round(STANDSTILL_S * fmt.motion_rate_hz), 1)
     levels = phases.levels[:rows].astype(np.float64).mean(axis=0)
     for track in range(len(levels)):
@@ -170,17 +156,16 @@ def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
 
 def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
     """Raise TapeFault for phases that swing too far at standstill for a certain position."""
-    # dropouts left out
-    swing = (
-        np.diff(np.percentile(standing, [TWO_BELOW, 100 - TWO_BELOW], axis=0), axis=0)[0] / 4
-    )
+    low, high = np.percentile(
+        standing, [TWO_BELOW, 100 - TWO_BELOW], axis=0
+    )  # without dropouts
+    swing = (high - low) / 4
     axis = int(np.argmax(swing))
     if not swing[axis] <= UNSTEADY_CYCLES:
         raise TapeFault(
-            f"the phase of {names[axis].upper()} swings by {swing[axis]:.3f} cycle (RMS) at "
-            "standstill, at most "
-            f"{UNSTEADY_CYCLES:g} is allowed: noise, crosstalk or tape that weaves; copy the tape "
-            "on a better machine"
+            f"the phase of {names[axis].upper()} swings by {swing[axis]:.3f} cycle (RMS) at standstill, at "
+            f"most {UNSTEADY_CYCLES:g} is allowed: noise, crosstalk or tape that weaves; copy the tape on a "
+            "better machine"
         )
 
 
@@ -236,6 +221,25 @@ def _zero(cycles: Float64s) -> Float64s:
     return np.where(stands, cycles.mean(axis=0), cycles[0])
 
 
+def _demand_reference(found_hz: float, fmt: TapeFormat) -> None:
+    """Raise TapeFault if the strongest frequency of track 1 is not that of the reference."""
+    reference_hz = fmt.reference_hz
+    if abs(found_hz * CYCLES_PER_SUBCARRIER / reference_hz - 1) <= REFERENCE_BAND:
+        raise TapeFault(
+            f"track 1 carries the check signal of {found_hz:.0f} Hz and not the carrier of {reference_hz:g} "
+            f"Hz: the band of its recorder ends below; take one that passes {2 / 3 * reference_hz:.0f} to "
+            f"{4 / 3 * reference_hz:.0f} Hz"
+        )
+    if not abs(found_hz / reference_hz - 1) <= REFERENCE_BAND:
+        own = f"the tape's own (--reference-frequency {found_hz:.0f}Hz)"
+        if 8 * found_hz > 3 * fmt.sample_rate_hz:  # a third more is to be on the tape too
+            own = "the tape without the hiss before it"
+        raise TapeFault(
+            f"track 1 carries {found_hz:.0f} Hz where the reference of {reference_hz:g} Hz should be, within "
+            f"{REFERENCE_BAND:.0%}; give {own}, or its tracks in order"
+        )
+
+
 def _demand_signal(track: int, mean_square: float, names: Sequence[str]) -> None:
     """Raise TapeFault for a silent track."""
     level = math.sqrt(2 * mean_square)
@@ -243,9 +247,8 @@ def _demand_signal(track: int, mean_square: float, names: Sequence[str]) -> None
         raise TapeFault(
             f"track {track + 1} ({track_name(track, names)}) is silent: level {decibels(level)}, at least "
             f"{decibels(SILENT_LEVEL)} of full scale is needed; "
-            f"{'without the reference no place can be known: ' * (not track)}"
-            "give a copy that has it, or say which tracks are reference, "
-            f"{', '.join(name.upper() for name in names)} (--tracks)"
+            f"{'without the reference no place can be known: ' * (not track)}give a copy that has it, or say "
+            f"which tracks are reference, {', '.join(name.upper() for name in names)} (--tracks)"
         )
 
 
@@ -255,9 +258,8 @@ def _demand_round(track: int, samples: Float32s, names: Sequence[str]) -> None:
     crest = float(np.percentile(np.abs(swing), 98) / np.std(swing))
     if not crest >= LEAST_CREST:
         raise TapeFault(
-            f"track {track + 1} ({track_name(track, names)}) is clipped: its peak is {crest:.2f} of "
-            "its root mean square, at "
-            f"least {LEAST_CREST:g} is needed; copy the tape again at a lower level"
+            f"track {track + 1} ({track_name(track, names)}) is clipped: its peak is {crest:.2f} of its "
+            f"root mean square, at least {LEAST_CREST:g} is needed; copy the tape again at a lower level"
         )
 
 
@@ -270,9 +272,8 @@ def _demand_no_dropout(
     enough = float(levels.mean()) ** 2 / 2 >= share * float(np.var(samples, dtype=np.float64))
     if not len(edges) or (enough and float((~steady).mean()) < WEAK_SHARE):
         return  # nothing to be heard, or enough of it
-    first, last = max(
-        zip(edges[::2], edges[1::2], strict=True), key=lambda run: run[1] - run[0]
-    )
+    runs = zip(edges[::2], edges[1::2], strict=True)
+    first, last = max(runs, key=lambda run: run[1] - run[0])
     heard = samples[first * fmt.samples_per_motion : last * fmt.samples_per_motion]
     level, power = float(levels[first:last].mean()), float(np.var(heard, dtype=np.float64))
     weak = levels < LEVEL_LOST * level
@@ -280,10 +281,9 @@ def _demand_no_dropout(
         return
     raise TapeFault(
         f"track {track + 1} ({track_name(track, fmt.axes)}) has a dropout at "
-        f"{np.argmax(weak) / fmt.motion_rate_hz:.3f} s, within the "
-        f"first {STANDSTILL_S * 1e3:g} ms, from which its level and zero are told; copy the tape "
-        "again, or go on behind it "
-        f"(--resume-at 0.1s --from X,Y,Z)"
+        f"{np.argmax(weak) / fmt.motion_rate_hz:.3f} s, within the first {STANDSTILL_S * 1e3:g} ms, from "
+        "which its level and zero are told; copy the tape again, or go on behind it (--resume-at 0.1s "
+        "--from X,Y,Z)"
     )
 
 
@@ -294,7 +294,7 @@ def _demand_carrier(
     share = level**2 / 2 / mean_square
     if not share >= least:
         raise TapeFault(
-            f"track {track + 1} ({track_name(track, names)}) has no carrier: {share:.1%} of its "
-            "power lies round the "
-            f"reference, at least {least:.0%} is needed; this is no tape for it, or its reference is another"
+            f"track {track + 1} ({track_name(track, names)}) has no carrier: {share:.1%} of its power "
+            f"lies round the reference, at least {least:.0%} is needed; this is no tape for it, or its "
+            "reference is another"
         )
