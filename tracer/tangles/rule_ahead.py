@@ -72,12 +72,12 @@ def rule_ahead(view: View, approach: Approach, softness_mm: float) -> Plan | Non
 def _explained(ink: SeenInk, way: Array, most: float) -> Rule | None:
     """The rule about a way (n, 2) mm that explains the ink best with few figures: those of few corners are
     tried first, and one of more only where they leave ink. None are where that of most leaves too much: what
-    it does not explain, fewer do not.
+    it does not explain, fewer do not. If it comes off the ink, it tells nothing.
     """
     best: Rule | None = None
     rules = list(folding_rule.along(way, ink.half_mm))
     of_most = folding_rule.explained(ink, rules[-2:-1], of_bay=False)  # the last is rounded
-    if of_most is None or of_most.misfit > most:
+    if of_most is not None and of_most.misfit > most:
         return None
     for _, alike in groupby(rules, lambda rule: len(rule.corners_mm)):
         rule = folding_rule.explained(ink, alike, of_bay=False)
