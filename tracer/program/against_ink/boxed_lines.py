@@ -47,12 +47,15 @@ class BoxedLines(NamedTuple):
                 yield self.lines[k]
 
     def parts(
-        self, low_mm: Array, high_mm: Array, but: Line | None = None
+        self, low_mm: Array, high_mm: Array, but: Line | None = None, around_mm: float = 0.0
     ) -> Iterator[tuple[Line, Array]]:
-        """The parts within a box of the lines that reach into it, but for one, each with its line."""
+        """The parts within a box and around it of the lines that reach into it, but for one, each with its
+        line.
+        """
         for k in np.flatnonzero(self.reach(low_mm, high_mm)).tolist():
             if self.lines[k] is not but:
-                for part in parts_within(self.places_mm[k], low_mm, high_mm):
+                around = low_mm - around_mm, high_mm + around_mm
+                for part in parts_within(self.places_mm[k], *around):
                     yield self.lines[k], part
 
 

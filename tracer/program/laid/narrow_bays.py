@@ -221,11 +221,11 @@ class _Bays(WayInk):
         setup, ink, best = self.setup, seen.ink, None
         view = view_of(setup.sheet, setup.settings.aperture_mm, self.line.width_mm)
         for rim_bay in rim_bays(setup.sheet.drawing, view, seen.own, suspect.beyond_mm):
+            if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rim_bay.way)):
+                continue
             drawn = ink.drawn_along(rim_bay.way, rim_bay.half_mm)
             rule = rim_bay._replace(misfit=ink.misfit(drawn))
             gain = self._gain(seen, rule, suspect)
-            if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rule.way)):
-                continue
             if gain is not None and (best is None or gain > best.gain):
                 best = self.as_bay(seen.first, seen.last, rule, gain)
         return best

@@ -139,11 +139,11 @@ class WayInk:
     def _ink(self, about: Array, rest: Sequence[Array]) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
         ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm, REACH)
-        # what is beyond that is nearer to no place of the ink than the pen reaches
-        reach_mm = 2 * REACH * self.line.width_mm
+        reach_mm = REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = np.min([pen.away_from(ink.places_mm, part) for part in rest], axis=0)
-        for line, part in self.lines.parts(low, high, self.line):
+        # what is further away leaves no ink there
+        for line, part in self.lines.parts(low, high, self.line, around_mm=reach_mm):
             # a known line is as wide as it was felt, and drawn by this line's pen
             wider_mm = 0.5 * (line.width_mm - self.line.width_mm)
             known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, part) - wider_mm)
