@@ -62,7 +62,7 @@ def rule_ahead(view: View, approach: Approach, softness_mm: float) -> Plan | Non
         most = LEFT * length_mm(way) / view.width_mm
         if plan is not None and ink.misfit_along(_planned(plan)) < TWICE * most:
             return None
-        rule = _explained(ink, way)
+        rule = _explained(ink, way, TWICE * most)
         if rule is not None and most <= rule.misfit < TWICE * most:
             rule = _with_free_end(ink, rule)
         if rule is not None and rule.misfit < most and _leads_on(rule, incoming, view.width_mm):
@@ -70,12 +70,16 @@ def rule_ahead(view: View, approach: Approach, softness_mm: float) -> Plan | Non
     return None
 
 
-def _explained(ink: SeenInk, way: Array) -> Rule | None:
+def _explained(ink: SeenInk, way: Array, most: float) -> Rule | None:
     """The rule about a way (n, 2) mm that explains the ink best with few figures: those of few corners are
-    tried first, and one of more only where they leave ink.
+    tried first, and one of more only where they leave ink. None are where that of most leaves too much: what
+    it does not explain, fewer do not. If it comes off the ink, it tells nothing.
     """
     best: Rule | None = None
-    rules = folding_rule.along(way, ink.half_mm)
+    rules = list(folding_rule.along(way, ink.half_mm))
+    of_most = folding_rule.explained(ink, rules[-2:-1], of_bay=False)  # the last is rounded
+    if of_most is not None and of_most.misfit > most:
+        return None
     for _, alike in groupby(rules, lambda rule: len(rule.corners_mm)):
         rule = folding_rule.explained(ink, alike, of_bay=False)
         if rule is not None and (best is None or rule.cost < best.cost):

@@ -29,7 +29,7 @@ from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
-from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines, parts_within
 from morfax.tracer.program.against_ink.off_ink import (
     OFF,
     REACH,
@@ -158,10 +158,10 @@ class _Way(WayInk):
         own = way[np.arange(first, last + 1) % len(way)]
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
-        ways = [(rest, 0.0) for rest in rest_of(way, first, last, self.is_closed)]
-        for line in self.lines.reaching(low, high, self.line):
-            ways.append((line.places_mm, 0.5 * (line.width_mm - self.line.width_mm)))
-        near = [(part, wider) for way, wider in ways for part in _within(way, low, high)]
+        rests = rest_of(way, first, last, self.is_closed)
+        near = [(part, 0.0) for rest in rests for part in parts_within(rest, low, high)]
+        for line, part in self.lines.parts(low, high, self.line):
+            near.append((part, 0.5 * (line.width_mm - self.line.width_mm)))
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_lone_pixels(ink, own, drawing.pitch_mm), own
 
@@ -211,14 +211,6 @@ def _runs(chosen: NDArray[np.bool_], apart: int, is_closed: bool) -> Iterator[tu
         found = np.r_[found[begin:], found[:begin] + count]
     for run in np.split(found, np.flatnonzero(np.diff(found) > 2 * apart) + 1):
         yield int(run[0]), int(run[-1])
-
-
-def _within(way: Array, low: Array, high: Array) -> Iterator[Array]:
-    """The parts of a way (n, 2) mm within a box."""
-    inside = np.flatnonzero(np.all((way > low) & (way < high), axis=1))
-    if len(inside):
-        for part in np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1):
-            yield way[part]
 
 
 def _off_corners(at: int, corners: Sequence[int], away: int) -> int:
