@@ -16,6 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
+from morfax.tracer.ink.apertures import PENS_SHARE
 from morfax.tracer.ink.chains import Junctions, Side
 from morfax.tracer.ink.outlines import turned_by
 from morfax.tracer.sensing.leg import FACING
@@ -24,7 +25,6 @@ from morfax.tracer.sensing.leg import FACING
 OTHER_PEN = 1.35  # times as wide
 SURE_WIDTHS = 15.0  # a line as long tells its pen: ink that two lines share is wider, but short
 APART = 1.2  # times as wide: between two pens no line is
-SHARE = 0.05  # of the length of such lines is each pen's
 
 
 @dataclass
@@ -94,4 +94,4 @@ class Onward:
         if not len(share):
             return False
         between = widths_mm[order][1:] > APART * widths_mm[order][:-1]
-        return bool(np.any(between & (np.abs(share[:-1] / share[-1] - 0.5) < 0.5 - SHARE)))
+        return bool(np.any(between & (np.abs(share[:-1] / share[-1] - 0.5) < 0.5 - PENS_SHARE)))

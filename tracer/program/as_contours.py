@@ -27,6 +27,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.bars import THICK, bars_along
+from morfax.tracer.program.against_ink.off_ink import REACH
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.laid.line_parts import is_clear
@@ -47,8 +48,6 @@ NARROW, ROUND_END = 2.6, 6.0
 END = 5.0  # of a stroke: shows whether it ends in a bar
 OTHERS = 0.3  # of the longest stroke: a shorter one is no part of the contour, nor are all those together
 MOST_PARTS, MOST_OTHERS = 4, 40  # strokes; a patch with more is a net
-DIFFER = 0.1  # between the ways: more is another way
-REACH = 1.5  # from where they differ, the ink is looked at
 MOST_PLACES = 6000  # of ink
 
 
@@ -144,8 +143,8 @@ def _is_better(sheet: Sheet, line: Line, strokes: list[Line]) -> bool:
     step_mm = STEP_WIDTHS * width_mm
     one = evenly(line.loop_mm, step_mm)
     other = np.vstack([evenly(stroke.loop_mm, step_mm) for stroke in strokes])
-    mine = nearest_mm(one, other) > DIFFER * width_mm
-    differ = np.vstack([one[mine], other[nearest_mm(other, one) > DIFFER * width_mm]])
+    mine = nearest_mm(one, other) > step_mm
+    differ = np.vstack([one[mine], other[nearest_mm(other, one) > step_mm]])
     if not len(differ):
         return False
     ink = _ink_about(sheet, differ, width_mm)
