@@ -28,6 +28,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.bars import THICK, bars_along
 from morfax.tracer.program.against_ink.off_ink import REACH
+from morfax.tracer.program.against_ink.own_ink import STATION_WIDTHS
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.laid.line_parts import is_clear
@@ -42,7 +43,6 @@ from morfax.tracer.tangles.pen import NOWHERE_MM
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-COARSE_STEP = 0.25  # between the places at which narrow ends are looked for
 # sides so near to each other, with so much way between them, have a narrow end
 NARROW, ROUND_END = 2.6, 6.0
 END = 5.0  # of a stroke: shows whether it ends in a bar
@@ -88,7 +88,7 @@ def _is_folded(strokes: list[Line]) -> bool:
     if line.ending != "closed":
         near_mm, round_mm = NARROW * line.width_mm, ROUND_END * line.width_mm
         return line.passes_its_end(near_mm, round_mm) is not None
-    step_mm = COARSE_STEP * line.width_mm
+    step_mm = STATION_WIDTHS * line.width_mm
     way = evenly(line.loop_mm, step_mm)
     return bool(beside_itself.stretches(way, step_mm, line.width_mm, NARROW, ROUND_END))
 
