@@ -16,7 +16,6 @@ Source: our own (see `wavefront` and `folding_rule`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from itertools import groupby
 
 import numpy as np
@@ -107,22 +106,25 @@ def _leads_on(rule: Rule, incoming: Leg) -> bool:
     return float(rule.ahead @ direction(incoming.heading_rad)) > 0
 
 
-def _lasts(view: View, fronts: Fronts) -> Iterator[int]:
-    """The fronts to which a rule may lead, the nearest first: beyond a corner, and as broad as the line. None
-    beyond where the ink forks, or near its end.
+def _lasts(view: View, fronts: Fronts) -> list[int]:
+    """The fronts to which a rule may lead, beyond a corner and as broad as the line: the nearest of those
+    that are so one after the other, and before it, or without it, the two nearest that are so alone, as
+    between sides that run together. None beyond where the ink forks, or near its end.
     """
     goes_on = fronts.beyond_mm() > ABOUT_WIDTHS * view.width_mm
-    clean, is_beyond, come = 0, False, -1
+    clean, is_beyond, come, alone = 0, False, -1, list[int]()
     for k in np.flatnonzero(goes_on).tolist():
         if fronts.at[k] == come:
-            return
+            break
         come = fronts.at[k]
-        if LEAST_BROAD < fronts.breadth_mm[k] / view.width_mm < MOST_BROAD:
-            clean += 1
-            if clean == CLEAN and is_beyond:
-                yield k
-        else:
+        if not LEAST_BROAD < fronts.breadth_mm[k] / view.width_mm < MOST_BROAD:
             clean, is_beyond = 0, is_beyond or k > CLEAN_FRONTS
+        elif is_beyond:
+            clean += 1
+            if clean == CLEAN:
+                return [k, *alone[:-1]][:3]
+            alone.append(k)
+    return alone[:2]
 
 
 def _behind(approach: Approach, reach_mm: float) -> Array:

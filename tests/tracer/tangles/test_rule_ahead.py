@@ -45,6 +45,8 @@ def saw(pitch_mm: float, high_mm: float, lean_mm: float, turned_deg: float) -> A
         # on a side the head feels no leg, and knows that the rule led it there
         (1.3, 1.2, 20.0),
         (1.3, 1.2, 80.0),
+        # the slits between the teeth are narrower than a pixel: no ink is as broad as the line for long
+        (1.13, 1.15, 200.0),
     ],
 )
 def test_teeth_with_sides_of_few_widths_are_followed_all_along(
