@@ -41,13 +41,14 @@ from morfax.tracer.ink.partners import (
     turnings,
     way_through,
 )
-from morfax.tracer.ink.redrawn_crossing import LEGS, redrawn
+from morfax.tracer.ink.redrawn_crossing import redrawn
 from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.limits import WIDER
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.sketch import MOST_LEGS
 from morfax.tracer.tangles.strands import stretches_over
 
 # of a stretch within a crossing, along which ways go; by trial on drawings of nets
@@ -131,7 +132,7 @@ class Crossing:
         their ink only.
         """
         pairs, costs = self._by_turnings, self.turnings_rad
-        if len(self.legs) != LEGS or len(pairs) != LEGS // 2:
+        if len(self.legs) != MOST_LEGS or len(pairs) != MOST_LEGS // 2:
             return {}
         reach_mm = float(np.ptp([leg.end_mm for leg in self.legs], axis=0).max())
         is_smooth = max(costs[pair] for pair in pairs) < SMOOTH

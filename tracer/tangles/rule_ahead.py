@@ -23,6 +23,7 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import direction, heading_of
 from morfax.motion.polyline import evenly, length_mm
+from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
@@ -39,7 +40,6 @@ from morfax.tracer.tangles.solution import TWICE, Approach
 from morfax.tracer.tangles.tangle import CLEAN_FRONTS, LEAST_BROAD, MOST_BROAD, ink_of
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
-EVERY_MM = 0.1  # of the way behind there is a place; by trial
 # for each width of its length, as misfit: a right rule leaves less; by trial on teeth at 200 to 600 dpi, of
 # which those that were looked at left 0.001 to 0.012
 LEFT = 0.014
@@ -136,8 +136,8 @@ def _lasts(view: View, fronts: Fronts) -> list[int]:
 def _behind(approach: Approach, reach_mm: float) -> Array:
     """The way (n, 2) mm by which the head came, as far as the wave reaches, to the end of its leg."""
     place_mm, incoming = approach.stands[0], approach.incoming
-    come = evenly(np.vstack([approach.trail.recent(), place_mm]), EVERY_MM)
-    come = come[-round(reach_mm / EVERY_MM) :]
+    come = evenly(np.vstack([approach.trail.recent(), place_mm]), LOOKED_MM)
+    come = come[-round(reach_mm / LOOKED_MM) :]
     to_end_mm = ahead_mm(place_mm, incoming)
     if to_end_mm > 0:
         return np.vstack([come, incoming.at(np.array([-0.5 * to_end_mm, 0.0]))])

@@ -108,9 +108,9 @@ class _Way(WayInk):
     @cached_property
     def turning(self) -> NDArray[np.bool_]:
         """Whether the way turns at each place."""
-        count, over = len(self.way), round(TURNS_OVER / STEP_WIDTHS)
-        at = np.arange(-over, count + over)
-        way = self.way[at % count if self.is_closed else np.clip(at, 0, count - 1)]
+        over = round(TURNS_OVER / STEP_WIDTHS)
+        beyond = ((over, over), (0, 0))
+        way = np.pad(self.way, beyond, mode="wrap" if self.is_closed else "edge")
         return np.asarray(turns_rad(way, TURNS_OVER)[over:-over] > MAYBE_RAD)
 
     @cached_property

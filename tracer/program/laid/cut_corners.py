@@ -48,7 +48,6 @@ from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 
 OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
-LEAST_GAIN = 0.003  # for each width of its length; of teeth it is 0.01 to 0.03
 BENT = 0.05  # widths: a leg that bends by more tells no corner
 MOVED = 0.01  # widths: a way is looked at again where it was laid by so much
 HALF = 0.8  # widths from the middle of a corner to its legs: the head rounds none by more
@@ -181,7 +180,7 @@ class _Corners(WayInk):
         gain, widths = ink.misfit(by_own) - rule.misfit, rule.length_mm / width_mm
         is_like = rule.misfit < LIKE * widths
         is_like &= ink.share_left(ink.drawn_along(rule.way, rule.half_mm), by_own) < MOST_LEFT
-        return (rule, gain) if is_like and gain > LEAST_GAIN * widths else None
+        return (rule, gain) if is_like and gain > SURE * widths else None
 
     def _along_legs(self, own: Array, leg: int) -> Rule | None:
         """The rule along both legs of a stretch (n, 2) mm to where these meet, if the way leaves them."""
