@@ -142,7 +142,7 @@ def _is_line(line: Line, others: list[Line]) -> bool:
 
 def _is_whole(line: Line) -> bool:
     """Whether a run is a line from end to end or round about, and no mark."""
-    shortest_mm = least_mm(line.width_mm) if line.ending == "closed" else LETTER_MM
+    shortest_mm = float(least_mm(line.width_mm)) if line.ending == "closed" else LETTER_MM
     return line.ending in ("closed", "ended") and line.length_mm >= shortest_mm
 
 
