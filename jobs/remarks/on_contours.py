@@ -5,6 +5,7 @@ Signals in: the traced lines, and what was asked for. Signals out: texts, each w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -107,8 +108,11 @@ def _of_leads(name: str, asked: Lead, closed: list[Line]) -> Iterator[str]:
         if len(short) > FEW
         else ""
     )
+    fits_mm = math.floor(10 * short[0][0]) / 10  # in whole tenths
+    kind = ",line" if asked.kind == "line" else ""
+    fits = f"; --{name} {fits_mm:g}mm{kind} fits everywhere" if fits_mm else ""
     yield (
-        f"there is no room for a {name} of {asked.size_mm:g} mm everywhere: {', '.join(listed)}{more}"
+        f"there is no room for a {name} of {asked.size_mm:g} mm everywhere: {', '.join(listed)}{more}{fits}"
     )
 
 

@@ -228,7 +228,7 @@ def test_names_on_the_sheet_do_not_hide_each_other_and_the_list_says_how_many_th
         """async () => {
             const { besideOthers } = await import("/page/layers.js");
             const context = document.createElement("canvas").getContext("2d"), taken = [];
-            return [0, 1, 2, 9].map((k) => besideOthers(context, taken, 100 + 30 * k, 50, 1, "unexplained 1"));
+            return [0, 1, 2, 9].map((k) => besideOthers(context, taken, 30 * k, 50, 1, "unexplained 1"));
         }"""
     )
     heights = [y for _, y in places]
