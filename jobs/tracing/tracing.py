@@ -118,7 +118,8 @@ class Tracing:
         yield from of_picture_edge(followed, drawing)
         if self.settings.line.lines in ("contours", "outer"):
             yield from of_pieces(drawing, followed, self.of_head)
-            if not self.settings.contour.contouring().asks:  # which has a remark of its own
+            tool, contour = self.settings.tool, self.settings.contour.contouring()
+            if tool.cutter() is None and not contour.asks:  # which say it in their own words
                 yield from of_open(followed)
         yield from of_order(followed, self.settings.line.order)
         if led is not None:
