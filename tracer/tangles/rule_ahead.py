@@ -23,10 +23,12 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import direction, heading_of
 from morfax.motion.polyline import evenly, length_mm
+from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.rings import FARTHEST_MM, FARTHEST_WIDTHS
+from morfax.tracer.junctions.width_change import STEP
 from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
@@ -38,7 +40,6 @@ from morfax.tracer.tangles.solution import TWICE, Approach
 from morfax.tracer.tangles.tangle import CLEAN_FRONTS, LEAST_BROAD, MOST_BROAD, ink_of
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
-EVERY_MM = 0.1  # of the way behind there is a place; by trial
 # for each width of its length, as misfit: a right rule leaves less; by trial on teeth at 200 to 600 dpi, of
 # which those that were looked at left 0.001 to 0.012
 LEFT = 0.014
@@ -64,7 +65,7 @@ def rule_ahead(view: View, approach: Approach, softness_mm: float) -> Plan | Non
         rule = _explained(ink, way, TWICE * most)
         if rule is not None and most <= rule.misfit < TWICE * most:
             rule = _with_free_end(ink, rule)
-        if rule is not None and rule.misfit < most and _leads_on(rule, incoming):
+        if rule is not None and rule.misfit < most and _leads_on(rule, incoming, view.width_mm):
             return _plan(incoming, approach.stands, rule)
     return None
 
@@ -105,21 +106,22 @@ def _with_free_end(ink: SeenInk, rule: Rule) -> Rule | None:
     )
 
 
-def _leads_on(rule: Rule, incoming: Leg) -> bool:
-    """Whether a rule begins ahead of a leg, and not back along it."""
-    return float(rule.ahead @ direction(incoming.heading_rad)) > 0
+def _leads_on(rule: Rule, incoming: Leg, width_mm: float) -> bool:
+    """Whether a rule begins ahead of a leg, and not back along it, with the pen of its line."""
+    is_ahead = float(rule.ahead @ direction(incoming.heading_rad)) > 0
+    return is_ahead and abs(2 * rule.half_mm / width_mm - 1) < STEP
 
 
 def _lasts(view: View, fronts: Fronts) -> list[int]:
     """The fronts to which a rule may lead, beyond a corner and as broad as the line: the nearest of those
     that are so one after the other, and before it, or without it, the two nearest that are so alone, as
-    between sides that run together. None beyond where the ink forks, or near its end.
+    between sides that run together. None if the ink forks before, and none near its end.
     """
     goes_on = fronts.beyond_mm() > ABOUT_WIDTHS * view.width_mm
     clean, is_beyond, come, alone = 0, False, -1, list[int]()
     for k in np.flatnonzero(goes_on).tolist():
         if fronts.at[k] == come:
-            break
+            return []
         come = fronts.at[k]
         if not LEAST_BROAD < fronts.breadth_mm[k] / view.width_mm < MOST_BROAD:
             clean, is_beyond = 0, is_beyond or k > CLEAN_FRONTS
@@ -134,8 +136,8 @@ def _lasts(view: View, fronts: Fronts) -> list[int]:
 def _behind(approach: Approach, reach_mm: float) -> Array:
     """The way (n, 2) mm by which the head came, as far as the wave reaches, to the end of its leg."""
     place_mm, incoming = approach.stands[0], approach.incoming
-    come = evenly(np.vstack([approach.trail.recent(), place_mm]), EVERY_MM)
-    come = come[-round(reach_mm / EVERY_MM) :]
+    come = evenly(np.vstack([approach.trail.recent(), place_mm]), LOOKED_MM)
+    come = come[-round(reach_mm / LOOKED_MM) :]
     to_end_mm = ahead_mm(place_mm, incoming)
     if to_end_mm > 0:
         return np.vstack([come, incoming.at(np.array([-0.5 * to_end_mm, 0.0]))])

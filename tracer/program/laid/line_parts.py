@@ -52,11 +52,11 @@ def is_bare(line: Line) -> bool:
 
 
 def is_clear(drawing: Drawing) -> bool:
-    """Whether a drawing is of lines that show where a pen was: on large pixels each step of them looks like
-    a corner.
+    """Whether a drawing is of lines that show where a pen was: of pixels that no lens has softened each step
+    looks like a corner.
     """
-    is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
-    return is_fine and not drawing.grainy and not drawing.edges_mm
+    is_soft = drawing.noise.softness_px > 0 and not drawing.is_hard
+    return is_soft and not drawing.grainy and not drawing.edges_mm
 
 
 def rest_of(way: Array, first: int, last: int, is_closed: bool) -> tuple[Array, ...]:
