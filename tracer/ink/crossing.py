@@ -29,7 +29,7 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.ink.crossing_on_ink import WaysOn, told_by_ink
+from morfax.tracer.ink.crossing_on_ink import WaysOn, is_explained, told_by_ink
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
@@ -110,6 +110,11 @@ class Crossing:
     def as_drawn(self, drawn: WaysOn) -> Crossing:
         """The same crossing with its lines going on in another way."""
         return replace(self, drawn=drawn, _covers={})
+
+    @cached_property
+    def is_explained(self) -> bool:
+        """Whether its lines explain its ink."""
+        return is_explained(self)
 
     @cached_property
     def turnings_rad(self) -> Array:

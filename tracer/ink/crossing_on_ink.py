@@ -107,6 +107,12 @@ def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     return told
 
 
+def is_explained(crossing: Crossing) -> bool:
+    """Whether a pen along the ways of a crossing leaves its ink."""
+    ink = _Ink.about(crossing, crossing.ways_mm)
+    return ink.is_empty or AsDrawn(crossing, ink).off < OFF
+
+
 def _is_plain(crossing: Crossing, told: WaysOn) -> bool:
     """Whether all lines of a crossing go straight on."""
     costs = crossing.turnings_rad

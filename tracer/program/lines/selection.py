@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
+from morfax.motion.median import median
 from morfax.motion.nesting import lies_inside, size_mm
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing import lettering
@@ -70,7 +71,7 @@ class Contour:
         stroke = self.stroke
         some = slice(None, None, max(1, len(stroke.middles_mm) // LOOKED_AT))
         places, filled = stroke.middles_mm[some], stroke.filled[some]
-        odd = places[np.abs(filled / np.median(filled) - 1) > PLAIN]
+        odd = places[np.abs(filled / median(filled) - 1) > PLAIN]
         clear_mm = nearest_mm(places, odd) if len(odd) else np.zeros(len(places))
         apart_mm, kept = STARTS_WIDTHS * stroke.width_mm, list[tuple[float, float]]()
         places = places[np.argsort(-clear_mm, kind="stable")]
