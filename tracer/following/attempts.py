@@ -189,7 +189,7 @@ class Attempts:
         return self._with_other_turns(stance, run) if tries else run
 
     def _from_end(self, run: Followed, back: Followed, other: Followed) -> Followed:
-        """An open line from end to end; or the other way round, if that closes and the end is an overrun.
+        """An open line from end to end; or the other way round, if that closes and the end is no overrun.
 
         Where the head cannot set out from the one end, as on a few pixels that bend, it does from the other.
         """

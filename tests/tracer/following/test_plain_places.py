@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -91,3 +93,21 @@ def test_a_scan_of_two_levels_is_followed_within_half_a_pixel() -> None:
     run = trace(drawing).lines[0]
     off_mm = distance(run.xy_mm[::4], lobes).path_to_reference.max_mm
     assert off_mm < 0.5 * drawing.finer * drawing.pitch_mm
+
+
+@pytest.mark.parametrize("pitch_mm", [0.04, 0.25])
+def test_the_ring_about_a_place_is_outside_of_its_own_ink_and_of_several_pixels(
+    pitch_mm: float,
+) -> None:
+    """Within half a width it would see ink all round; far out it sees other lines."""
+    radii = list[float]()
+
+    def ring(_: Array, radius_mm: float) -> list[Array]:
+        radii.append(radius_mm)
+        return []
+
+    view = SimpleNamespace(on_edge=False, width_mm=0.5, pitch_mm=pitch_mm, ring=ring)
+    assert plain_places._heading(cast(Any, view), np.zeros(2)) is None
+    (radius_mm,) = radii
+    assert radius_mm > 0.75 * view.width_mm and radius_mm >= 4 * pitch_mm
+    assert radius_mm < max(1.25 * view.width_mm, 6 * pitch_mm)

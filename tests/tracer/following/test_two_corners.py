@@ -18,6 +18,7 @@ from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles import likeness
 from tests.tracer.inked import UM, arc, inked, polyline
 
 TURN = np.radians(60)
@@ -165,3 +166,34 @@ def test_of_several_ways_by_two_corners_the_one_that_gains_most_is_taken(
     felt = cast(Any, SimpleNamespace(seen=np.zeros((9, 3))))
     planner = cast(Any, SimpleNamespace(view=None))
     assert two_corners.or_two_corners(planner, felt, None) == 0.3
+
+
+class LikeTwo:
+    """Ink about any place of which two corners leave nothing, legs a little, and a round way much."""
+
+    @classmethod
+    def about(cls, *_: object) -> LikeTwo:
+        return cls()
+
+    def misfit(self, places: Array) -> float:
+        return {two_corners.PLACES: 1.0, 2 * two_corners.PLACES: 0.0}.get(len(places), 10.0)
+
+
+@pytest.mark.parametrize(
+    ("moved_mm", "is_found"), [((0.1, -0.1), True), ((0.1, -1.1), False), ((1.1, -0.1), False)]
+)
+def test_neither_end_of_a_side_moves_farther_than_there_is_room(
+    moved_mm: tuple[float, float], is_found: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Farther on there is other ink, which a side explains as well."""
+    monkeypatch.setattr(likeness, "Patch", LikeTwo)
+    monkeypatch.setattr(likeness.Pen, "of", lambda *_: None)
+    monkeypatch.setattr(
+        two_corners, "_settled", lambda _, __, along_mm, ___: along_mm + moved_mm
+    )
+    stands = np.array([-5.0, 0.0]), 0.0
+    planner = cast(Any, SimpleNamespace(view=SimpleNamespace(width_mm=0.5), stands=stands))
+    sides = two_corners._Sides(leg_from(0, 0), leg_from(2, 0.6), np.array([[0.5, -0.5]]), 1.0)
+    round_mm = np.linspace([0.0, 0.0], [2.0, 0.6], 41)
+    found = two_corners._better(planner, sides, round_mm, two_corners.OVER_FELT)
+    assert (found is not None) is is_found
