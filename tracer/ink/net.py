@@ -25,7 +25,7 @@ from morfax.tracer.ink.felt import FEWEST_STATIONS, Parted, whole
 from morfax.tracer.ink.felt_lines import FeltLine, end_leg
 from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import Run
-from morfax.tracer.ink.stretches import FeltSheet
+from morfax.tracer.ink.stretches import FeltSheet, with_width
 from morfax.tracer.sensing.leg import FACING, Leg, turn
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
@@ -156,6 +156,13 @@ def _two_lines(sheet: FeltSheet, number: int) -> list[Run]:
     two = strands(sheet.taken(number).stations, width_mm, sheet.ends[number])
     least_mm = 0.0 if is_known else STILL_SHARE * measured.length_mm
     return two if two and two[0].length_mm > least_mm else []
+
+
+def shows_two_lines(sheet: FeltSheet, number: int) -> bool:
+    """Whether the rims along a stretch are for a while those of two lines of a clean sheet's pen."""
+    pen_mm = sheet.doubled.pen_mm
+    two = strands(with_width(sheet.felt[number], pen_mm), pen_mm, sheet.ends[number])
+    return bool(two) and two[0].length_mm > STILL_SHARE * sheet.measured[number].length_mm
 
 
 def _is_unclear(sheet: FeltSheet, number: int, is_own: bool) -> bool:

@@ -19,7 +19,7 @@ from morfax.tracer.effort import ROUNDS
 from morfax.tracer.ink.chains import Junctions, Side
 from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS
-from morfax.tracer.ink.net import Net, net_of
+from morfax.tracer.ink.net import Net, net_of, shows_two_lines
 from morfax.tracer.ink.stretches import FeltSheet
 
 # of a line's width: two that go on from both its ends, so narrow and so straight on, run together in it; by
@@ -65,7 +65,7 @@ def solved(sheet: FeltSheet, told: Told | None = None) -> Junctions:
             two |= too_long
             bare -= _beside(junctions.net, too_long.union(together))
             continue
-        if further := _left_over(junctions, sheet, two | bare) or _far(junctions, sheet, two):
+        if further := _unexplained(junctions, sheet, two | bare):
             sheet.together.update(further)
             for stretch in further:
                 sheet.widths_mm[stretch] = sheet.doubled.pen_mm
@@ -79,6 +79,15 @@ def solved(sheet: FeltSheet, told: Told | None = None) -> Junctions:
         two |= more & (doubled | sheet.together)
         bare |= more - two
     return Junctions(net_of(sheet, two | bare), sheet.settings, known)
+
+
+def _unexplained(junctions: Junctions, sheet: FeltSheet, known: set[int]) -> set[int]:
+    """The stretches along which two lines explain ink that nothing else does; some are known to be two."""
+    for some in (_left_over, _far):
+        stretches = some(junctions, sheet, known)
+        if found := {n for n in stretches if shows_two_lines(sheet, n)}:
+            return found
+    return set()
 
 
 def _left_over(junctions: Junctions, sheet: FeltSheet, known: set[int]) -> set[int]:
