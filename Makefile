@@ -10,7 +10,13 @@ $(VENV)/installed: pyproject.toml
 	$(BIN)/pip install --quiet --disable-pip-version-check -e '.[dev]'
 	touch $@
 
-demo: $(VENV)/installed
+# without what only tests and checks need, which takes several times as long to get
+$(VENV)/plain: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check -e .
+	touch $@
+
+demo: $(VENV)/plain
 	$(BIN)/morfax run samples/cam.png -o demo
 
 # on every core; worksteal keeps the tests of a file together as long as both have work, so fixtures are made once

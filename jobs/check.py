@@ -6,24 +6,22 @@ by its speeds and accelerations.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from morfax.jobs.figures import Figures
 from morfax.jobs.listener import SILENT, Listener
+from morfax.jobs.machine.running import duration_s, machine_for
 from morfax.jobs.media import files as medium
-from morfax.jobs.wrong_use import WrongUse, settings_checked
+from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
     from morfax.player.gcode.check.checked import Checked
     from morfax.player.gcode.check.findings import Finding
     from morfax.player.gcode.check.motion_rules import Stock
-    from morfax.player.gcode.check.steps import Step
     from morfax.recorder.gcode.machine import Machine
-    from morfax.recorder.gcode.program_text import Block
     from morfax.tracer.operator.operator import Panel
 
 OTHER_MEDIA = (".steps", ".cubic", ".plt", ".hpgl", ".dxf", ".svg")
@@ -67,7 +65,7 @@ class CheckJob:
             )
         if self.picture is not None:
             medium.outgoing(self.picture, self.program)
-        made = self._machine()
+        made = machine_for(self.program, self.machine)
         with listener.progress("checking the program", 1.0) as advance:
             checked = check_program(self.program, made, self.stock, advance)
         surface_mm = self.stock.surface_mm if self.stock else 0.0
@@ -79,23 +77,6 @@ class CheckJob:
             "findings": [_told(finding) for finding in checked.findings],
         }
         return CheckResult(figures, checked, made, self.stock)
-
-    def _machine(self) -> Machine:
-        """The machine that is given, that the program names, or the default."""
-        from morfax.player.gcode.machine_reader import machine_of
-        from morfax.recorder.gcode.machine import machine
-
-        if self.machine is None:
-            lines = self.program.read_bytes().decode("latin-1").splitlines()
-            return machine_of(lines, str(self.program)) or machine()
-        with settings_checked():
-            made = machine(self.machine)
-        if not medium.is_gcode(FilePath(f"program{made.suffix}")):
-            raise WrongUse(
-                f"--machine {made.name} takes no G-code, and check reads G-code alone; give a machine that "
-                "takes it, `morfax machines` lists them"
-            )
-        return made
 
 
 def _told(finding: Finding) -> dict[str, Any]:
@@ -143,39 +124,3 @@ def _figures(checked: Checked, machine: Machine, surface_mm: float) -> dict[str,
                     "travel_mm": high - low,
                 }
     return figures
-
-
-def duration_s(checked: Checked, machine: Machine) -> float:
-    """How long the machine runs: its speeds and accelerations, and the dwells of the program."""
-    from morfax.motion.arrays import Array
-    from morfax.recorder.gcode.running_time import running_time_s
-
-    if not checked.steps:
-        return 0.0
-    import numpy as np
-
-    start: Array = np.array(checked.steps[0].begin_mm)
-    blocks = _blocks(checked.steps, checked.said)
-    return running_time_s(start, blocks, replace(machine, begin=(), end=(), feeds=True))
-
-
-def _blocks(steps: Sequence[Step], said: Sequence[tuple[int, str]]) -> list[Block]:
-    """Steps as blocks, with the words for the tool between them."""
-    from morfax.recorder.gcode.program_text import DWELL, WORDS, Block
-
-    words: dict[int, list[str]] = {}
-    for number, text in said:
-        words.setdefault(number, []).append(text)
-    blocks: list[Block] = []
-    for number, step in enumerate(steps):
-        if number in words:
-            blocks.append(Block(WORDS, step.begin_mm, words=tuple(words[number])))
-        move = step.move
-        if move.dwell_s or move.kind == DWELL:
-            blocks.append(Block(DWELL, step.begin_mm, dwell_s=move.dwell_s))
-            continue
-        centre = (0.0, 0.0)
-        if move.turned_rad:
-            centre = move.centre_mm[0] - step.begin_mm[0], move.centre_mm[1] - step.begin_mm[1]
-        blocks.append(Block(move.kind, move.end_mm, centre, move.feed_mm_s))
-    return blocks

@@ -9,3 +9,5 @@ from collections.abc import Mapping
 from typing import Any
 
 Figures = Mapping[str, Any]
+
+MOST_PLACES = 30  # of one kind, the worst first, that a picture marks and a table lists; the figures have all

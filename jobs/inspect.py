@@ -15,6 +15,7 @@ import numpy as np
 from morfax.jobs.figures import Figures
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machine.playing import ByHand
+from morfax.jobs.machine.running import on_machine
 from morfax.jobs.media import files as medium
 from morfax.jobs.readings import program_figures
 from morfax.jobs.readings.carriers import CarrierReading, listen
@@ -62,8 +63,10 @@ class InspectJob:
             return self._of_tape(listener)
         self.by_hand.for_file(self.tape)
         listener.compiling("the controls", ("motion", "player"))
-        figures = program_figures.of_program(self.tape)
-        return InspectResult({"program": str(self.tape), **figures})
+        machine = self.by_hand.machine
+        figures = program_figures.of_program(self.tape, machine)
+        on_it = on_machine(self.tape, machine)
+        return InspectResult({"program": str(self.tape), **on_it, **figures})
 
     def _of_tape(self, listener: Listener) -> InspectResult:
         """What a tape says of itself, and what its tracks hold, as far as that can be known."""

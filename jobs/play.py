@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machine.playing import ByHand, Playing
 from morfax.jobs.machine.recording import RecordingUnit
+from morfax.jobs.machine.running import on_machine
 from morfax.jobs.media import files as medium
 from morfax.jobs.media import outlines
 from morfax.jobs.media.live import PIPE, Intake
@@ -169,6 +170,7 @@ class PlayJob:
             "paths": [str(file) for file in paths] or None,
             "following": [str(file) for file in charts] or None,
             "picture": None if picture is None else str(picture),
+            **({} if fault else on_machine(self.tape, self.by_hand.machine)),
             **_figures(passage, playback, fault),
         }
         if not fault and not passage.worked:

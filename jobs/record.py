@@ -86,6 +86,7 @@ class RecordJob:
             **self._called(program),
             "duration_s": recording.duration_s,
             "length_mm": length,
+            **_size(placed),
             "start_place_mm": placed.positions_mm[0],
             "end_place_mm": placed.positions_mm[-1],
             **_density(recording, program, length),
@@ -206,6 +207,17 @@ def _density(
         return {"bits_per_mm": None, "as_tape_bits_per_mm": None}
     as_tape = None if medium.is_tape(program) else _tape_bits(recording.duration_s) / length_mm
     return {"bits_per_mm": 8 * size / length_mm, "as_tape_bits_per_mm": as_tape}
+
+
+def _size(path: Path) -> dict[str, float]:
+    """How wide and high what is cut is: a drawing in another unit than it says shows there."""
+    import numpy as np
+
+    runs = list(path.runs())
+    if not runs:
+        return {}
+    width_mm, height_mm = np.ptp(np.vstack(runs), axis=0).tolist()
+    return {"width_mm": width_mm, "height_mm": height_mm}
 
 
 def _tape_bits(duration_s: float) -> float:

@@ -122,7 +122,7 @@ def _in_work(path: Path) -> list[Array]:
     if not runs:
         raise MotionFault(
             "the path never has its tool in the work; z must come down to"
-            f" {IN_WORK_BELOW_MM} mm or below somewhere"
+            f" {IN_WORK_BELOW_MM} mm or below somewhere: lower it, or take the column z out"
         )
     return runs
 

@@ -3,7 +3,7 @@
 A bare number has one documented unit: mm, mm/s, Hz, s or degrees. A space may stand between number and unit,
 and capitals do not matter.
 
-    length      um µm mm cm m in "           speed    mm/s mm/min m/min um/s cm/s in/s in/min
+    length      um µm mm cm m in " 1/8in     speed    mm/s mm/min m/min um/s cm/s in/s in/min
     frequency   Hz kHz MHz                   time     us ms s min h
     angle       deg ° rad turn               share    % or a bare number (1 is 100 %)
 """
@@ -48,12 +48,17 @@ _MEMORY_BYTES = {"mb": 1e6, "gb": 1e9, "tb": 1e12, "mib": 2.0**20, "gib": 2.0**3
 _NUMBER_AND_UNIT = re.compile(
     r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z/\"°%]*)", re.ASCII
 )
+_INCHES = re.compile(r"(?:(\d+)[ -])?(\d+)/([1-9]\d*)\s*(?:in|\")", re.ASCII)
 
 
 def parse_length_mm(text: str) -> float:
-    """Length in mm of "10mm", "50um", "0.4in" or a bare number of mm, within a kilometre either way."""
-    allowed = "10mm, 50um, 1cm, 0.4in or a bare number of mm, up to 1000m"
-    length_mm = _parse(text, "length", _LENGTH_MM, allowed)
+    """Length in mm of "10mm", "50um", "1/8in" or a bare number of mm, within a kilometre either way."""
+    allowed = "10mm, 50um, 1cm, 0.4in, 1/8in or a bare number of mm, up to 1000m"
+    if inches := _INCHES.fullmatch(text.strip().lower()):
+        whole, above, below = (float(number or 0) for number in inches.groups())
+        length_mm = (whole + above / below) * MM_PER_INCH
+    else:
+        length_mm = _parse(text, "length", _LENGTH_MM, allowed)
     if abs(length_mm) > LONGEST_MM:
         raise ValueError(_refusal(text, "length", allowed))
     return length_mm

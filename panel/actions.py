@@ -90,7 +90,10 @@ def _value(field: commands.OptionField, value: Any, bench: Bench) -> str | bool:
     if field.kind == "switch" and value is True:
         return True
     if not isinstance(value, str) or field.kind == "switch" or len(value) > LONGEST_VALUE:
-        raise WrongUse(f"{field.option} cannot be {str(value)[:40]!r}")
+        raise WrongUse(
+            f"{field.option} cannot be {str(value)[:40]!r}; a switch is on or off, anything else is text of "
+            f"up to {LONGEST_VALUE} letters"
+        )
     own = tuple(bench.own) if field.kind == "file" else ()
     is_choice = bool(field.choices) or field.kind == "file"
     if is_choice and value not in field.choices + own:
@@ -166,7 +169,9 @@ def _pace(bench: Bench, action: dict[str, Any]) -> None:
         or not isinstance(times, int | float)
         or not least <= times <= most
     ):
-        raise WrongUse(f"the pace may be {least:g} to {most:g} times the head's own speed")
+        raise WrongUse(
+            f"the pace cannot be {str(times)[:40]}; it may be {least:g} to {most:g} times the head's own"
+        )
     bench.control("pace", times)
 
 
@@ -179,7 +184,9 @@ def _override(bench: Bench, action: dict[str, Any]) -> None:
         or not isinstance(share, int | float)
         or not least <= share <= most
     ):
-        raise WrongUse(f"the override may be {least:.0%} to {most:.0%} of the program's feed")
+        raise WrongUse(
+            f"the override cannot be {str(share)[:40]}; it may be {least:.0%} to {most:.0%} of the feed"
+        )
     result = bench.kept.result
     if result is None or result.get("program") is None:
         raise WrongUse("the machine has no program yet; run first")

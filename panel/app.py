@@ -147,7 +147,9 @@ class _Pages:
                 break
         try:
             if option != "any" and option not in own_files.CALLED:
-                raise WrongUse("this server takes cards, settings and machines")
+                raise WrongUse(
+                    f"{option} takes no file here; this server takes cards, settings and machines"
+                )
             option, file = own_files.take(
                 bench.folder, at["name"], content, option, bench.command_line
             )

@@ -87,7 +87,10 @@ def _file(drawing: FilePath) -> FilePath:
 def _places(at: Any) -> list[str]:
     """Places as the command line takes them; raises WrongUse where there are none, or too many."""
     if not isinstance(at, list) or not 0 < len(at) <= MOST_PLACES:
-        raise WrongUse(f"a correction has 1 to {MOST_PLACES} places")
+        came = len(at) if isinstance(at, list) else "none"
+        raise WrongUse(
+            f"a correction has 1 to {MOST_PLACES} places, and {came} came; drag a shorter way"
+        )
     return [_place(place) for place in at]
 
 
@@ -102,5 +105,7 @@ def _place(place: Any) -> str:
 def _number(number: Any) -> int:
     """The number of a correction."""
     if isinstance(number, bool) or not isinstance(number, int) or number < 1:
-        raise WrongUse(f"{str(number)[:40]!r} is no number of a correction")
+        raise WrongUse(
+            f"{str(number)[:40]!r} is no number of a correction; they are counted from 1, as in the list"
+        )
     return number

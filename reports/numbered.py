@@ -5,14 +5,17 @@ Signals in: the result of the job `lines`. Out: a picture; its axes are sheet co
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.reports import corrected, vector
-from morfax.reports.canvas import LARGEST_IMAGE_PX, REFERENCE, save, sheet_figure
-from morfax.reports.looks import BESIDE_PT, LINE_PT, SEE_THROUGH, SPOT_PT, TITLE_PT, WORDS_PT
+from morfax.motion.units import POINTS_PER_INCH
+from morfax.reports import corrected, labels, vector
+from morfax.reports.canvas import DPI, LARGEST_IMAGE_PX, REFERENCE, save, sheet_figure
+from morfax.reports.looks import BESIDE_PT, LINE_PT, SPOT_PT, TITLE_PT, WORDS_PT
+from morfax.reports.plate import Caption, Mark, Plate, Polyline, Spot, View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,6 +35,7 @@ COLOURS = (
 )
 LEFT_OUT = "#b0b0b0"
 LETTERING = "#e0b000"
+PAPER = 255
 
 
 def draw_numbered(result: LinesResult) -> None:
@@ -43,17 +47,18 @@ def draw_numbered(result: LinesResult) -> None:
     figure = sheet_figure(width_mm, height_mm)
     axes = figure.add_subplot()
     extent = (0.0, width_mm, 0.0, height_mm)
-    axes.imshow(_painted(seen), extent=extent, interpolation="nearest", zorder=0)
+    image = _painted(seen)
+    axes.imshow(image, extent=extent, interpolation="nearest", zorder=0)
     for line in seen.lines:
         colour = _colour(line.number)
         axes.plot(*line.places_mm.T, color=colour, linewidth=LINE_PT, zorder=2)
-    for entry in seen.entries:
-        _number(axes, entry)
     axes.set(xlim=extent[:2], ylim=extent[2:], xlabel="X, mm", ylabel="Y, mm", aspect="equal")
     if drawing.corrected is not None:
         for mark in corrected.marks(drawing.corrected):
             vector.put(axes, mark)
     _legend(axes, seen)
+    figure.draw_without_rendering()  # the layout gives the axes their size
+    _put_numbers(axes, seen, _inked(image, extent), extent)
     name = drawing.file.name if drawing.file else "drawing"
     axes.set_title(f"{name}: numbers for --lines", fontsize=TITLE_PT)
     save(figure, result.picture)
@@ -91,33 +96,34 @@ def _rgb(colour: str) -> tuple[int, ...]:
     return tuple(int(colour[at : at + 2], 16) for at in (1, 3, 5))
 
 
-def _number(axes: Axes, entry: Entry) -> None:
-    """Write a number beside a place of its line."""
+def _number(entry: Entry) -> Iterator[Mark]:
+    """The number beside a place of its line, and the ring of a dot."""
     colour = _colour(entry.number) if entry.is_in_contours else REFERENCE
     if entry.kind == "dot":
-        axes.plot(
-            *entry.place_mm,
-            marker="o",
-            markersize=SPOT_PT,
-            markerfacecolor="none",
-            color=colour,
-        )
-    box = {
-        "boxstyle": "round,pad=0.15",
-        "facecolor": "white",
-        "edgecolor": colour,
-        "alpha": SEE_THROUGH,
-    }
+        yield Spot(entry.place_mm, "o", SPOT_PT, colour)
     text = str(entry.number) if entry.is_in_contours else f"({entry.number})"
-    axes.annotate(
-        text,
-        entry.place_mm,
-        BESIDE_PT,
-        textcoords="offset points",
-        fontsize=WORDS_PT,
-        color=colour,
-        bbox=box,
-    )
+    yield Caption(entry.place_mm, text, WORDS_PT, colour, BESIDE_PT, ring=colour)
+
+
+def _inked(image: NDArray[np.uint8], extent: View) -> Polyline:
+    """The ink of a painted sheet, as places that numbers keep clear of."""
+    rows, columns = np.nonzero(image.min(axis=2) < PAPER)
+    places = np.full((2 * len(rows), 2), np.nan)  # with a gap behind each
+    places[::2, 0] = (columns + 0.5) / image.shape[1] * extent[1]
+    places[::2, 1] = (1 - (rows + 0.5) / image.shape[0]) * extent[3]
+    return Polyline(places, LEFT_OUT, LINE_PT)
+
+
+def _put_numbers(axes: Axes, seen: Survey, ink: Polyline, view: View) -> None:
+    """Write the numbers, each where it hides neither another nor the ink."""
+    plate = Plate(view, marks=[mark for entry in seen.entries for mark in _number(entry)])
+    plate.add(ink)
+    box = axes.get_window_extent()
+    pt_per_px = POINTS_PER_INCH / DPI
+    labels.spread(plate, box.width * pt_per_px, box.height * pt_per_px)
+    for mark in plate.marks:
+        if mark is not ink:
+            vector.put(axes, mark)
 
 
 def _legend(axes: Axes, seen: Survey) -> None:
@@ -127,4 +133,4 @@ def _legend(axes: Axes, seen: Survey) -> None:
     if seen.lettering:
         axes.plot([], [], color=LETTERING, linewidth=4, label="likely lettering")
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper right", fontsize=WORDS_PT, framealpha=SEE_THROUGH)
+        axes.figure.legend(loc="outside lower right", ncols=2, fontsize=WORDS_PT)

@@ -42,7 +42,7 @@ from morfax.reports.looks import (
     THIN_PT,
     WORDS_PT,
 )
-from morfax.reports.page import INSETS, PageLayout, lay_out
+from morfax.reports.page import INSETS, PageLayout, lay_out, shortened
 from morfax.reports.plate import (
     BLACK,
     Caption,
@@ -50,6 +50,7 @@ from morfax.reports.plate import (
     Plate,
     Polyline,
     Spot,
+    TintedArea,
     View,
     has_free_corner,
     with_gaps,
@@ -69,7 +70,6 @@ MARGIN_RIGHT = 0.28  # of the width: room for a legend where no corner is free
 FEW_NUMBERS = 4
 PIXELS = ".png"
 MOST_NUMBERED = 60  # lines; chosen
-LETTERS_PER_IN = 11.0  # of a title of 10 points: capitals and underscores too
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,25 +139,14 @@ def _with_margin(view: View) -> View:
     return left, left + (right - left) / (1 - MARGIN_RIGHT), low, high
 
 
-def shortened(title: str, letters: int) -> str:
-    """A title in so many letters: of a long one a part of the drawing's name, with which it begins, is left
-    out, and not what the colours mean.
-    """
-    if len(title) <= letters:
-        return title
-    first = letters // 4
-    return f"{title[:first]}…{title[first + 1 - letters :]}"
-
-
 def _whole(picture: Picture, view: View, page: PageLayout) -> tuple[Plate, Colours | None]:
     """The whole contour with its marks, and what its colours mean."""
-    letters = round(page.main.width_in * LETTERS_PER_IN)
     title = picture.title
     if len(picture.numbers_mm) > MOST_NUMBERED:
         title += (
             f"; the {MOST_NUMBERED} longest of {len(picture.numbers_mm)} lines have numbers"
         )
-    plate = Plate(view, shortened(title, letters))
+    plate = Plate(view, shortened(title, page.main.title_letters))
     _ground(plate, picture)
     scale = _contour(plate, picture)
     if picture.led is not None:
@@ -175,8 +164,16 @@ def _ground(plate: Plate, picture: Picture) -> None:
     """Draw what the path was compared with: the drawing in light grey, or the other path."""
     if picture.drawing is not None:
         plate.ground = grey(picture.drawing, plate.view, LIGHT)
+        plate.add(*_beside_sheet(picture.drawing.width_mm, plate.view))
     if picture.reference is not None and (runs := picture.reference.runs()):
         plate.add(Polyline(with_gaps(runs), REFERENCE, THIN_PT, dash=(4, 2), order=1))
+
+
+def _beside_sheet(width_mm: float, view: View) -> list[TintedArea]:
+    """What of a view lies right of the sheet: room for the legend, and no paper."""
+    _, right, low, high = view
+    corners = np.array([(width_mm, low), (right, low), (right, high), (width_mm, high)])
+    return [TintedArea(corners, UNMEASURED, 0.2, order=1)] if right > width_mm else []
 
 
 def _is_measured(picture: Picture) -> bool:

@@ -24,6 +24,7 @@ from morfax.reports.canvas import FLATTEST, ROOM_IN, TALLEST, WIDTH_IN
 INSETS = 3  # at most
 WIDE = 0.6  # height to width, below which the enlargements stand below
 INSET_IN = 3.0  # a column or a row of enlargements
+LETTERS_PER_IN = 11.0  # of a title of 10 points: capitals and underscores too
 EDGE_IN = 0.5  # room for a title, and round what has no numbers
 
 
@@ -35,6 +36,11 @@ class Box(NamedTuple):
     width_in: float
     height_in: float
 
+    @property
+    def title_letters(self) -> int:
+        """How many letters of a title there is room for."""
+        return round(self.width_in * LETTERS_PER_IN)
+
 
 @dataclass(frozen=True, slots=True)
 class PageLayout:
@@ -45,6 +51,16 @@ class PageLayout:
     main: Box
     insets: list[Box]
     bar: Box | None
+
+
+def shortened(title: str, letters: int) -> str:
+    """A title in so many letters: of a long one a part of the drawing's name, with which it begins, is left
+    out, and not what the colours mean.
+    """
+    if len(title) <= letters:
+        return title
+    first = letters // 4
+    return f"{title[:first]}…{title[first + 1 - letters :]}"
 
 
 def lay_out(height_to_width: float, insets: int, *, has_bar: bool) -> PageLayout:

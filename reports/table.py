@@ -2,7 +2,8 @@
 
 Signals in: figures (see `jobs.figures`); values of None are left out. Out: JSON with the same keys, or text
 with the figures in the unit that reads best. Dictionaries inside that share a figure become the rows of one
-table; a list of them becomes a table of its own, whose rows are named after their first figure:
+table; a list of them becomes a table of its own, whose rows are named after their first figure. Of very many
+places it has the first, which are the worst:
 
     duration  26.4 s
                          RMS    95 %  largest
@@ -17,7 +18,7 @@ import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from morfax.jobs.figures import Figures
+from morfax.jobs.figures import MOST_PLACES, Figures
 from morfax.motion import units
 from morfax.motion.files import printable
 
@@ -56,15 +57,20 @@ def as_text(figures: Figures) -> str:
         if isinstance(value, Mapping)
     ]
     tables = _tables(rows)
-    lists = [_named(value) for value in told.values() if _is_listing(value)]
     alone = {
         key: value
         for key, value in told.items()
         if not (isinstance(value, Mapping) or _is_listing(value))
     }
     said = _in_columns([_told(key, value) for key, value in alone.items()], 2)
-    for listing in (*lists, *tables):
-        said += _in_columns(as_cells(listing), 1)
+    for listing in filter(_is_listing, told.values()):
+        is_of_places = next(iter(listing[0])).endswith("_place_mm")
+        shown = listing[:MOST_PLACES] if is_of_places else listing
+        said += _in_columns(as_cells(_named(shown)), 1)
+        if len(shown) < len(listing):
+            said.append(f"and {len(listing) - len(shown)} more, which --json lists")
+    for table in tables:
+        said += _in_columns(as_cells(table), 1)
     return printable("\n".join(said))
 
 

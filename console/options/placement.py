@@ -11,7 +11,7 @@ import click
 
 from morfax.console.options.files import machine_names
 from morfax.console.options.groups import option, renamed
-from morfax.console.options.types import ANGLE, FEED, LENGTH, NUMBER, PLACE
+from morfax.console.options.types import ANGLE, FEED, LENGTH, PLACE, SHARE
 from morfax.jobs.machine.recording import PICK_UPS, RecordingUnit
 
 GROUP = "Program"
@@ -99,11 +99,11 @@ def unit_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     @option(
         GROUP,
         "--scale",
-        type=NUMBER,
+        type=SHARE,
         default=1.0,
         show_default=True,
-        help="Make X and Y this many times as large; the cutter's radius, leads and tabs scale with them, Z "
-        "does not.",
+        help="Make X and Y this many times as large, such as 0.5 or 50%; the cutter's radius, leads and tabs "
+        "scale with them, Z does not.",
     )
     @option(
         GROUP,

@@ -66,7 +66,7 @@ def _number(text: str) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise ValueError(f"{text!r} is no number; give one such as 20")
+        raise ValueError(f"{text!r} is no number; give one such as 0.5 or 20")
     return number
 
 

@@ -10,7 +10,7 @@ import click
 from morfax.console.options.desk import desk_options
 from morfax.console.options.files import FILE, Result
 from morfax.console.options.groups import Verb, option, renamed
-from morfax.console.options.tape import tape_options
+from morfax.console.options.tape import FOR_MACHINE, tape_options
 from morfax.jobs.inspect import InspectJob
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ Examples:
     help="Draw the punched tape of a .steps program (.png, .svg).",
 )
 @renamed("-o", "--picture")
+@FOR_MACHINE
 @tape_options
 @desk_options
 def command(tape: FilePath, picture: FilePath | None, by_hand: ByHand, desk: Desk) -> None:
@@ -42,6 +43,9 @@ def command(tape: FilePath, picture: FilePath | None, by_hand: ByHand, desk: Des
 
     If a tape cannot be played, the figures hold what can be known, and the fault says why. Of a program in
     another medium (.steps, .cubic, .ngc) the figures hold its format and what it does.
+
+    `duration` is what the simulated machine takes; of G-code `machine duration` is what the machine takes
+    that it is for, as `morfax check` says it.
     """
     result = InspectJob(tape, by_hand, picture).run(desk)
     figures = dict(result.figures)

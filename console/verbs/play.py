@@ -183,6 +183,9 @@ def command(
     With --device the tape comes from a sound device, as a recorder plays it. A drawing from CAD (.dxf, .svg)
     is recorded on a tape first, as `morfax record` does it. If the machine faults, the path before the fault
     is kept, with `.incomplete` in its name.
+
+    `duration` is what the simulated machine takes, whose rapids run at 20 mm/s; of G-code `machine duration`
+    is what the machine takes that it is for, as `morfax check` says it.
     """
     if (tape is None) == (intake.device is None):
         raise WrongUse("give a TAPE, or a --device that it comes from")

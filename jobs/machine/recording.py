@@ -67,7 +67,7 @@ class RecordingUnit:
         """Raise WrongUse where something is set that this medium does not have."""
         if program is None or not medium.is_tape(program):
             of_tapes = {"--pickup": self.pickup, "--plain": self.plain or None}
-            _refuse_set(of_tapes, f"tapes, {', '.join(medium.TAPES)}")
+            _refuse_set(of_tapes, "tapes", medium.TAPES)
         self._check_fit(program)
         if program is not None and medium.has_machine(program):
             self.chosen(program)
@@ -79,7 +79,7 @@ class RecordingUnit:
             "--plunge": self.plunge_mm_s,
             "--rapid": self.rapid_mm_s,
         }
-        _refuse_set(of_machines, f"G-code, {', '.join(medium.BLOCKS)}")
+        _refuse_set(of_machines, "G-code", medium.BLOCKS)
 
     def chosen(self, program: FilePath | None = None) -> Machine:
         """The machine for a program of G-code or a plotter's; raises WrongUse, CardFault."""
@@ -194,8 +194,11 @@ def rehearsed(
         )
 
 
-def _refuse_set(options: Mapping[str, object], media: str) -> None:
+def _refuse_set(options: Mapping[str, object], what: str, suffixes: tuple[str, ...]) -> None:
     """Raise WrongUse for the first option that is set, where the result is none of the media that have it."""
     for name, value in options.items():
         if value is not None:
-            raise WrongUse(f"{name} is for {media}; give -o such a name, or leave it out")
+            raise WrongUse(
+                f"{name} is for {what}, {', '.join(suffixes)}; name such a program, as by -o "
+                f"part{suffixes[0]}, or leave {name} out"
+            )

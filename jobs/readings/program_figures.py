@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from morfax.jobs.media.files import BLOCKS
+from morfax.jobs.media.files import is_gcode
 
 
-def of_program(file: FilePath) -> dict[str, Any]:
-    """The figures of a program; raises ProgramFault and FileFault."""
-    by_medium = {".steps": _of_steps, ".cubic": _of_cubic, **dict.fromkeys(BLOCKS, _of_blocks)}
+def of_program(file: FilePath, machine: str | None) -> dict[str, Any]:
+    """The figures of a program, of G-code as a machine reads it; raises ProgramFault and FileFault."""
+    if is_gcode(file):
+        return _of_blocks(file, machine)
+    by_medium = {".steps": _of_steps, ".cubic": _of_cubic}
     return by_medium.get(file.suffix.lower(), _of_other)(file)
 
 
@@ -61,12 +63,12 @@ def _of_cubic(file: FilePath) -> dict[str, Any]:
     }
 
 
-def _of_blocks(file: FilePath) -> dict[str, Any]:
+def _of_blocks(file: FilePath, machine: str | None) -> dict[str, Any]:
     """A program of lines and arcs: what it holds, its feeds, and where it goes."""
     from morfax.player.gcode.moves import DWELL, RAPID
     from morfax.player.gcode.pulses import play_pulses
 
-    playback = play_pulses(file)
+    playback = play_pulses(file, machine=machine)
     moves = playback.program.moves
     feeds = [move.feed_mm_s for move in moves if move.feed_mm_s] or [0.0]
     places = np.array([playback.program.start_mm, *(move.end_mm for move in moves)])

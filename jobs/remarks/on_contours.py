@@ -5,8 +5,11 @@ Signals in: the traced lines, and what was asked for. Signals out: texts, each w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
+
+from morfax.motion.by_number import numbered
 
 if TYPE_CHECKING:
     from morfax.tracer.cutter.contouring import Contouring, Lead
@@ -15,6 +18,9 @@ if TYPE_CHECKING:
     from morfax.tracer.program.lines.around import Around
     from morfax.tracer.program.program import Trace
 
+CLOSE = (
+    "if a closed line is meant, close its gap on the drawing, or by `morfax correct --bridge`"
+)
 FEW = 6  # lines that are listed with their leads; of more the shortest
 
 
@@ -32,13 +38,22 @@ def of_contouring(trace: Trace, contouring: Contouring) -> Iterator[str]:
     if contouring.lead_out is not None:
         yield from _of_leads("lead-out", contouring.lead_out, closed)
     asked = contouring.milling is not None and not contouring.by_machine
-    open_lines = sorted({line.number for line in trace.lines if _is_cut_open(line)})
-    if open_lines and (asked or contouring.moves_start):
-        numbers = ", ".join(map(str, open_lines))
-        are = f"line {numbers} is" if len(open_lines) == 1 else f"lines {numbers} are"
+    numbers = _cut_open(trace)
+    if numbers and (asked or contouring.moves_start):
         yield (
-            f"{are} open and cut as traced: direction, start and leads are for closed lines; if a closed line"
-            " is meant, close its gap on the drawing, or by `morfax correct --bridge`"
+            f"{numbered('line', numbers)} open and cut as traced: direction, start and leads are for closed"
+            f" lines; {CLOSE}"
+        )
+
+
+def of_open(trace: Trace) -> Iterator[str]:
+    """Open lines among closed ones, which run along with them as if they were contours of a part."""
+    numbers = [number for number in _cut_open(trace) if number not in trace.letters]
+    if numbers and any(line.ending == "closed" for line in trace.lines):
+        yield (
+            f"{numbered('line', numbers)} open, and run from end to end with the closed ones; to leave out "
+            "what is no outline, such as large letters, give the numbers of the others after --lines; "
+            f"{CLOSE}"
         )
 
 
@@ -93,8 +108,11 @@ def _of_leads(name: str, asked: Lead, closed: list[Line]) -> Iterator[str]:
         if len(short) > FEW
         else ""
     )
+    fits_mm = math.floor(10 * short[0][0]) / 10  # in whole tenths
+    kind = ",line" if asked.kind == "line" else ""
+    fits = f"; --{name} {fits_mm:g}mm{kind} fits everywhere" if fits_mm else ""
     yield (
-        f"there is no room for a {name} of {asked.size_mm:g} mm everywhere: {', '.join(listed)}{more}"
+        f"there is no room for a {name} of {asked.size_mm:g} mm everywhere: {', '.join(listed)}{more}{fits}"
     )
 
 
@@ -103,6 +121,11 @@ def _size_mm(name: str, line: Line) -> float:
     if line.leads is None:
         return 0.0
     return round(line.leads.in_mm if name == "lead-in" else line.leads.out_mm, 2)
+
+
+def _cut_open(trace: Trace) -> list[int]:
+    """The numbers of the lines that are cut and do not come round."""
+    return sorted({line.number for line in trace.lines if _is_cut_open(line)})
 
 
 def _is_cut_open(line: Line) -> bool:

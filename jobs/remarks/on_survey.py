@@ -59,7 +59,7 @@ def _of_left_out(seen: Survey) -> Iterator[str]:
     if seen.not_followed_mm and seen.not_followed_mm >= 1.0:
         left.append(f"{seen.not_followed_mm:.0f} mm of ink that only connects lines")
     if left:
-        yield f"--lines contours leaves out {'; '.join(left)}"
+        yield f"--lines contours leaves out {'; '.join(left)}: --lines all follows all ink"
 
 
 def _of_lettering(seen: Survey) -> Iterator[str]:

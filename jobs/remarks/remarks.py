@@ -60,7 +60,7 @@ def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
         if uncut_mm > UNCUT_SHARE * of_mm:
             yield (
                 f"{uncut_mm:.0f} of {of_mm:.0f} mm of line {number} are not cut, because the cutter does not "
-                "reach them; the figures list the places"
+                "reach them; the figures list the places, and a thinner --cutter reaches further"
             )
     if left.stretches:
         worst, count = left.stretches[0], len(left.stretches)
@@ -74,7 +74,8 @@ def of_cutter(beside: Trace, left: Left, cutter: Cutter) -> Iterator[str]:
     for number, count in Counter(line.number for line in beside.lines).items():
         if count > 1:
             yield (
-                f"line {number} is cut in {count} pieces; the cutter has no room between the pieces"
+                f"line {number} is cut in {count} pieces: the cutter has no room between them; a thinner "
+                "--cutter may cut it in one"
             )
 
 
@@ -124,7 +125,8 @@ def _of_turns(trace: Trace) -> Iterator[str]:
             if side is not None and not line.turns_at((x, y), side):
                 yield (
                     f"no line leads off to the {side} at junction {k} of {_named(line, trace)}, "
-                    f"{x:.1f},{y:.1f} mm: the head went straight on"
+                    f"{x:.1f},{y:.1f} mm: the head went straight on; check the card's turns, or draw that "
+                    "line up to the junction"
                 )
 
 

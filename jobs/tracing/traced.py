@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
+from morfax.jobs.figures import MOST_PLACES
 from morfax.jobs.media import files as medium
 from morfax.jobs.remarks.stub_lines import StubLines
 from morfax.jobs.remarks.two_lines import TwoLines
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from morfax.tracer.program.program import Trace
 
 Place = tuple[float, float]
-MARKED = 30  # of the places that the head left out, the longest are marked in the picture
 PALE_MARKED = 10  # of the pale lines: a plan has many
 REACHED_MM = PLOTTER_MM / 2  # half a step of a plotter: so far below 0 a place is written as 0
 SHEET = ZeroOnSheet("sheet")
@@ -81,15 +81,15 @@ class Traced:
             f"tab {row['tab']}": row["tab_place_mm"] for row in trace_figures.tabs(self.trace)
         }
         if self.trace.ink is not None:
-            lost = self.trace.ink.lost[:MARKED]
+            lost = self.trace.ink.lost[:MOST_PLACES]
             stops_mm |= {f"left {k}": (x, y) for k, (x, y, _) in enumerate(lost, 1)}
-            single = self.trace.ink.single[:MARKED]
+            single = self.trace.ink.single[:MOST_PLACES]
             stops_mm |= {f"two lines {k}": (x, y) for k, (x, y, _) in enumerate(single, 1)}
             pale = self.trace.ink.pale[:PALE_MARKED]
             stops_mm |= {f"pale {k}": (x, y) for k, (x, y, _) in enumerate(pale, 1)}
-        beside = enumerate(self.trace.unexplained[:MARKED], 1)
+        beside = enumerate(self.trace.unexplained[:MOST_PLACES], 1)
         stops_mm |= {f"unexplained {k}": place.place_mm for k, place in beside}
-        lost_mm = enumerate(self.trace.lost_outlines[:MARKED], 1)
+        lost_mm = enumerate(self.trace.lost_outlines[:MOST_PLACES], 1)
         stops_mm |= {f"lost outline {k}": lost.place_mm for k, lost in lost_mm}
         stops_mm |= self.two.marked_mm | self.stubs.marked_mm
         if self.left is None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from morfax.jobs.listener import never_back
-from morfax.jobs.remarks.on_contours import of_around, of_contouring, of_order
+from morfax.jobs.remarks.on_contours import of_around, of_contouring, of_open, of_order
 from morfax.jobs.remarks.on_edges import of_picture_edge
 from morfax.jobs.remarks.on_reference import of_reference, of_zero
 from morfax.jobs.remarks.remarks import of_cutter, remarks
@@ -118,6 +118,9 @@ class Tracing:
         yield from of_picture_edge(followed, drawing)
         if self.settings.line.lines in ("contours", "outer"):
             yield from of_pieces(drawing, followed, self.of_head)
+            tool, contour = self.settings.tool, self.settings.contour.contouring()
+            if tool.cutter() is None and not contour.asks:  # which say it in their own words
+                yield from of_open(followed)
         yield from of_order(followed, self.settings.line.order)
         if led is not None:
             yield from led.remarks()

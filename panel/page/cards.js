@@ -54,6 +54,7 @@ export function showLines(host, state, set, under) {
   const lines = inOrder(state.options, state.sheet?.figures.lines ?? []);
   const { line: focused, handle: held } = document.activeElement?.dataset ?? {};
   const chosen = linesOf(state) === "all" ? [] : lines.filter((row) => isChosen(state, row.line)).map((row) => row.line);
+  document.getElementById("lines-count").textContent = lines.length ? `${chosen.length || lines.length} of ${lines.length}` : "";
   const place = (numbers) => set({ "--order": numbers.join(",") });
   host.replaceChildren(...lines.map((row) => {
     const checked = isChosen(state, row.line);
@@ -64,9 +65,9 @@ export function showLines(host, state, set, under) {
     box.checked = checked;
     const swatch = element("span", { class: "swatch", "aria-hidden": "true" });
     swatch.style.color = colourOf(row.line);
-    const what = [row.kind, row.kind === "dot" ? null : length(row.length_mm), row.inside ? `in ${row.inside}` : null, row.remark];
+    const what = [row.kind, row.kind === "dot" ? null : length(row.length_mm), row.remark, row.inside ? `in ${row.inside}` : null].filter(Boolean).join(", ");
     return element("li", { onpointerenter: () => under(row.line), onpointerleave: () => under(0), "data-row": row.line },
-      element("label", {}, box, swatch, element("span", { class: "no" }, String(row.line)), element("span", { class: "what" }, what.filter(Boolean).join(", "))),
+      element("label", {}, box, swatch, element("span", { class: "no" }, String(row.line)), element("span", { class: "what", title: what }, what)),
       chosen.length > 1 && chosen.includes(row.line) ? handle(row.line, chosen, place) : null);
   }));
   if (held) host.querySelector(`[data-handle="${held}"]`)?.focus();

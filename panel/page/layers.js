@@ -3,6 +3,7 @@
 import { colourOf } from "./tiles.js";
 
 const MOST_NUMBERS = 80; // more would hide the sheet
+const HIGH = 16; // of a name's box, screen px
 
 export function drawNumbers(context, sheet, state) {
   const lines = state?.sheet?.figures.lines ?? [];
@@ -11,9 +12,12 @@ export function drawNumbers(context, sheet, state) {
   context.font = `600 ${11 * ratio}px system-ui, sans-serif`;
   context.textAlign = "center";
   context.textBaseline = "middle";
+  const taken = [];
   for (const line of lines) {
     const [x, y] = sheet.toScreen(sheet.toPx(line.place_mm));
-    tag(context, x + 13 * ratio, y - 13 * ratio, String(line.line), colourOf(line.line), ratio);
+    const at = besideOthers(context, taken, x + 13 * ratio, y - 13 * ratio, -ratio, String(line.line));
+    leader(context, x, y, at, colourOf(line.line), ratio);
+    tag(context, ...at, String(line.line), colourOf(line.line), ratio);
   }
 }
 
@@ -43,9 +47,12 @@ export function drawMarks(context, sheet, result) {
   context.font = `${11 * ratio}px system-ui, sans-serif`;
   context.textAlign = "center";
   context.textBaseline = "middle";
+  const taken = [];
   for (const [name, place] of Object.entries(result.marks_mm)) {
     const [x, y] = sheet.toScreen(sheet.toPx(place));
-    tag(context, x, y + 16 * ratio, name, "#4a5560", ratio);
+    const at = besideOthers(context, taken, x, y + 16 * ratio, ratio, name);
+    leader(context, x, y, at, "#4a5560", ratio);
+    tag(context, ...at, name, "#4a5560", ratio);
   }
   if (!lost) return;
   const [x, y] = sheet.toScreen(sheet.toPx(lost)), r = 8 * ratio;
@@ -73,8 +80,30 @@ export function drawStart(context, sheet, state) {
   context.stroke();
 }
 
+// The place for a name nearest to its own, up (negative) or down, at which it hides none of those that are there.
+export function besideOthers(context, taken, x, y, towards, text) {
+  const ratio = Math.abs(towards), width = widthOf(context, text, ratio), high = HIGH * ratio;
+  const hides = (other) => Math.abs(other.x - x) < (other.width + width) / 2 && Math.abs(other.y - y) < high;
+  while (taken.some(hides)) y += (HIGH + 1) * towards;
+  taken.push({ x, y, width });
+  return [x, y];
+}
+
+// A thin line from a place to its name, where that stands further off than its own height.
+function leader(context, x, y, [toX, toY], colour, ratio) {
+  if (Math.hypot(toX - x, toY - y) < 2 * HIGH * ratio) return;
+  context.strokeStyle = colour;
+  context.lineWidth = ratio;
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(toX, toY);
+  context.stroke();
+}
+
+const widthOf = (context, text, ratio) => context.measureText(text).width + 9 * ratio;
+
 function tag(context, x, y, text, colour, ratio) {
-  const width = context.measureText(text).width + 9 * ratio, height = 16 * ratio;
+  const width = widthOf(context, text, ratio), height = HIGH * ratio;
   context.fillStyle = "rgba(255, 255, 255, 0.9)";
   context.strokeStyle = colour;
   context.lineWidth = ratio;

@@ -53,7 +53,9 @@ def cut_lines_of(source: Source, writing: Writing) -> tuple[list[CutLine], Block
     lines = list(dict.fromkeys(_cut_of(planned)))  # the pecks of one hole are one place
     if not lines:
         raise MotionFault(
-            f"nothing is cut: Z stays above {IN_WORK_BELOW_MM:g} mm; a drawing shows what is cut"
+            f"nothing is cut: Z stays above {IN_WORK_BELOW_MM:g} mm, and a drawing shows what is cut; "
+            "move the zero of Z so that the tool comes down to 0, or write a tape or G-code, which hold all "
+            "motion"
         )
     return lines, planned
 

@@ -104,7 +104,8 @@ def plan(stream: Source, writing: Writing, feeds: Feeds | None = None) -> BlockP
     parts = list(stretches(path, writing.tolerance_mm))
     if not parts:
         raise MotionFault(
-            "the motion stands still at one place; a program needs at least two different places"
+            "the motion stands still at one place; a program needs at least two different places: look at "
+            "the path, or trace the drawing again"
         )
     planner = _Planner(path.positions_mm[0], writing, (feeds or Feeds()).with_plunge_of(parts))
     for part in parts:

@@ -100,7 +100,7 @@ class DeviceSink(Ending):
                 self._stream.close()
                 self._done.clear()
         raise DeviceFault(
-            f"the device {self._device.name!r} does not start; try another",
+            f"the device {self._device.name!r} does not start; morfax devices lists the others",
             device=self._device.name,
         )
 

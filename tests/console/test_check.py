@@ -39,6 +39,16 @@ def test_a_sound_program_may_be_started(morfax: Morfax, part: Path) -> None:
     assert figures["fastest_feed_mm_s"] == 10 and 9.8 < figures["duration_s"] < 11
 
 
+def test_play_and_inspect_say_the_time_that_check_says(morfax: Morfax, part: Path) -> None:
+    """They gave only what the simulated machine takes, whose rapids and corners are slower."""
+    machine = ("--machine", "grbl-router")
+    seconds = morfax("check", part, *machine, "--json").figures["duration_s"]
+    for verb in ("play", "inspect"):
+        figures = morfax(verb, part, *machine, "--json").figures
+        assert (figures["machine"], figures["machine_duration_s"]) == ("grbl-router", seconds)
+        assert figures["duration_s"] > seconds
+
+
 def test_every_finding_is_listed_with_its_line(morfax: Morfax, part: Path) -> None:
     part.write_text("\n".join([*PART, *BAD, "M2", ""]))
     answer = morfax("check", part, "--machine", "grbl-router")

@@ -28,7 +28,8 @@ def test_leads_are_told_with_what_each_line_has_and_the_path_still_fits_the_draw
     rows = {row["of_line"]: row for row in answer.figures["leads"]}
     assert rows[1]["lead_in_mm"] == 3 and rows[1]["lead_out_mm"] == 1
     assert rows[2]["lead_in_mm"] == pytest.approx(2.55)
-    assert "no room for a lead-in of 3 mm everywhere: 2.55 mm at line 2" in answer.err
+    said = "no room for a lead-in of 3 mm everywhere: 2.55 mm at line 2; --lead-in 2.5mm fits everywhere"
+    assert said in answer.err
     x, y = answer.figures["zero_place_mm"]
     compared = morfax(
         "compare",

@@ -63,6 +63,9 @@ def test_a_dxf_becomes_g_code_at_the_feed(part: Path, morfax: Morfax) -> None:
     assert answer.exit_code == 0
     text = Path("part.ngc").read_text()
     assert "F600" in text and answer.figures["arcs"] >= 3
+    # a part in another unit than its file says shows by its size
+    size_mm = answer.figures["width_mm"], answer.figures["height_mm"]
+    assert size_mm == pytest.approx((50, 10), abs=0.01)
     assert morfax("compare", part, "part.ngc", "--json").figures["largest_mm"] < 0.012
 
 

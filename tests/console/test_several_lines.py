@@ -64,6 +64,26 @@ def test_a_plain_trace_says_what_else_is_on_the_sheet(morfax: Morfax, here: Path
     assert morfax("trace", SAMPLES / "program.png", "-o", "program.csv").err == ""
 
 
+def test_open_lines_among_contours_are_told_with_how_each_ended(
+    morfax: Morfax, here: Path
+) -> None:
+    """A sign's large letters were cut with its outline without a word, and the whole had "ended"."""
+    grey = np.full((500, 900), 240, np.uint8)
+    cv2.circle(grey, (220, 250), 150, 30, 6, cv2.LINE_AA)
+    cv2.polylines(
+        grey, [np.array([(500, 400), (500, 100), (760, 400), (760, 100)])], False, 30, 6
+    )
+    Image.fromarray(grey).save("sign.png", dpi=DPI)
+    told = morfax("trace", "sign.png", "--lines", "contours", "-o", "a.csv", "--json")
+    assert told.figures["ending"] == "1 closed, 1 ended"
+    assert "line 1 is open" not in told.err
+    assert "line 2 is open, and run from end to end with the closed ones" in told.err
+    alone = morfax("trace", "sign.png", "--lines", "1", "-o", "b.csv", "--json")
+    assert alone.figures["ending"] == "closed" and "is open" not in alone.err
+    asked = morfax("trace", "sign.png", "--lines", "contours", "--climb", "-o", "c.csv")
+    assert asked.err.count("is open") == 1 and "cut as traced" in asked.err
+
+
 def test_all_lines_are_one_program_listed_and_numbered(morfax: Morfax, here: Path) -> None:
     """The bracket's slot, then its outline; the table has a row for each, the JSON an entry."""
     call = ("trace", SAMPLES / "bracket.png", "--lines", "contours", "-o", "bracket.csv")

@@ -53,7 +53,7 @@ def test_mirror_turn_and_scale_of_a_path(morfax: Morfax, here: Path) -> None:
         "--mirror",
         "x",
         "--scale",
-        "2",
+        "200%",
         "--turn",
         "90deg",
         "--json",
@@ -108,7 +108,7 @@ def test_a_mirrored_drawing_is_compared_as_the_head_saw_it(morfax: Morfax, here:
             "'gramophone' is not one of 'resolver', 'photocell'",
         ),
         (("-o", "a.wav", "--mirror", "z"), "'z' is not one of 'x', 'y'"),
-        (("-o", "a.wav", "--scale", "0"), "must be above zero"),
+        (("-o", "a.wav", "--scale", "0"), "give 120%, 50% or a bare number"),
         (("-o", "a.wav", "--turn", "north"), "'north' is no angle; give 90deg"),
     ],
 )

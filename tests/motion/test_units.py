@@ -16,6 +16,9 @@ from morfax.motion import units
         ("10", 10.0),
         (" 10 mm ", 10.0),
         ("0.4in", 10.16),
+        ("1/8in", 3.175),
+        ('1 1/2"', 38.1),
+        ("1-1/4 in", 31.75),
         ('0.4"', 10.16),
         ("50um", 0.05),
         ("50µm", 0.05),  # micro sign
@@ -108,6 +111,9 @@ def test_places() -> None:
         "10mm/s",
         "0x10",
         "1 0mm",
+        "1/8",
+        "1/8mm",
+        "1/0in",
     ],
 )
 def test_a_length_that_is_none_says_what_is_allowed(text: str) -> None:

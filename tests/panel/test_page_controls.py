@@ -214,3 +214,22 @@ def test_a_press_below_a_field_counts_though_its_help_goes_with_the_focus(page: 
     page.click("#which >> text=Longest")
     api.expect(page.locator("#command")).not_to_contain_text("--lines all", timeout=WAIT_MS)
     api.expect(page.locator("#field--width-help")).to_be_hidden()
+
+
+def test_names_on_the_sheet_do_not_hide_each_other_and_the_list_says_how_many_there_are(
+    page: Any,
+) -> None:
+    """Of a word's letters only the last number could be read; the list showed seven of 22 lines."""
+    page.wait_for_selector("#lines li")
+    assert page.inner_text("#lines-count") == "1 of 3"
+    page.click("#which >> text=Contours")
+    api.expect(page.locator("#lines-count")).to_have_text("3 of 3", timeout=WAIT_MS)
+    places = page.evaluate(
+        """async () => {
+            const { besideOthers } = await import("/page/layers.js");
+            const context = document.createElement("canvas").getContext("2d"), taken = [];
+            return [0, 1, 2, 9].map((k) => besideOthers(context, taken, 30 * k, 50, 1, "unexplained 1"));
+        }"""
+    )
+    heights = [y for _, y in places]
+    assert heights == [50, 67, 84, 50]  # below one another where they are near, and no further

@@ -13,8 +13,8 @@ from morfax.motion.motion import Path
 from morfax.reports import overlay
 from morfax.reports.canvas import DPI
 from morfax.reports.coloured import SHADES, error_lines
-from morfax.reports.overlay import Picture, draw, shortened
-from morfax.reports.page import lay_out
+from morfax.reports.overlay import Picture, draw
+from morfax.reports.page import lay_out, shortened
 from morfax.reports.plate import shades
 
 VIEW = (0.0, 100.0, 0.0, 100.0)

@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 
+from morfax.jobs.figures import MOST_PLACES
 from morfax.reports.table import as_json, as_text
 
 FIGURES = {
@@ -113,3 +114,17 @@ def test_a_line_that_is_cut_in_two_pieces_has_two_rows() -> None:
         ["line", "1", "40", "mm"],
         ["line", "1", "30", "mm"],
     ]
+
+
+def test_of_very_many_places_the_worst_are_listed_and_of_lines_all() -> None:
+    """A page of small lettering filled the terminal with 325 rows; the figures have all of them."""
+    many = [
+        {"unexplained_place_mm": (k, 0.0), "unexplained_mm": 99.0 - k, "what": "off"}
+        for k in range(MOST_PLACES + 5)
+    ]
+    rows = [{"line": k, "length_mm": 1.0} for k in range(MOST_PLACES + 5)]
+    told = as_text({"unexplained": many, "lines": rows}).splitlines()
+    assert sum(row.startswith("unexplained ") for row in told) == MOST_PLACES
+    assert "and 5 more, which --json lists" in told
+    assert sum(row.startswith("line ") for row in told) == MOST_PLACES + 5
+    assert len(json.loads(as_json({"unexplained": many}))["unexplained"]) == len(many)

@@ -106,7 +106,8 @@ class Sheet:
         sheet = cls(drawing, patches, lengths_mm, widths_mm, solid)
         if not sheet._long_enough().any():
             raise DrawingFault(
-                "no line on the drawing: nothing on it is long enough; check the file and its scale"
+                f"no line on the drawing: nothing on it is {LEAST_STROKE_MM:g} mm and {LEAST_STROKE_PX:g} "
+                "pixels long; check the file and its scale"
             )
         return sheet
 

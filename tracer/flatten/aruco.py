@@ -89,14 +89,16 @@ def fit_marks(picture: Picture, layout: Layout, marks: Marks) -> Fit:
     if spread < LEAST_SPREAD:
         raise DrawingFault(
             f"only {len(marks)} of {len(layout.marks_mm)} marks are seen, around {100 * spread:.0f} % of"
-            " the sheet; photograph the whole sheet, sharp and evenly lit"
+            f" the sheet, and {100 * LEAST_SPREAD:.0f} % are needed; photograph the whole sheet, sharp and"
+            " evenly lit"
         )
     first = homography_of(places_mm, np.vstack(list(marks.values())), sheet, photo)
     seen = [_edges(picture, layout.marks_mm[number], marks[number]) for number in marks]
     sightings = [each for each in seen if each is not None]
     if len(sightings) < FEWEST:
         raise DrawingFault(
-            "the marks are too blurred to be placed; photograph the sheet sharp and evenly lit"
+            f"{len(sightings)} of {len(marks)} marks are sharp enough to be placed, and {FEWEST} are needed; "
+            "photograph the sheet sharp and evenly lit"
         )
     return fitted(Sightings.joined(sightings), sheet, photo, first, inked=True)
 

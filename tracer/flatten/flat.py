@@ -181,7 +181,8 @@ def _check(made: Flattening) -> None:
     """Raise DrawingFault for a sheet that is not flat, or seen too aslant."""
     if made.tilt_rad > STEEPEST:
         raise DrawingFault(
-            f"the sheet is tilted by {math.degrees(made.tilt_rad):.0f} degrees; photograph it from above"
+            f"the sheet is tilted by {math.degrees(made.tilt_rad):.0f} degrees, and up to "
+            f"{math.degrees(STEEPEST):.0f} are made flat; photograph it from above"
         )
     if made.fit is not None and made.fit.size_share > TOO_MUCH:
         raise DrawingFault(

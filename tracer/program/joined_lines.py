@@ -32,9 +32,9 @@ from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
-from morfax.tracer.limits import CLEAR_WIDTHS
+from morfax.tracer.limits import CLEAR_WIDTHS, OWN_WIDTHS
 from morfax.tracer.program.against_ink.left_ink import LeftInk
-from morfax.tracer.program.lines.selection import LETTER_MM, NEW, SAME_WIDTHS, Contour, least_mm
+from morfax.tracer.program.lines.selection import LETTER_MM, NEW, Contour, least_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_through
 
@@ -148,7 +148,7 @@ def _is_whole(line: Line) -> bool:
 
 def _is_new(line: Line, others: list[Line]) -> bool:
     """Whether most of a line is no other's."""
-    same_mm = SAME_WIDTHS * line.width_mm
+    same_mm = OWN_WIDTHS * line.width_mm
     near = list(those_near([other.places_mm for other in others], line.places_mm, same_mm))
     if not near:
         return True

@@ -15,6 +15,7 @@ Source: patent ES 361967, section on use.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -88,8 +89,11 @@ class Trace:
 
     @property
     def ending(self) -> str:
-        """How the line ended; of several lines the first of "lost", "joined", "ended", "closed"."""
-        return min((line.ending for line in self.lines), key=ENDINGS.index)
+        """How the line ended; of several lines "lost", or how many ended how, such as "9 closed, 2 ended"."""
+        ways = Counter(line.ending for line in self.lines)
+        if len(ways) == 1 or "lost" in ways:
+            return min(ways, key=ENDINGS.index)
+        return ", ".join(f"{ways[way]} {way}" for way in reversed(ENDINGS) if ways[way])
 
     @property
     def fault(self) -> LineFault | None:

@@ -70,8 +70,8 @@ def is_beside(own: Array, line: Line, lines: BoxedLines) -> bool:
     """Whether another of some lines comes so near to a stretch (n, 2) mm of one that they share ink."""
     near_mm = BESIDE * line.width_mm
     low, high = own.min(axis=0) - near_mm, own.max(axis=0) + near_mm
-    others = lines.reaching(low, high, line)
-    return any(nearest_mm(own, other.places_mm).min() < near_mm for other in others)
+    others = lines.parts(low, high, line)
+    return any(nearest_mm(own, part).min() < near_mm for _, part in others)
 
 
 def part_of(line: Line, first: int, last: int) -> Line:

@@ -33,6 +33,7 @@ from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.program.against_ink.boxed_lines import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
+from morfax.tracer.program.against_ink.own_ink import STATION_WIDTHS
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
@@ -54,7 +55,6 @@ from morfax.tracer.tangles.pen import away_from
 from morfax.tracer.tangles.seen_ink import GAIN, SeenInk
 
 # In widths of the line; chosen by trial on circles that touch lines and each other:
-STEP = 0.25  # between the places that are looked at
 NEAR = 1.3  # sides that are nearer leave one ink
 ON = 8.0  # of way between two sides of one line
 SHORT, LONG = 5.0, 60.0  # a shorter one is a crossing; a longer one is no touch
@@ -85,13 +85,13 @@ def touching(setup: Setup, lines: Sequence[Line]) -> list[Line]:
 
 def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[Touch]:
     """The touches of closed lines, given by their numbers."""
-    ways = {n: evenly(lines[n].loop_mm, STEP * lines[n].width_mm) for n in closed}
+    ways = {n: evenly(lines[n].loop_mm, STATION_WIDTHS * lines[n].width_mm) for n in closed}
     for one, other in combinations_with_replacement(closed, 2):
         width_mm = lines[one].width_mm
         low, high = bounds(ways[one])
         near_mm = NEAR * width_mm
         if one == other:
-            partner = partners(ways[one], near_mm, round(ON / STEP))
+            partner = partners(ways[one], near_mm, round(ON / STATION_WIDTHS))
         elif reaches(ways[other], low - near_mm, high + near_mm):
             away_mm, nearest = Neighbours(ways[other]).nearest(ways[one], near_mm)
             partner = np.where(np.isfinite(away_mm), nearest, -1)
@@ -115,15 +115,17 @@ def _grouped(
     first, last = shortest(near, len(ways[0]))
     if last >= len(ways[0]):  # over its beginning: in order from behind the widest gap
         near = np.concatenate([near[near >= first], near[near < first] + len(ways[0])])
-    for group in np.split(near, np.flatnonzero(np.diff(near) > LONGER_WIDTHS / STEP) + 1):
+    for group in np.split(
+        near, np.flatnonzero(np.diff(near) > LONGER_WIDTHS / STATION_WIDTHS) + 1
+    ):
         others = partner[group % len(ways[0])]
         begin, end = shortest(np.unique(others), len(ways[1]))
-        long = max(group[-1] - group[0], end - begin) * STEP
+        long = max(group[-1] - group[0], end - begin) * STATION_WIDTHS
         is_once = pair[0] != pair[1] or group[0] % len(ways[0]) < begin
         if not is_once or not SHORT < long < LONG:
             continue
         apart = np.diff(others) if len(others) > 1 else np.zeros(1)
-        leg, step_mm = LEG / STEP, STEP * width_mm
+        leg, step_mm = LEG / STATION_WIDTHS, STATION_WIDTHS * width_mm
         firsts = (group[0] - leg) * step_mm, (begin - leg) * step_mm
         lasts = (group[-1] + leg) * step_mm, (end + leg) * step_mm
         yield Touch(pair, firsts, lasts, bool(np.median(np.sign(apart[apart != 0])) > 0))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+from typing import cast
+
 import numpy as np
 import pytest
 import shapely
@@ -13,12 +16,18 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.off_ink import UsualPen
 from morfax.tracer.program.laid import bent as bent_stretches
 from morfax.tracer.program.laid.bent import bent
+from morfax.tracer.program.laid.line_parts import LEGS
 from morfax.tracer.program.lines.selection import Which
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace_lines import found_lines
+from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import UM, Points, arc, inked, polyline
+from tests.tracer.program.laid.ways import run_along
 
 WIDTH_MM, DPI = 0.35, 300.0
 RELIEF_MM = 0.7  # the radius of a relief at an inner corner
@@ -190,3 +199,27 @@ def test_a_stretch_ends_away_from_corners() -> None:
     assert bent_stretches._off_corners(40, [36, 90], -1) == 21
     assert bent_stretches._off_corners(40, [36, 90], 1) == 51
     assert bent_stretches._off_corners(60, [36, 90], 1) == 60
+
+
+def test_nothing_is_laid_nearer_than_half_a_leg_to_an_end_of_an_open_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """There the way has no leg by which it could be laid: the ink is not even looked at."""
+    drawn = polyline((4, 4), (24, 6))
+    setup = Setup(inked(drawn, width_mm=WIDTH_MM).sheet)
+    line = run_along(drawn, "ended")
+    way = bent_stretches._Way(setup, line, BoxedLines.of([line]))
+    looked_at = list[tuple[int, int]]()
+
+    def seen(_: object, first: int, last: int, felt: object) -> tuple[SeenInk, Points]:
+        looked_at.append((first, last))
+        raise LookupError
+
+    monkeypatch.setattr(bent_stretches._Way, "_seen", seen)
+    leg, felt = round(LEGS[0] / STEP_WIDTHS), cast(UsualPen, None)
+    last = len(way.way) - 1 - leg
+    for off, is_laid in ((leg // 3, False), (leg - 2, True)):
+        for first in (leg + off, last - off - 20):
+            with nullcontext() if not is_laid else pytest.raises(LookupError):
+                assert way._bay(first, first + 20, felt) is None
+    assert len(looked_at) == 2

@@ -284,3 +284,15 @@ def test_a_line_that_went_over_to_the_one_beside_it_and_back_is_two_lines() -> N
     assert len(found) == 2
     for each, truth in zip(sorted(found, key=lambda one: -one.length_mm), rounds, strict=True):
         assert_run(each, truth, length_mm(truth) * 40 / 360)
+
+
+@pytest.mark.parametrize(("first_mm", "last_mm"), [(5.0, 15.0), (76.0, 84.0)])
+def test_a_stretch_has_a_place_each_step_also_over_the_line_s_beginning(
+    first_mm: float, last_mm: float
+) -> None:
+    line = run_along(polyline((15, 5), (25, 5), (25, 25), (5, 25), (5, 5), (15, 5)))
+    stretch = touches._stretch(line, first_mm, last_mm, 0.25)
+    come_mm = lengths_mm(stretch)
+    off_mm = 60 * UM  # the places of a line lie 50 um apart, so may end and beginning
+    assert come_mm == pytest.approx(0.25 * np.arange(len(stretch)), abs=off_mm)
+    assert come_mm[-1] == pytest.approx(last_mm - first_mm, abs=off_mm)
