@@ -99,7 +99,7 @@ def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[Touch]:
             continue
         yield from _grouped((one, other), (ways[one], ways[other]), partner, width_mm)
     for n, way in ways.items():
-        yield from tip_to_tip(n, way, STEP, lines[n].width_mm, NEAR, LEG)
+        yield from tip_to_tip(n, way, STATION_WIDTHS, lines[n].width_mm, NEAR, LEG)
 
 
 def _grouped(
