@@ -55,8 +55,11 @@ LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 
 
 def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
-    """Lines, held against their ink, with the corners that were cut; those of a drawn program as they are."""
-    if not is_clear(own.drawing) or setup.operator.reads_marks(own.lines):
+    """Lines, held against their ink, with the corners that were cut. Those of a drawn program are as they
+    are, and those on pixels that were made finer: in their steps a corner cut by a tenth of a width is lost.
+    """
+    is_clear_and_fine = is_clear(own.drawing) and own.drawing.finer == 1
+    if not is_clear_and_fine or setup.operator.reads_marks(own.lines):
         return own
     news: Array | None = None
     own = with_chains(setup, own)

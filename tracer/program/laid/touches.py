@@ -47,6 +47,7 @@ from morfax.tracer.program.laid.line_parts import (
 )
 from morfax.tracer.program.laid.rim_bays import ways_within_rims
 from morfax.tracer.program.laid.smooth_ways import BothWays, Left, smooth_ways
+from morfax.tracer.program.laid.turned_back import Touch, tip_to_tip
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import partners, shortest
@@ -62,17 +63,6 @@ HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
 LEAVES = 0.01  # for each width of the ways: head's ways that leave less explain the ink
 # lines that cross by more do not touch: at a corner of one, both went past the other
 CROSSES = TIP_RAD / 2
-
-
-class _Touch(NamedTuple):
-    """Where two lines touch, or one touches itself: the lines' numbers, from where to where along each, mm,
-    with legs; and whether both run the same way.
-    """
-
-    lines: tuple[int, int]
-    first_mm: tuple[float, float]
-    last_mm: tuple[float, float]
-    is_parallel: bool
 
 
 def touching(setup: Setup, lines: Sequence[Line]) -> list[Line]:
@@ -93,7 +83,7 @@ def touching(setup: Setup, lines: Sequence[Line]) -> list[Line]:
     return lines
 
 
-def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[_Touch]:
+def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[Touch]:
     """The touches of closed lines, given by their numbers."""
     ways = {n: evenly(lines[n].loop_mm, STATION_WIDTHS * lines[n].width_mm) for n in closed}
     for one, other in combinations_with_replacement(closed, 2):
@@ -108,6 +98,8 @@ def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[_Touch]:
         else:
             continue
         yield from _grouped((one, other), (ways[one], ways[other]), partner, width_mm)
+    for n, way in ways.items():
+        yield from tip_to_tip(n, way, STATION_WIDTHS, lines[n].width_mm, NEAR, LEG)
 
 
 def _grouped(
@@ -115,7 +107,7 @@ def _grouped(
     ways: tuple[Array, Array],
     partner: NDArray[np.int64],
     width_mm: float,
-) -> Iterator[_Touch]:
+) -> Iterator[Touch]:
     """The touches of two ways by the places of the second that lie near to those of the first."""
     near = np.flatnonzero(partner >= 0)
     if not len(near):
@@ -136,7 +128,7 @@ def _grouped(
         leg, step_mm = LEG / STATION_WIDTHS, STATION_WIDTHS * width_mm
         firsts = (group[0] - leg) * step_mm, (begin - leg) * step_mm
         lasts = (group[-1] + leg) * step_mm, (end + leg) * step_mm
-        yield _Touch(pair, firsts, lasts, bool(np.median(np.sign(apart[apart != 0])) > 0))
+        yield Touch(pair, firsts, lasts, bool(np.median(np.sign(apart[apart != 0])) > 0))
 
 
 class _Ways(NamedTuple):
@@ -146,7 +138,7 @@ class _Ways(NamedTuple):
     other: Array
 
 
-def _ways(pair: tuple[Line, Line], touch: _Touch, more_mm: float, step_mm: float) -> _Ways:
+def _ways(pair: tuple[Line, Line], touch: Touch, more_mm: float, step_mm: float) -> _Ways:
     """The stretches of a touch as the head ran, with so much more of either line before and after."""
     first, second = (
         _stretch(line, begin - more_mm, end + more_mm, step_mm)
@@ -163,7 +155,7 @@ def _stretch(line: Line, first_mm: float, last_mm: float, step_mm: float) -> Arr
     return at_lengths(places, np.linspace(first_mm, last_mm, count + 1) % round_mm)
 
 
-def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | None:
+def _mended(setup: Setup, lines: Sequence[Line], touch: Touch) -> list[Line] | None:
     """The lines of a touch, or those that they are, each along its rim; None if they explain the ink as they
     are, or rims do not.
     """
@@ -177,7 +169,8 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
     ways, longer = (_ways((one, other), touch, more * width_mm, step_mm) for more in (0.0, LEG))
     if _steepest_rad(ways) > CROSSES:
         return None
-    ink = ink_about(setup.sheet.drawing, np.vstack(ways), width_mm, REACH)
+    across = evenly(np.array([way[len(way) // 2] for way in ways]), step_mm)
+    ink = ink_about(setup.sheet.drawing, np.vstack([*ways, across]), width_mm, REACH)
     rest_mm = _rest_mm(ink, lines, touch, whole)
     widths = sum(long) / width_mm
 
@@ -190,7 +183,7 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
     both = smooth_ways(*longer, LEG, width_mm, left, may_exchange=one is other)
     if both.left > LEAVES or not (both.is_exchanged or both.left < own - GAIN):
         rims = None if own < LEAVES else _rims(setup, width_mm, ways, left)
-        if rims is None or own < rims.left:
+        if rims is None or (LEAVES if touch.turns_back else own) < rims.left:
             return None
         both = rims
     if not both.is_exchanged:
@@ -214,7 +207,7 @@ def _steepest_rad(ways: _Ways) -> float:
 
 
 def _rest_mm(
-    ink: SeenInk, lines: Sequence[Line], touch: _Touch, whole: Sequence[float]
+    ink: SeenInk, lines: Sequence[Line], touch: Touch, whole: Sequence[float]
 ) -> Array:
     """How far the ink is from all lines but the stretches of a touch, mm."""
     ways = [line.places_mm for n, line in enumerate(lines) if n not in touch.lines]
@@ -255,7 +248,7 @@ def _rims(setup: Setup, width_mm: float, ways: _Ways, left: Left) -> BothWays | 
 def _laid_each(
     setup: Setup,
     pair: tuple[Line, Line],
-    touch: _Touch,
+    touch: Touch,
     both: BothWays,
     whole: Sequence[float],
 ) -> list[Line]:
@@ -271,7 +264,7 @@ def _laid_each(
     ]
 
 
-def _exchanged(setup: Setup, line: Line, touch: _Touch, both: BothWays) -> list[Line]:
+def _exchanged(setup: Setup, line: Line, touch: Touch, both: BothWays) -> list[Line]:
     """What one line is that goes over to itself at a touch: two lines, or one round a lobe the other way."""
     come_mm, more_mm = lengths_mm(line.places_mm), HALF_LEG * line.width_mm
     (first, begin), (last, end) = touch.first_mm, touch.last_mm

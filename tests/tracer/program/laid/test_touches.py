@@ -15,6 +15,7 @@ from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.laid import touches
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.smooth_ways import BothWays
+from morfax.tracer.program.laid.turned_back import Touch
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import Points, arc, inked, polyline
@@ -147,6 +148,24 @@ def test_a_hole_that_touches_three_sides_is_a_line_though_half_of_its_way_is_the
         assert off_mm(line, truth) < 60 * UM
 
 
+def test_a_circle_that_leaves_a_side_and_comes_back_is_a_line_of_its_own() -> None:
+    """It crosses the side at 8 degrees, twice. The way round goes out along the circle and back along the
+    side, as the junctions show it; between the tips runs no line.
+    """
+    angle = math.radians(8)
+    middle = 19.0, 25 + 6 * math.cos(angle)
+    truths = [plate(), arc(middle, 6)]
+    parted = math.acos(math.cos(angle) - 0.3 * WIDTH_MM / 6)
+    far_mm, parted_deg = 6 * math.sin(parted), math.degrees(parted)
+    above = arc(middle, 6, parted_deg - 90, 270 - parted_deg)
+    right, left = (19 + far_mm, 25.0), (19 - far_mm, 25.0)
+    corners = np.array([(6, 5), (34, 5), (34, 25), right, *above, left, (6, 25), (6, 5)])
+    found = touches.touching(Setup(inked(*truths, seed=1).sheet), [run_along(corners)])
+    assert [line.ending for line in found] == ["closed", "closed"]
+    for line in found:
+        assert min(off_mm(line, truth) for truth in truths) < 30 * UM
+
+
 def beside(apart_mm: float, long_mm: float, other_way: bool = False) -> list[Line]:
     """Two closed lines that run beside each other for so long, so far apart; then away at right angles."""
     end, above = 5 + long_mm, 20 + apart_mm
@@ -155,7 +174,7 @@ def beside(apart_mm: float, long_mm: float, other_way: bool = False) -> list[Lin
     return [run_along(low), run_along(high[::-1] if other_way else high)]
 
 
-def touches_of(lines: list[Line]) -> list[touches._Touch]:
+def touches_of(lines: list[Line]) -> list[Touch]:
     """Where lines touch."""
     return list(touches._touches(lines, range(len(lines))))
 
@@ -241,7 +260,7 @@ def test_a_line_that_went_over_to_its_other_side_is_run_round_one_lobe_the_other
         np.vstack([left, over, right[::-1], [[20.5, 14.7], [19.5, 15.3]], left[:1]])
     )
     ends = [along_mm(line, place) for place in ((18, 14.7), (22, 15.3), (22, 14.7), (18, 15.3))]
-    touch = touches._Touch((0, 0), (ends[0], ends[2]), (ends[1], ends[3]), False)
+    touch = Touch((0, 0), (ends[0], ends[2]), (ends[1], ends[3]), False)
     rims = BothWays(side((18, 14.7), (22, 14.7)), side((18, 15.3), (22, 15.3)), True, 0.0)
     (found,) = touches._exchanged(Setup(inked(truth).sheet), line, touch, rims)
     assert_run(found, truth, 8.0)
@@ -259,7 +278,7 @@ def test_a_line_that_went_over_to_the_one_beside_it_and_back_is_two_lines() -> N
     outer, inner = ([tuple(way[0]), tuple(way[-1])] for way in sides)
     firsts = along_mm(line, outer[0]), along_mm(line, inner[0])
     lasts = along_mm(line, inner[1]), along_mm(line, outer[1])
-    touch = touches._Touch((0, 0), firsts, lasts, True)
+    touch = Touch((0, 0), firsts, lasts, True)
     rims = BothWays(*(LaidWay((way,), 0.5 * WIDTH_MM) for way in sides), True, 0.0)
     found = touches._exchanged(Setup(inked(*rounds).sheet), line, touch, rims)
     assert len(found) == 2
