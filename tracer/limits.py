@@ -21,6 +21,7 @@ WIDER = 1 + AS_WIDE  # ... or two lines that share their ink
 # square widths: a round of a width, as the two round ends of a line together
 ROUND = math.pi / 4
 NEAR = 0.3  # widths from a line's middle: so near a place is on that line
+OWN_WIDTHS = 0.7  # from a line's middle: ink and places that are nearer are that line's
 CLEAR_WIDTHS = 1.5  # from a place where lines meet: further on, the ink is that of one line
 ABOUT_WIDTHS = 3.0  # about a place: so far what belongs to it is looked for
 LONGER_WIDTHS = 4.0  # what goes on beside a line for longer is no corner, crossing or blot

@@ -46,7 +46,7 @@ export class Link {
       return "the server does not answer; what is set is kept, start it again with morfax panel";
     }
     const said = await answer.json().catch(() => ({ refused: `the server answers ${answer.status}` }));
-    if (said.revision) this.revision = said.revision;
+    if (said.revision) this.revision = Math.max(this.revision, said.revision); // news may have come before
     return said.refused ?? null;
   }
 

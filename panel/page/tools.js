@@ -103,7 +103,7 @@ export class Tools {
 
   async correct(what) {
     const why = await this.link.do({ do: "correct", ...what });
-    this.places = [];
+    if (this.places === what.at) this.places = []; // else the next one has begun
     this.say(why ?? "corrected; run again");
     this.sheet.ask();
   }
@@ -116,7 +116,7 @@ export class Tools {
         const options = { "--lines": null, "--start": mm.map((v) => v.toFixed(2)).join(",") };
         const why = await this.link.do({ do: "set", options });
         if (why) this.say(why);
-        this.take("look");
+        if (this.name === "start") this.take("look");
       },
     };
   }

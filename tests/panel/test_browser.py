@@ -93,9 +93,22 @@ def test_what_the_page_saves_is_byte_for_byte_what_its_commands_write(
         assert Path(download.value.path()).read_bytes() == content
 
 
+# The server's answers to what is done are kept until they are let go
+HELD = """() => {
+  const asked = window.fetch, free = new Promise((letGo) => { window.letGo = letGo; });
+  window.said = false;
+  window.fetch = async (where, ...what) => {
+    const answer = await asked(where, ...what);
+    if (where === "/do") { await free; setTimeout(() => { window.said = true; }); }
+    return answer;
+  };
+}"""
+
+
 def test_a_correction_on_the_page_is_the_one_that_its_command_writes(
     server: Server, page: Any, tmp_path: Path
 ) -> None:
+    page.evaluate(HELD)
     page.click("#help-open")
     page.click("[data-tool=rub]")
     box = settled(page, "#sheet")
@@ -110,10 +123,12 @@ def test_a_correction_on_the_page_is_the_one_that_its_command_writes(
     morfax(tmp_path, page.inner_text("#command"))
     file = server.folder / "bracket.morfax.toml"
     assert file.read_bytes() == (tmp_path / "bracket.morfax.toml").read_bytes()
-    # by the keyboard as well: the cross in the middle of the sheet
+    # by the keyboard as well: the cross in the middle of the sheet; the answer to the first comes meanwhile
     page.focus("#sheet")
     page.keyboard.press("b")
     page.keyboard.press("Enter")
+    page.evaluate("letGo()")
+    page.wait_for_function("said")
     page.keyboard.press("ArrowLeft")
     page.keyboard.press("Enter")
     page.wait_for_selector("#corrections li:nth-child(2)", timeout=RUN_MS)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 
-if TYPE_CHECKING:  # it is made of patches
+if TYPE_CHECKING:  # they are made of patches
     from morfax.tracer.drawing.enclosure import Enclosure
+    from morfax.tracer.drawing.holes import Hole
 
 Mask = NDArray[np.uint8]
 Numbers = NDArray[np.int32]
@@ -46,6 +47,8 @@ class Patches:
     end: Numbers
     patch: Numbers
     count: int
+    # of those that were asked for (see `holes.holes_in`)
+    known_holes: dict[int, list[Hole]] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
     def of(cls, runs: Iterable[tuple[Numbers, Numbers, Numbers]]) -> Patches:

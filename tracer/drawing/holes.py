@@ -5,7 +5,8 @@
     ▒▒▒▒░▒▒
     ▒▒▒▒▒▒▒
 
-Signals: a mask of one connected patch of ink in; its holes out, in columns and rows of the mask.
+Signals: a mask of one connected patch of ink, or a patch of a sheet, in; its holes out, in columns and rows
+of the mask, or of the patch's box.
 
 Source: Pick's theorem tells how many pixels lie within the ring of ink about a hole: the area of the polygon
 through the middles of that ink, less half of its steps, and 1.
@@ -17,7 +18,7 @@ from typing import NamedTuple
 
 import cv2
 
-from morfax.tracer.drawing.components import Mask
+from morfax.tracer.drawing.components import Mask, Patches
 
 
 class Hole(NamedTuple):
@@ -41,3 +42,12 @@ def holes(ink: Mask) -> list[Hole]:
             column, row, wide, high = cv2.boundingRect(outline)
             found.append(Hole(column, row, wide, high, paper_px))
     return found
+
+
+def holes_in(patches: Patches, patch: int) -> list[Hole]:
+    """The holes of one of some patches; looked for once, as several ask for them."""
+    if patch not in patches.known_holes:
+        top, bottom, left, right = patches.boxes[patch].tolist()
+        ink = patches.painted(patches.alone(patch), top, bottom, left, right)
+        patches.known_holes[patch] = holes(ink)
+    return patches.known_holes[patch]

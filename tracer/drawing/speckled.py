@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from morfax.tracer.drawing.coarse import FEWEST_PX
 from morfax.tracer.drawing.components import INK, SOFTENED_PX, Mask
 from morfax.tracer.drawing.noise import Within, within
+from morfax.tracer.effort import MANY
 
 Darkness = NDArray[np.float32]
 
@@ -35,7 +36,6 @@ TIMES = 2, 4, 8
 ENOUGH_PX = 4.0  # of a line's width: with fewer it is followed, but half as exactly
 # of the places on ink at which the scan shows a single line: of other sheets of lines 0.08 to 0.95
 FEW = 0.05
-MANY_SPECKS = 100  # pieces and holes of the ink: a sheet with fewer is not speckled
 LEFT = 0.15  # of the specks and holes may be left on larger pixels
 # of the larger pixels' ink is ink on the scan: of hatching as dense as its gaps it is a half
 FILLED = 0.65
@@ -48,7 +48,7 @@ def times_larger(darkness: Any, lines: Within) -> int:
         return 1
     ink = _ink(darkness)
     specks = _specks(ink)
-    if specks < MANY_SPECKS:
+    if specks < MANY:  # pieces and holes of the ink
         return 1
     widths_px = dict[int, float]()
     for times in TIMES:

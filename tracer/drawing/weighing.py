@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.tracer.drawing.components import FRINGE_PX
-from morfax.tracer.drawing.holes import holes
+from morfax.tracer.drawing.holes import holes_in
 from morfax.tracer.effort import MANY
 from morfax.tracer.limits import ROUND
 
@@ -79,4 +79,4 @@ def _weigh(sheet: Sheet, patch: int) -> Weight:
     about = cv2.dilate(ink, np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)) > 0
     dark = np.asarray(sheet.drawing.darkness[top:bottom, left:right])
     weight_mm2 = float(dark[about].sum()) * sheet.drawing.pitch_mm**2
-    return Weight(weight_mm2, not holes(ink))
+    return Weight(weight_mm2, not holes_in(sheet.patches, patch))

@@ -24,7 +24,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST
 from morfax.motion.plane import left_of, unit
 from morfax.tracer.effort import ROUNDS
-from morfax.tracer.flatten.edges import Picture, crossings, light_at
+from morfax.tracer.flatten.edges import LEAST_SHARE, Picture, crossings, light_at
 from morfax.tracer.flatten.fit import Sightings
 
 SMALL_PX = 700  # longer side of the picture on which the outline is looked for
@@ -200,7 +200,7 @@ def _clearness(small: Picture, corners_px: Array) -> float:
     size = float(np.linalg.norm(usual))
     if size < CLEAR_LIGHT:
         return 0.0
-    alike = change @ (usual / size) > max(CLEAR_LIGHT, 0.3 * size)
+    alike = change @ (usual / size) > max(CLEAR_LIGHT, LEAST_SHARE * size)
     if (
         min(part.mean() for part in np.split(alike, 4)) < LEAST_SIDE
         or alike.mean() < SEEN_SHARE

@@ -26,8 +26,9 @@ from morfax.tracer.sensing.view import View
 
 AGREES = 0.12  # of the width: on the test drawings 99 % of the clean lines are seen within 0.06
 AGREES_PX = 0.6  # on an edge, which has no width; by trial on filled shapes
-LEFT_LEGS = 0.25  # of a leg's length: the guard cells look out again before the felt line's end; by trial
-LEAST_LEGS = 0.25  # of a leg's length: the cell does not go on for less
+# of a leg's length: so far before the felt line's end the guard cells look out again; for less the cell does
+# not go on; by trial
+LEFT_LEGS = 0.25
 # a line that turns by more up to the cell is too tight for it, which looks ahead along the heading: that it
 # stands beside the line there is no fault of its own; by trial on holes of 0.6 to 1.8 mm radius
 TIGHT_RAD = 0.6
@@ -99,7 +100,7 @@ def _clear_mm(carriage: Carriage, view: View, ahead_mm: float) -> float:
     """How far the cell may go on where a felt line goes on so far beyond it, mm; 0 if that is too little."""
     guards_mm = carriage.tuning.guard_lead_mm - carriage.tuning.lead_mm
     clear_mm = ahead_mm - guards_mm - LEFT_LEGS * view.leg_mm
-    return clear_mm if clear_mm > LEAST_LEGS * view.leg_mm else 0.0
+    return clear_mm if clear_mm > LEFT_LEGS * view.leg_mm else 0.0
 
 
 def turned_rad(carriage: Carriage, seen: Array) -> float:

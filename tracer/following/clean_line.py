@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.compiled import njit
-from morfax.tracer.following.agreement import AGREES, LEAST_LEGS, LEFT_LEGS
+from morfax.tracer.following.agreement import AGREES, LEFT_LEGS
 from morfax.tracer.following.felt_line import FROM_BEHIND, Anchor
 from morfax.tracer.following.ways_out import Turns
 from morfax.tracer.head import kernel, watched
@@ -158,7 +158,7 @@ def _felt_clean(cells, head, known, gauged):  # type: ignore[no-untyped-def]
     # 3. the cell stands on it
     clean_mm = _agreed_mm(state, t, seen, width_mm) - LEFT_LEGS * own_mm
     is_doubtful = state.travel_mm < max(state.trusted_mm, line.memory_to_mm)
-    if is_doubtful or clean_mm <= LEAST_LEGS * own_mm or corner_at(seen, here) >= 0:
+    if is_doubtful or clean_mm <= LEFT_LEGS * own_mm or corner_at(seen, here) >= 0:
         return 0.0
     gauged[0], gauged[1], gauged[2], gauged[3] = level, width_mm, usual_mm, 1.0
     return clean_mm

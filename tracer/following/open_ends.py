@@ -26,7 +26,7 @@ from morfax.tracer.head.stance import Stance
 from morfax.tracer.junctions.line_ahead import straight_on
 from morfax.tracer.limits import AHEAD_RAD, CLEAR_WIDTHS, DETAIL_PX
 from morfax.tracer.marks.marks import longest_mm
-from morfax.tracer.marks.reference import Reference, references
+from morfax.tracer.marks.reference import Reference, may_lead, reach_mm, references
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, leg_of, turn
 from morfax.tracer.sensing.probe import end_of, reach_of_ink, stroke_end, strokes_on
 from morfax.tracer.sensing.view import View
@@ -60,9 +60,10 @@ def at_ends(
         leading = _leading_away(view, stroke, reference_mm)
         if leading is not None:
             return [leading]
+    elif not ends and not may_lead(sheet, stroke):
+        return []
     # 2. from one that is drawn; one further away has neither a lead line here nor an end of this line near it
-    # to where its lead line begins: three and a half widths off (`BEYOND`), and a third of what is felt of it
-    about_mm = 0.5 * view.leg_mm + 4 * view.width_mm
+    about_mm = reach_mm(view.width_mm, view.pitch_mm)
     about_mm += LEAD_MM + NAMED_MM if ends else 0.0
     drawn = references(sheet, view, stroke, about_mm)
     for found in _named_first(drawn, reference_mm):

@@ -28,7 +28,7 @@ from morfax.tracer.effort import MANY
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.leaders import CELL, STATIONS
 from morfax.tracer.limits import DETAIL_PX, PIECE_MM
-from morfax.tracer.sensing.edge_scout import CIRCLE_PX
+from morfax.tracer.sensing.edge_scout import CIRCLE_PX, CIRCLE_SAMPLES
 from morfax.tracer.sensing.leg import turn
 from morfax.tracer.sensing.view import View
 
@@ -37,7 +37,7 @@ FELT = 0.9  # of a piece: where less is felt the edge ends, or turns back
 # from the first third of a piece to its last: a parabola follows that within 2 um
 BENT_RAD = 0.5
 EVERY = 3  # one station in so many has circles beside it, as far apart as a circle is wide
-AROUND = np.arange(12) * (2 * np.pi / 12)  # where a circle looks, as the scout's does
+AROUND = np.arange(CIRCLE_SAMPLES) * (2 * np.pi / CIRCLE_SAMPLES)  # where a circle looks
 
 
 def roughness_mm(run: Followed) -> float | None:

@@ -23,7 +23,7 @@ from morfax.tracer.following.felt_line import nearest_station, station_before
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.choice import Asked, Choice, WayIn, is_aside, survey
-from morfax.tracer.junctions.guides import PassedJunctions
+from morfax.tracer.junctions.guides import AGAIN_MM, PassedJunctions
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.junctions.rings import fork_in
 from morfax.tracer.marks.dots import disc, dot_ahead
@@ -31,8 +31,6 @@ from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_o
 from morfax.tracer.sensing.side import SIDES, Side
 from morfax.tracer.sensing.view import View
 
-# a junction that the head comes back to is no further ahead: a speck may end the clean line before it
-BACK_MM = 4.0
 # cosine of 60 degrees: a head so far off the side that a correction names is another's
 COMES_FROM = 0.5
 
@@ -152,8 +150,10 @@ class WaysOut:
         return self.turns.other.count(number)
 
     def comes_back(self, view: View, incoming: Leg) -> bool:
-        """Whether the head is back at the junction where it took a guide line."""
-        return self.junctions.comes_back(incoming.end_mm, 2 * view.width_mm + BACK_MM)
+        """Whether the head is back at the junction where it took a guide line: a speck may end the clean line
+        before it.
+        """
+        return self.junctions.comes_back(incoming.end_mm, 2 * view.width_mm + AGAIN_MM)
 
 
 def _place_of(way_in: WayIn, found: Choice) -> Array:

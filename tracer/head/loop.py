@@ -25,11 +25,11 @@ from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings
 from morfax.motion.plane import unit
 from morfax.motion.polyline import lengths_by_blocks
-from morfax.tracer.limits import AHEAD_RAD, NEAR
+from morfax.tracer.limits import AHEAD_RAD, NEAR, PIECE_MM
 
 # Chosen by trial on the test drawings.
 STEP_MM = 0.03  # between the places that are compared
-FRESH_MM = 3.0  # the newest stretch of a way does not count as followed before
+FRESH_MM = PIECE_MM  # the newest stretch of a way does not count as followed before
 ON_IT = 0.05  # of the line's width: two ways nearer than this are the same line, as felt twice
 AT_ALL = 1.0  # of the line's width: a run that stays further away has not come back
 ALIKE = math.cos(AHEAD_RAD)  # cosine between headings that are about one

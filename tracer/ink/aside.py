@@ -23,7 +23,7 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import direction
 from morfax.motion.polyline import length_mm
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
-from morfax.tracer.ink.hatching import ALIKE, STRAIGHT, Hatching, hatching
+from morfax.tracer.ink.hatching import ALIKE, EVEN, STRAIGHT, Hatching, hatching
 from morfax.tracer.ink.onward import Onward
 from morfax.tracer.ink.outlines import spurs
 from morfax.tracer.ink.partners import meeting_place
@@ -38,7 +38,6 @@ FOOT, AT_FOOT = 2.1, 0.85  # widths: two lines are less broad; and of its greate
 BROADEST = 3.0  # ... and so many widths broad at the most, as far as cells feel
 PIECES = 3  # of a stroke: a centre line and a leader may cross it
 FEWEST = 4  # strokes of hatching that end on lines
-NEXT = 1.5  # times as far apart as the strokes of a family: a stroke beside one is of it
 
 
 def lines_aside(junctions: Junctions) -> set[int]:
@@ -170,8 +169,7 @@ def _beside_families(
         away = middles[like][:, None] - middles[like][None]
         aside_mm = away[..., 0] * heading[1] - away[..., 1] * heading[0]
         is_next = 0.5 * (long_mm[like][:, None] + long_mm[like][None]) > np.abs(away @ heading)
-        is_next &= np.abs(aside_mm) < NEXT * family.apart_mm
-        is_next &= np.abs(aside_mm) > family.apart_mm / NEXT
+        is_next &= np.abs(np.abs(aside_mm) / family.apart_mm - 1) < EVEN
         # 1. those beside the family, and those beside them
         found, count = np.isin(like, family.strokes), 0
         while found.sum() > count:

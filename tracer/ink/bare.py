@@ -28,8 +28,8 @@ from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.ink.graph import Graph
 from morfax.tracer.ink.left_out import InkLeft
+from morfax.tracer.limits import OWN_WIDTHS
 
-BESIDE_WIDTHS = 0.7  # ink nearer to a way than this is that way's; by trial on drawings of nets
 LEAST_MM = 1.0  # a part of a stretch that is left is told if it is longer, and run; chosen
 
 Flags = NDArray[np.bool_]
@@ -74,7 +74,7 @@ class Thinned(NamedTuple):
     def near(self, run: Array) -> Flags:
         """Which pixels are near to some places (n, 2) mm along the strokes."""
         away_mm = Neighbours(run).nearest(self.places_mm)[0]
-        return np.asarray(away_mm < BESIDE_WIDTHS * self.wide_mm[self.patch])
+        return np.asarray(away_mm < OWN_WIDTHS * self.wide_mm[self.patch])
 
     def bare(self, graph: Graph, are_near: Flags) -> Iterator[Bare]:
         """The parts of all stretches that are left, those long enough."""

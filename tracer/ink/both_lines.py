@@ -22,11 +22,8 @@ from morfax.tracer.ink.run import Run, smooth
 # of its way: ink of two lines that becomes wider by more has come to others that cross it
 FLARE = 0.15
 TOUCHING = 0.05  # widths between the middles of two lines, halved: there they are one
-# widths from there: the slope of the ink's width up to the nearer place, the mean of both sides, ...
+# widths: narrow places that are nearer to each other are one; so far from it the ink's width is looked at
 CROSSED = 3.0, 6.0
-# ... is so much of that between the two, or more: of lines that cross, straight or bent, it is as much, of
-# lines that only touch, as a parabola does, a third
-LEVEL_OFF = 0.6
 # widths from the middle of their ink: two lines that are further apart are told from each other
 APART = 0.1
 # of the stations where ink lies still: of two lines more lie together, between flares. Ink that swells and
@@ -92,15 +89,15 @@ def _sides(aside: Array, width_mm: float, step_mm: float) -> Array:
     sides = np.ones(len(aside))
     narrow = np.flatnonzero(aside < TOUCHING * width_mm)
     for some in np.split(narrow, np.flatnonzero(np.diff(narrow) > near) + 1):
-        if not len(some) or some[0] < far or some[-1] + far >= len(aside):
+        if not len(some) or some[0] == 0 or some[-1] == len(aside) - 1:
             continue
         at = round(float(some.mean()))
-        slopes = [
-            (aside[at + side * far] - aside[at + side * near]) / (far - near)
-            for side in (-1, 1)
-        ]
-        chords = [aside[at + side * near] / near for side in (-1, 1)]
-        if sum(chords) > LEVEL_OFF * sum(slopes) and min(chords) > 0:
+        reach = min(max(far, len(some)), at, len(aside) - 1 - at)
+        off = np.arange(1, reach + 1) / reach
+        # by how much both are aside on either side: a * off + b * off²
+        both = aside[at - reach : at][::-1] + aside[at + 1 : at + reach + 1]
+        slope, rise = np.linalg.lstsq(np.column_stack([off, off**2]), both)[0]
+        if slope > rise:
             sides[at:] *= -1
     return sides
 

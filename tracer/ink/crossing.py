@@ -29,7 +29,7 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.ink.crossing_on_ink import WaysOn, told_by_ink
+from morfax.tracer.ink.crossing_on_ink import WaysOn, is_explained, told_by_ink
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
@@ -41,13 +41,14 @@ from morfax.tracer.ink.partners import (
     turnings,
     way_through,
 )
-from morfax.tracer.ink.redrawn_crossing import LEGS, redrawn
+from morfax.tracer.ink.redrawn_crossing import redrawn
 from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.limits import WIDER
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
+from morfax.tracer.tangles.sketch import MOST_LEGS
 from morfax.tracer.tangles.strands import stretches_over
 
 # of a stretch within a crossing, along which ways go; by trial on drawings of nets
@@ -111,6 +112,11 @@ class Crossing:
         return replace(self, drawn=drawn, _covers={})
 
     @cached_property
+    def is_explained(self) -> bool:
+        """Whether its lines explain its ink."""
+        return is_explained(self)
+
+    @cached_property
     def turnings_rad(self) -> Array:
         """By how much a way turns from each leg to each other, rad (n, n)."""
         return turnings(self.legs, self.width_mm)
@@ -126,7 +132,7 @@ class Crossing:
         their ink only.
         """
         pairs, costs = self._by_turnings, self.turnings_rad
-        if len(self.legs) != LEGS or len(pairs) != LEGS // 2:
+        if len(self.legs) != MOST_LEGS or len(pairs) != MOST_LEGS // 2:
             return {}
         reach_mm = float(np.ptp([leg.end_mm for leg in self.legs], axis=0).max())
         is_smooth = max(costs[pair] for pair in pairs) < SMOOTH

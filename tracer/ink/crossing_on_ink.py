@@ -34,7 +34,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
 from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.head.course import on_ink
-from morfax.tracer.ink.partners import SMOOTHLY, Pair, likeliest, turnings
+from morfax.tracer.ink.partners import MOST_LEGS, SMOOTHLY, Pair, likeliest, turnings
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.tangles import pen, settling
 from morfax.tracer.tangles.redrawing import VERTEX
@@ -49,8 +49,6 @@ OFF = 0.08  # widths², in a box as wide as a line: of right crossings hardly an
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
 REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
 TRIED = 5  # pairings
-# legs: of a larger crossing each trial takes seconds, and hardly any explains its ink
-MOST_REDRAWN = 20
 PLAIN = math.radians(6)  # lines that turn by less, all of which go on, are plain
 
 
@@ -91,7 +89,7 @@ class AsDrawn:
 
 def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     """How lines go on through a crossing: as the legs tell, or otherwise, if that explains the ink."""
-    if not 3 <= len(crossing.legs) <= MOST_REDRAWN or _is_plain(crossing, told):
+    if not 3 <= len(crossing.legs) <= MOST_LEGS or _is_plain(crossing, told):
         return told
     view = crossing.views[0]
     if view.parted > 1 or view.grainy or not crossing.is_of_one_pen:
@@ -107,6 +105,12 @@ def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     if best.off < now.off and best.cost < now.cost - gain:
         return best.crossing.solution
     return told
+
+
+def is_explained(crossing: Crossing) -> bool:
+    """Whether a pen along the ways of a crossing leaves its ink."""
+    ink = _Ink.about(crossing, crossing.ways_mm)
+    return ink.is_empty or AsDrawn(crossing, ink).off < OFF
 
 
 def _is_plain(crossing: Crossing, told: WaysOn) -> bool:

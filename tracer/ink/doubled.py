@@ -39,7 +39,7 @@ from morfax.tracer.ink.nib import (
 )
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.swelling import TWO, Swelling, pen_of, pen_of_hollow, stands_out
-from morfax.tracer.limits import AS_WIDE, WIDER
+from morfax.tracer.limits import AS_WIDE, CLEAR_WIDTHS, WIDER
 
 Flags = NDArray[np.bool_]
 
@@ -50,13 +50,13 @@ EVEN = 0.04  # of a stretch's width: a line whose width differs by no more is on
 SWELLS = 0.13
 FROM_ENDS = 10.0  # widths: within them two lines that share a stretch have begun to
 HALF = 0.5  # of a short piece's stations tell its width
-CUT_WIDTHS = 1.8  # of its own: a shorter piece is where others cross
 STRAIGHT_COS = math.cos(BEND_RAD)
-PAST = 8.0  # widths of a pen: so far a crossing lies between two pieces of the same two lines
 # the width of a line as the head wants it: of a narrower one pixels make the width swell; and where they are
 # ink or paper alone, and tell a width to one of them: `WIDER` is more then
 LEAST_PX = 3.0, 7.0
-LEAST_WIDTHS = 8.0  # widths of a pen that are a long way
+LEAST_WIDTHS = (
+    8.0  # widths of a pen that are a long way: no crossing between two pieces is longer
+)
 
 
 class SureWidths(NamedTuple):
@@ -231,14 +231,14 @@ def _is_piece(run: Run, pen_mm: float) -> bool:
     low_mm, usual_mm, high_mm = np.percentile(known, (25, 50, 75))
     is_two = WIDER * pen_mm < usual_mm < TWO * pen_mm
     is_even = high_mm - low_mm < AS_WIDE * usual_mm
-    return bool(is_two and is_even and run.length_mm > CUT_WIDTHS * usual_mm)
+    return bool(is_two and is_even and run.length_mm > CLEAR_WIDTHS * usual_mm)
 
 
 def _is_straight_on(run: Run, other: Run, pen_mm: float) -> bool:
     """Whether another stretch, about as broad there, lies straight on from a run's last place."""
     way, near = (
         run.places_mm[-1] - run.places_mm[0],
-        round(0.5 * PAST * pen_mm / other.view.step_mm),
+        round(0.5 * LEAST_WIDTHS * pen_mm / other.view.step_mm),
     )
     for onward, widths in (
         (other.places_mm, other.widths_mm[:near]),
@@ -246,7 +246,7 @@ def _is_straight_on(run: Run, other: Run, pen_mm: float) -> bool:
     ):
         gap, far = onward[0] - run.places_mm[-1], onward[-1] - onward[0]
         if (
-            math.hypot(*gap) < PAST * pen_mm
+            math.hypot(*gap) < LEAST_WIDTHS * pen_mm
             and min(_cos(way, far), _cos(way, gap + far)) > STRAIGHT_COS
             and abs(np.nanmedian(run.widths_mm) / np.nanmedian(widths) - 1) < AS_WIDE
         ):

@@ -27,7 +27,7 @@ from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import left_of_headings
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.head.course import SMOOTH
-from morfax.tracer.ink.run import Run, smooth
+from morfax.tracer.ink.run import LEAST_PLACES, Run, smooth
 from morfax.tracer.junctions.rings import CHORD, SKIPPED
 from morfax.tracer.limits import AS_WIDE, LONGER_WIDTHS
 from morfax.tracer.sensing.leg import LEAST_WIDTHS, TURNS_OFF
@@ -49,7 +49,7 @@ Flags = NDArray[np.bool_]
 REACH = 1.0  # widths, with `REACH_PX`, within which the edges are looked for
 GUIDED_WIDTHS = 0.75  # to either side of a place: what its heading is taken over
 ROUGHER = 2.5  # standard deviations of a rough line's own width: so far a station may differ
-FEWEST_STATIONS = 5  # of a clean run
+FEWEST_STATIONS = LEAST_PLACES  # of a clean run
 MARGIN = 2  # stations at the ends of a run that may have felt what ends it
 MEANT = 2.0  # lengths of a leg: a longer line's own width counts, and not its neighbours'
 # a part at an end of the ink that is as long is line, however it tapers, if so much of it has two edges

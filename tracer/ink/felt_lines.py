@@ -13,13 +13,11 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.tracer.ink.doubled import BROADER
+from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn
 
-# All limits below were chosen by trial on drawings of nets.
-TRIMMED_SHARE = 0.3  # of a run is left out at an end at most
-WAIST_WIDTHS = 8.0  # a longer one, or one that turns more, is line
+TRIMMED_SHARE = 0.3  # of a run is left out at an end at most; by trial on drawings of nets
 
 
 @dataclass(slots=True)
@@ -75,7 +73,7 @@ def without_waist(line: FeltLine, last: bool) -> None:
             (run.leg_in(), onward.leg_out()) if not last else (onward.leg_in(), run.leg_out())
         )
         is_straight = abs(turn(legs[0].heading_rad, legs[1].heading_rad)) < TURNS_OFF
-        is_short = run.length_mm < WAIST_WIDTHS * line.width_mm
+        is_short = run.length_mm < LEAST_WIDTHS * line.width_mm
         is_broad = median(run.widths_mm) > BROADER * median(onward.widths_mm)
         if not (is_straight and is_short and is_broad and len(onward) > len(run)):
             return

@@ -22,13 +22,14 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
 from morfax.tracer.drawing.components import joined
+from morfax.tracer.drawing.deviation import COVERS
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.drawing.thinning import Indices
 from morfax.tracer.ink.left_out import InkLeft
 
 # In widths of the lines of a patch, by trial on 11 sheets with known truth: each piece was one of a true line
 # that no stroke ran along.
-REACH = 0.8  # from all strokes: half a width is the pen's, and a tenth the scan's blur
+REACH = 0.5 * COVERS  # from all strokes: half a width is the pen's, and a tenth the scan's blur
 # of missed line, by its ink; a corner of 30 degrees that comes to a point has a third
 LEAST = 0.8
 BROAD = 0.5  # of a piece: so much lies as far on the stroke's other side as well

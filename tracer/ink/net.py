@@ -39,7 +39,7 @@ STILL_SHARE = 0.2
 APART = 1.25
 MET_WIDTHS = 0.5  # at the ends of a line that is clean nowhere: the ink of what it meets
 OWN_WIDTHS = 1.2  # a shorter one has no ink that is not the junction's
-COVERED = 0.6  # widths: ink nearer to a way through the junction is that way's
+COVERED = 0.6  # widths: ink nearer to a way is that way's
 # the middle of a line that hangs together with nothing: a shorter one is a speck or a dot; the larger
 LEAST_MM, SPECK_WIDTHS = 0.7, 1.0
 ASIDE = 0.6  # widths: and miss each other by no more

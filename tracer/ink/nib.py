@@ -25,7 +25,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.tracer.ink.swelling import Swelling
-from morfax.tracer.limits import CLEAR_WIDTHS
+from morfax.tracer.limits import CLEAR_WIDTHS, WIDER
 
 HEADINGS, NIBS = 48, 24  # sectors of half a turn, and at how many angles in it nibs are tried
 # of the widths' spread: what no nib explains. Measured on 122 strokes and 27 pairs of lines: rigid nibs 0.03
@@ -43,7 +43,7 @@ FURTHER = 3.5
 # of the thinnest width: so near to it is one line; so much broader are two
 ONE, STEP = 0.06, 0.2
 LEVEL = 0.3  # of the step, by which the ink beyond it may differ
-BLUNT, END = 1.15, (1, 3)  # thinnest widths: how broad an end is, and where that is felt
+END = 1, 3  # thinnest widths: where the ink of an end is felt
 LEAST = 6  # thinnest widths: a shorter stretch tells nothing of its ends
 ENOUGH = 2  # places that look like two lines
 
@@ -186,5 +186,5 @@ def _broad_ends(some: Sequence[Swelling], thin_mm: float) -> list[bool]:
         ):
             near = widths[first:last]
             if ends and np.isfinite(near).any():
-                broad.append(float(np.nanmedian(near)) > BLUNT * thin_mm)
+                broad.append(float(np.nanmedian(near)) > WIDER * thin_mm)
     return broad

@@ -16,15 +16,15 @@ from functools import cached_property
 
 import numpy as np
 
+from morfax.tracer.ink.apertures import PENS_SHARE
 from morfax.tracer.ink.chains import Junctions, Side
 from morfax.tracer.ink.outlines import turned_by
+from morfax.tracer.limits import WIDER
 from morfax.tracer.sensing.leg import FACING
 
 # All limits below were chosen by trial on drawings of parts and plans.
 OTHER_PEN = 1.35  # times as wide
 SURE_WIDTHS = 15.0  # a line as long tells its pen: ink that two lines share is wider, but short
-APART = 1.2  # times as wide: between two pens no line is
-SHARE = 0.05  # of the length of such lines is each pen's
 
 
 @dataclass
@@ -93,5 +93,5 @@ class Onward:
         share = np.cumsum(np.array([line.length_mm for line in sure])[order])
         if not len(share):
             return False
-        between = widths_mm[order][1:] > APART * widths_mm[order][:-1]
-        return bool(np.any(between & (np.abs(share[:-1] / share[-1] - 0.5) < 0.5 - SHARE)))
+        between = widths_mm[order][1:] > WIDER * widths_mm[order][:-1]
+        return bool(np.any(between & (np.abs(share[:-1] / share[-1] - 0.5) < 0.5 - PENS_SHARE)))

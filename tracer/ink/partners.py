@@ -28,7 +28,7 @@ import numpy as np
 from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.curves import hermite
 from morfax.motion.plane import left_of_headings
-from morfax.tracer.head.course import SMOOTH, on_ink, through_nodes
+from morfax.tracer.head.course import ON_INK, SMOOTH, on_ink, through_nodes
 from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink, off_rims_mm
 from morfax.tracer.junctions.corner import Corner, sharp_corner
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
@@ -48,9 +48,10 @@ STRETCHED = math.radians(0.3)  # a way that is a width longer counts as turning 
 NOT_JOINED = 10.0  # rad: leaving two legs that may be joined costs more than any way
 NEARER = 0.05  # widths: a way that is so much nearer to its rims, in the mean, is the line's
 FELT_NODES = 6  # places felt between two legs that a way goes through, where nothing else fits
-# of more legs the straightest are paired first, and partners exchanged: all ways would take seconds
+# of more legs the straightest are paired first, and partners exchanged: all ways would take seconds, as would
+# each trial of such a crossing on its ink, and hardly any explains that
 MOST_LEGS = 20
-INKED, ON_IT = 12, 0.8  # places of a leg on to a corner, and the share of them that is ink
+INKED = 12  # places of a leg on to a corner, of which a share is ink, as of a course
 NOBODY = -1
 
 Pair = tuple[int, int]
@@ -212,7 +213,7 @@ def _is_inked(corner: Corner, view: View | None) -> bool:
         corner.incoming.at(share * corner.beyond_mm),
         corner.outgoing.at(-share * corner.before_mm),
     ]
-    return bool(np.mean(view.darkness_along(np.vstack(ways)) > view.level) > ON_IT)
+    return bool(np.mean(view.darkness_along(np.vstack(ways)) > view.level) > ON_INK)
 
 
 def _bending(a: float, b: float) -> float:

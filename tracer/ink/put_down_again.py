@@ -26,18 +26,18 @@ from morfax.motion.plane import direction, left_of_headings
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.bare import Bare, Thinned, places_along
 from morfax.tracer.ink.felt import judged, usual_width_mm, whole
+from morfax.tracer.ink.net import COVERED
 from morfax.tracer.ink.pieces import NOTHING, Piece
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet, with_width
 from morfax.tracer.ink.track import InkStroke, along_pieces
+from morfax.tracer.limits import CLEAR_WIDTHS
 from morfax.tracer.sensing.probe import end_of
 
 # All limits below were chosen by trial on fetched sheets, and are widths of the line where none is said.
-LONG = 1.5  # a shorter part is a corner or a tip
 KNOWN = 0.5  # of the stations tell a width
 # where the ink across a station is looked at, of its width
 ACROSS = np.array([-0.35, 0.0, 0.35])
-OWN = 0.6  # from the strokes: ink further off is not theirs
 MOST = 0.8  # of the ink looked at is not theirs
 AHEAD = np.arange(0.0, 3.0, 0.1)  # from the end of what was felt: there a line is looked for
 ON = 0.2  # from the middle of a line: it has come to that line
@@ -73,7 +73,7 @@ class _There:
         stations = self._stations(part)
         width_mm = usual_width_mm(stations)
         if (
-            stations.length_mm < LONG * width_mm
+            stations.length_mm < CLEAR_WIDTHS * width_mm
             or np.mean(np.isfinite(stations.widths_mm)) < KNOWN
             or not self._is_left(stations, width_mm)
         ):
@@ -102,7 +102,7 @@ class _There:
         normals = left_of_headings(stations.headings_rad)
         places = stations.places_mm[None] + width_mm * ACROSS[:, None, None] * normals
         away_mm = self.near.nearest(places.reshape(-1, 2))[0]
-        return bool(np.mean(away_mm > OWN * width_mm) > MOST)
+        return bool(np.mean(away_mm > COVERED * width_mm) > MOST)
 
     def _onto(self, run: Run) -> tuple[Array, float]:
         """Place and heading where a stroke ends behind its last run: on the line ahead or beside it, or where

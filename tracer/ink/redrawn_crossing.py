@@ -29,7 +29,6 @@ from morfax.tracer.tangles.sketch import Sketch, redrawings
 
 # A misfit, in squares of the line's width; by trial on bent strokes with others across their corners:
 AS_WELL = 0.035  # one explains the ink as well as another: a little more than a vertex costs
-LEGS = 4  # there are three ways to join them
 
 
 def redrawn(view: View, legs: Sequence[Leg], turnings: Array) -> Mapping[Pair, Array]:

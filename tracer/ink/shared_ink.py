@@ -30,6 +30,7 @@ from morfax.motion.neighbours import Neighbours, those_near
 from morfax.motion.plane import CORNER_RAD, SAME_MM, left_of, left_of_headings, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.tracer.effort import EVERY_MM, ROUNDS
+from morfax.tracer.ink.beside import LONG
 from morfax.tracer.ink.run import Run
 from morfax.tracer.sensing.parabola import FEWEST
 
@@ -38,8 +39,7 @@ NO_STATIONS = np.empty((0, 4))
 # All limits below were chosen by trial on drawings of nets.
 BESIDE = 0.75  # of the ink's width: a way further from its middle is not in it
 ABREAST = 0.25  # widths: a station further before or behind a place tells nothing of it
-# widths: ink as broad, for as long, is that of two lines beside each other
-APART, LONG = 1.3, 6.0
+APART = 1.3  # widths: ink as broad, and `LONG`, is that of two lines beside each other
 AVERAGED, FADES = 2.0, 1.0  # widths of the line
 SLACK = 0.12  # of the line's width: where two lines cross, the rims of their ink are felt so much too near
 # widths: nearer to the middle of its ink a line crosses another, and its rim is none

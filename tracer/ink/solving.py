@@ -16,9 +16,9 @@ from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import TypeVar
 
 from morfax.tracer.effort import ROUNDS
-from morfax.tracer.ink.chains import Junctions
+from morfax.tracer.ink.chains import Junctions, Side
 from morfax.tracer.ink.crossing import Crossing
-from morfax.tracer.ink.doubled import BROADER
+from morfax.tracer.ink.doubled import BROADER, LEAST_WIDTHS
 from morfax.tracer.ink.net import Net, net_of
 from morfax.tracer.ink.stretches import FeltSheet
 
@@ -65,6 +65,13 @@ def solved(sheet: FeltSheet, told: Told | None = None) -> Junctions:
             two |= too_long
             bare -= _beside(junctions.net, too_long.union(together))
             continue
+        if further := _left_over(junctions, sheet, two | bare) or _far(junctions, sheet, two):
+            sheet.together.update(further)
+            for stretch in further:
+                sheet.widths_mm[stretch] = sheet.doubled.pen_mm
+            parted |= further
+            two |= further
+            continue
         inner = _heard(junctions.net.inner, told, done + quarter, quarter)
         more = {it.stretch for it in inner if not junctions.covers(it)}
         if not more:
@@ -72,6 +79,40 @@ def solved(sheet: FeltSheet, told: Told | None = None) -> Junctions:
         two |= more & (doubled | sheet.together)
         bare |= more - two
     return Junctions(net_of(sheet, two | bare), sheet.settings, known)
+
+
+def _left_over(junctions: Junctions, sheet: FeltSheet, known: set[int]) -> set[int]:
+    """The broad lines that leave another without a partner at both their ends, where ink is not explained.
+
+    An odd number of lines meets at either end: each is two.
+    """
+    found = set[int]()
+    for n, line in enumerate(junctions.net.lines):
+        if line.stretch in known or not sheet.is_broad(line.stretch):
+            continue
+        ends = [junctions.at(Side(n, last)) for last in (False, True)]
+        are_odd = all(len(there.legs) % 2 and len(there.legs) > 1 for there in ends)
+        if are_odd and not any(there.crossing.is_explained for there in ends):
+            found.add(line.stretch)
+    return found
+
+
+def _far(junctions: Junctions, sheet: FeltSheet, known: set[int]) -> set[int]:
+    """The long stretches within junctions whose ink is not explained, if they may be those of two lines.
+
+    The rims of their ink tell more of the two than their lines beyond it do.
+    """
+    pen_mm = sheet.doubled.pen_mm
+    return {
+        inner.stretch
+        for inner in junctions.net.inner
+        if inner.stretch not in known
+        and sheet.is_broad(inner.stretch)
+        and inner.run.length_mm > LEAST_WIDTHS * pen_mm
+        and sheet.measured[inner.stretch].width_mm < 2 * pen_mm
+        and (there := junctions.by_number.get(inner.junction)) is not None
+        and not there.crossing.is_explained
+    }
 
 
 def _heard(

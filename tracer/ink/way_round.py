@@ -38,8 +38,8 @@ from morfax.tracer.sensing.leg import FACING
 ALONE, CORNER, SMOOTHLY, CROSSING, END, MOST = 0.1, 0.5, 1.0, 1.0, 1.5, 4.0
 ENDS = 1  # in a way
 # a way that turns by more than BACK_RAD goes back, but for a tip whose sides are so many times as long as the
-# ink that they share, and along that bend by no more of its angle; of circles that touch by 0.2 of it
-TIP, BENT = 10.0, 0.1
+# ink that they share, and over so long a way bend by less than its angle; circles that touch by twice that
+TIP = 10.0
 
 NOT, PAST, CROSSES = 0, 1, 2  # how a line goes straight on where a way leaves it
 
@@ -207,7 +207,7 @@ class Search:
         shared_mm = 0.5 * legs[0].width_mm / math.sin(0.5 * tip)
         bend = max(abs(leg.bend_per_mm) for leg in legs)
         is_long = min(lines[side.line].length_mm for side in (far, near)) > TIP * shared_mm
-        return is_long and bend * shared_mm < BENT * tip
+        return is_long and bend * TIP * shared_mm < tip
 
     def _turned(self, far: Side, near: Side, go_on: int, are_alone: bool) -> _Onward | None:
         """How a way turns at a corner, at which some of its two lines go on elsewhere."""

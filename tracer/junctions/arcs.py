@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from morfax.motion.compiled import njit
-from morfax.tracer.sensing.photocell import TWO_PI, ring
+from morfax.tracer.sensing.photocell import TWO_PI, dark_arcs, look_round, looks_round, ring
 
 # of the width, and half the arc: as wide as the line; by trial on the test drawings
 NARROWEST, WIDEST, WIDEST_RAD = 0.5, 1.45, 1.2
@@ -41,7 +41,7 @@ def outward(cells, centre, ring_mm, inner):  # type: ignore[no-untyped-def]
     `ring_mm` holds the ring's radius, the line's width, and the direction in which the trail crosses (rad).
     """
     radius_mm, width_mm, trail_rad = ring_mm
-    seen = ring(cells, centre, radius_mm)
+    seen = _ring_on(cells, centre, radius_mm, inner)
     arcs = np.zeros(len(seen), ARC)
     count = 0
     for k in range(len(seen)):
@@ -70,6 +70,29 @@ def outward(cells, centre, ring_mm, inner):  # type: ignore[no-untyped-def]
                 arc["middle_one_back"] = inner[parent]["middle"]
                 arc["middle_two_back"] = inner[parent]["middle_one_back"]
     return arcs[:count].copy()
+
+
+@njit(cache=True)
+def _ring_on(cells, centre, radius_mm, inner):  # type: ignore[no-untyped-def]
+    """The dark arcs (n, 2) rad of a ring that hang on the arcs of the ring within it, and perhaps others; all
+    of the first ring. A cell looks no further than these arcs reach.
+    """
+    if len(inner) == 0:
+        return ring(cells, centre, radius_mm)
+    seen = np.full(looks_round(cells, radius_mm), -1.0)  # where nobody looks it is light
+    looks = len(seen)
+    for arc in inner:
+        first = math.floor(arc["begin"] * looks / TWO_PI)
+        last = min(math.ceil(arc["end"] * looks / TWO_PI), first + looks - 1)
+        for k in range(first, last + 1):
+            seen[k % looks] = look_round(cells, centre, radius_mm, k % looks, looks)
+        # on to where it is light
+        for begin, step in ((first, -1), (last, 1)):
+            k = begin
+            while seen[k % looks] >= cells.level and abs(k - begin) < looks:
+                k += step
+                seen[k % looks] = look_round(cells, centre, radius_mm, k % looks, looks)
+    return dark_arcs(seen, cells.level)
 
 
 @njit(cache=True)

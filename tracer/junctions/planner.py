@@ -201,11 +201,9 @@ class Planner:
         """A way without a corner once more, felt along it; None if the line is not clean but for a speck."""
         # 1. the stations of the line, with those between its legs
         way = curves.distinct(np.vstack(plan.stretches))
-        between = [
-            course.ahead_mm(place, outgoing) > 0 and course.ahead_mm(place, incoming) < 0
-            for place in way
-        ]
-        seen = self.view.feel_along(way[between])
+        is_behind = (outgoing.end_mm - way) @ direction(outgoing.heading_rad) > 0
+        is_ahead = (incoming.end_mm - way) @ direction(incoming.heading_rad) < 0
+        seen = self.view.feel_along(way[is_behind & is_ahead])
         there = np.vstack([incoming.seen, seen, outgoing.seen])
         widest_mm = np.hypot(*np.diff(there[:, :2], axis=0).T).max()
         if widest_mm > SPECK_PX * self.view.pitch_mm:

@@ -34,7 +34,8 @@ from morfax.motion.long_array import blocks, released
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS
 from morfax.tracer.marks import dots, sizes
 from morfax.tracer.marks.head_path import HeadPath
-from morfax.tracer.marks.ticks import Base, SideStroke, crossing_mm, felt
+from morfax.tracer.marks.stroke_cells import Base
+from morfax.tracer.marks.ticks import SideStroke, crossing_mm, felt
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
 

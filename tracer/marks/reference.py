@@ -33,13 +33,15 @@ from morfax.motion.arrays import Array
 from morfax.motion.circle import circle_through
 from morfax.motion.median import median
 from morfax.motion.plane import direction
-from morfax.tracer.drawing.holes import holes
+from morfax.tracer.drawing.components import Patches
+from morfax.tracer.drawing.holes import holes_in
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
 from morfax.tracer.marks.crosses import crosses
 from morfax.tracer.marks.sizes import BOX, CROSS_MM, RING_LIKE, RING_ROUND, RING_SEEN
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS
+from morfax.tracer.sensing.scout import leg_mm
 from morfax.tracer.sensing.spokes import SPOKES, WAYS, spokes
 from morfax.tracer.sensing.view import View
 
@@ -90,6 +92,41 @@ def references(
         if all(_apart(reference, other) > LEAST_MM for other in found):
             found.append(reference)
             yield reference
+
+
+def reach_mm(width_mm: float, pitch_mm: float) -> float:
+    """How far from a line of a width without ends what leads onto it may be: three and a half widths off
+    (`BEYOND`), and a third of what is felt of it.
+    """
+    return 0.5 * float(leg_mm(width_mm, pitch_mm)) + 4 * width_mm
+
+
+def may_lead(sheet: Sheet, stroke: Stroke) -> bool:
+    """Whether a line may begin at a reference point: it has ends, other ink is near it, or it goes round a
+    hole that would do, and further than that.
+    """
+    pitch_mm = sheet.drawing.pitch_mm
+    about_px = math.ceil(reach_mm(stroke.width_mm, pitch_mm) / pitch_mm)
+    if len(stroke.ends_mm()) or not _is_alone(sheet.patches, stroke.patch, about_px):
+        return True
+    return any(_leads_away(stroke, *each) for each in _inside(sheet, stroke.patch))
+
+
+def _is_alone(patches: Patches, patch: int, about_px: int) -> bool:
+    """Whether no other patch has ink within the box about a patch, so many pixels wider to each side."""
+    top, bottom, left, right = patches.boxes[patch].tolist()
+    rows = patches.runs_between(top - about_px, bottom + about_px)
+    others = patches.patch[rows] != patch
+    within = (patches.begin[rows] < right + about_px) & (patches.end[rows] > left - about_px)
+    return not np.any(others & within)
+
+
+def _leads_away(stroke: Stroke, middle_mm: Array, size_mm: float, is_square: bool) -> bool:
+    """Whether a line is more than a ring about a hole of a reference point's size."""
+    if not is_square or size_mm > LARGEST_MM:
+        return False
+    away_mm = np.hypot(*(stroke.middles_mm - middle_mm).T).max()
+    return bool(away_mm > 0.5 * size_mm + stroke.width_mm)
 
 
 def _every(
@@ -165,14 +202,12 @@ def _inside(sheet: Sheet, patch: int) -> Iterator[tuple[Array, float, bool]]:
     """The areas that a patch of ink goes round: middle and longer side, mm, and whether they are about as
     high as wide; smaller ones than a reference point are flaws of the ink.
     """
-    chosen = sheet.patches.alone(patch)
-    top, bottom, left, right = sheet.patches.box(chosen)
+    top, bottom, left, right = sheet.patches.boxes[patch].tolist()
     if (bottom - top) * (right - left) > MOST_PX:
         return
     pitch = sheet.drawing.pitch_mm
     rows = sheet.drawing.darkness.shape[0]
-    ink = sheet.patches.painted(chosen, top, bottom, left, right)
-    for x, y, wide, high, _ in holes(ink):
+    for x, y, wide, high, _ in holes_in(sheet.patches, patch):
         size_mm = max(wide, high) * pitch
         if size_mm >= LEAST_MM:
             middle_px = left + x + 0.5 * wide, rows - top - y - 0.5 * high

@@ -20,6 +20,7 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import area_mm2
+from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.following.direction import Arrow
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import ABOUT_WIDTHS
@@ -28,7 +29,6 @@ from morfax.tracer.program.trace import followed
 
 # Both limits below were chosen by trial.
 NEAR_MM = 1.0  # an arrow further from a line, and beyond `ABOUT_WIDTHS`, is on none
-ALIKE = 0.02  # a line is as long from another place, within this share
 
 
 def with_arrows(setup: Setup, lines: list[Line]) -> list[Line]:

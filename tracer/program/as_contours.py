@@ -27,6 +27,8 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.bars import THICK, bars_along
+from morfax.tracer.program.against_ink.off_ink import REACH
+from morfax.tracer.program.against_ink.own_ink import STATION_WIDTHS
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.laid.line_parts import is_clear
@@ -41,14 +43,11 @@ from morfax.tracer.tangles.pen import NOWHERE_MM
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
-COARSE_STEP = 0.25  # between the places at which narrow ends are looked for
 # sides so near to each other, with so much way between them, have a narrow end
 NARROW, ROUND_END = 2.6, 6.0
 END = 5.0  # of a stroke: shows whether it ends in a bar
 OTHERS = 0.3  # of the longest stroke: a shorter one is no part of the contour, nor are all those together
 MOST_PARTS, MOST_OTHERS = 4, 40  # strokes; a patch with more is a net
-DIFFER = 0.1  # between the ways: more is another way
-REACH = 1.5  # from where they differ, the ink is looked at
 MOST_PLACES = 6000  # of ink
 
 
@@ -89,7 +88,7 @@ def _is_folded(strokes: list[Line]) -> bool:
     if line.ending != "closed":
         near_mm, round_mm = NARROW * line.width_mm, ROUND_END * line.width_mm
         return line.passes_its_end(near_mm, round_mm) is not None
-    step_mm = COARSE_STEP * line.width_mm
+    step_mm = STATION_WIDTHS * line.width_mm
     way = evenly(line.loop_mm, step_mm)
     return bool(beside_itself.stretches(way, step_mm, line.width_mm, NARROW, ROUND_END))
 
@@ -144,8 +143,8 @@ def _is_better(sheet: Sheet, line: Line, strokes: list[Line]) -> bool:
     step_mm = STEP_WIDTHS * width_mm
     one = evenly(line.loop_mm, step_mm)
     other = np.vstack([evenly(stroke.loop_mm, step_mm) for stroke in strokes])
-    mine = nearest_mm(one, other) > DIFFER * width_mm
-    differ = np.vstack([one[mine], other[nearest_mm(other, one) > DIFFER * width_mm]])
+    mine = nearest_mm(one, other) > step_mm
+    differ = np.vstack([one[mine], other[nearest_mm(other, one) > step_mm]])
     if not len(differ):
         return False
     ink = _ink_about(sheet, differ, width_mm)

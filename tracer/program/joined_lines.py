@@ -32,9 +32,9 @@ from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
-from morfax.tracer.limits import CLEAR_WIDTHS
+from morfax.tracer.limits import CLEAR_WIDTHS, OWN_WIDTHS
 from morfax.tracer.program.against_ink.left_ink import LeftInk
-from morfax.tracer.program.lines.selection import LETTER_MM, NEW, SAME_WIDTHS, Contour, least_mm
+from morfax.tracer.program.lines.selection import LETTER_MM, NEW, Contour, least_mm
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_through
 
@@ -122,7 +122,8 @@ def _lines_among(strokes: list[Line], line: Line, contour: Contour) -> tuple[lis
     """Which further strokes of a contour's patch are lines, and the length of ink left, mm."""
     lines = [line]
     for stroke in strokes:
-        if _is_line(stroke, lines):
+        # the ways of a net are new by its stretches: a hole may touch an outline along much of its own
+        if _is_whole(stroke) and (stroke.ending == "closed" or _is_new(stroke, lines)):
             lines.append(stroke)
     return lines[1:], _left_over_mm(contour.stroke, lines, CLEAR_WIDTHS)
 
@@ -136,10 +137,18 @@ def _left_over_mm(stroke: Stroke, lines: list[Line], beside_widths: float) -> fl
 
 def _is_line(line: Line, others: list[Line]) -> bool:
     """Whether a run is a line of its own: from end to end or round about, no mark, and most of it new."""
-    shortest_mm = least_mm(line.width_mm) if line.ending == "closed" else LETTER_MM
-    if line.ending not in ("closed", "ended") or line.length_mm < shortest_mm:
-        return False
-    same_mm = SAME_WIDTHS * line.width_mm
+    return _is_whole(line) and _is_new(line, others)
+
+
+def _is_whole(line: Line) -> bool:
+    """Whether a run is a line from end to end or round about, and no mark."""
+    shortest_mm = float(least_mm(line.width_mm)) if line.ending == "closed" else LETTER_MM
+    return line.ending in ("closed", "ended") and line.length_mm >= shortest_mm
+
+
+def _is_new(line: Line, others: list[Line]) -> bool:
+    """Whether most of a line is no other's."""
+    same_mm = OWN_WIDTHS * line.width_mm
     near = list(those_near([other.places_mm for other in others], line.places_mm, same_mm))
     if not near:
         return True

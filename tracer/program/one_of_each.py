@@ -24,9 +24,10 @@ from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.lettering import lettering
+from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import a_dark_area
-from morfax.tracer.marks.reference import LARGEST_MM
+from morfax.tracer.marks.reference import LARGEST_MM, may_lead, reach_mm
 from morfax.tracer.program.laid.bridges import bridged
 from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.laid.touches import touching
@@ -125,9 +126,8 @@ def _near(contour: Contour, boxes_mm: list[Array]) -> NDArray[np.int64]:
 
 def _is_done(contour: Contour, near: list[Line], begins_mm: list[tuple[float, float]]) -> bool:
     """Whether a patch is the reference point of a line, or one near to it was followed along it already."""
-    if selection.are_about(contour.stroke.middles_mm, begins_mm):
-        return True
-    return any(contour.lies_on(line.places_mm) for line in near)
+    is_reference = selection.are_about(contour.stroke.middles_mm, begins_mm)
+    return is_reference or any(contour.lies_on(line.places_mm) for line in near)
 
 
 def _is_reference(line: Line, begins_mm: list[tuple[float, float]]) -> bool:
@@ -147,8 +147,7 @@ def _found(
     stroke = contour.stroke
     if setup.sheet.are_solid[stroke.patch]:
         return _Found(_lost(contour, a_dark_area(setup.sheet, stroke)))
-    loop = loops.slot(stroke.patch)
-    if loop is None:
+    if (loop := loops.slot(stroke.patch)) is None:
         about = _about(setup, contour)
         net = net_of(about, contour)
         lines = net.lines() if net is not None and net.is_clear else []
@@ -181,13 +180,15 @@ def _about(setup: Setup, contour: Contour) -> Setup:
     """The set-up with cells that see no more of a large sheet than what is about a patch."""
     settings, stroke = setup.settings, contour.stroke
     looks_mm = settings.gap_mm + settings.recatch_mm + ABOUT_WIDTHS * stroke.width_mm
-    near = setup.sheet.about(stroke.patch, _off_mm(contour) + looks_mm)
+    near = setup.sheet.about(stroke.patch, _off_mm(setup.sheet, stroke) + looks_mm)
     return setup if near is setup.sheet else replace(setup, sheet=near)
 
 
-def _off_mm(contour: Contour) -> float:
+def _off_mm(sheet: Sheet, stroke: Stroke) -> float:
     """How far off a patch the head may come without seeing the edge of the window about it, mm."""
-    return ABOUT_MM if len(contour.stroke.ends_mm()) else ENDLESS_ABOUT_MM
+    if may_lead(sheet, stroke):
+        return ABOUT_MM if len(stroke.ends_mm()) else ENDLESS_ABOUT_MM
+    return reach_mm(stroke.width_mm, sheet.drawing.pitch_mm)
 
 
 def _follow_in_window(setup: Setup, about: Setup, contour: Contour, is_letter: bool) -> _Found:
@@ -198,7 +199,8 @@ def _follow_in_window(setup: Setup, about: Setup, contour: Contour, is_letter: b
     if about is setup:
         return found
     is_found = line is not None and line.ending != "lost" and _keeps_to(contour, line)
-    is_seen = is_found or about.runs.kept_to(*_box_mm(contour, _off_mm(contour)))
+    off_mm = _off_mm(setup.sheet, contour.stroke)
+    is_seen = is_found or about.runs.kept_to(*_box_mm(contour, off_mm))
     is_lead = line is not None and line.reference_mm is not None
     return found if is_seen and not is_lead else _follow(setup, contour, is_letter)
 
@@ -207,9 +209,11 @@ def _keeps_to(contour: Contour, line: Line | None) -> bool:
     """Whether a line runs nowhere beyond its own patch."""
     if line is None:
         return False
-    low_mm, high_mm = _box_mm(contour, contour.stroke.width_mm)
-    line_low_mm, line_high_mm = bounds(line.places_mm)
-    return bool(((line_low_mm > low_mm) & (line_high_mm < high_mm)).all())
+    (low_mm, high_mm), ends_mm = (
+        _box_mm(contour, contour.stroke.width_mm),
+        bounds(line.places_mm),
+    )
+    return bool(((ends_mm[0] > low_mm) & (ends_mm[1] < high_mm)).all())
 
 
 def _box_mm(contour: Contour, around_mm: float) -> tuple[Array, Array]:

@@ -73,20 +73,26 @@ def part_behind(
     much of the sheet is beyond. `seen` gives the sheet's darkness.
     """
     (rows, columns), (top, left, bottom, right) = shape, window
-    bottom, right = min(bottom, rows), min(right, columns)
-    first, last = max(0, top - 1), min(rows, bottom + 1)
-    begin, end = max(0, left - 1), min(columns, right + 1)
-    part = np.zeros((last - first, end - begin), np.float32)
-    own = _behind(seen, sigma_px, (top, left, bottom, right))
-    part[top - first : bottom - first, left - begin : right - begin] = own
-    return part, (first, begin, rows - last, columns - end)
+    soft, (above, beside) = _with_halo(seen, sigma_px, window)
+    # the halo is the rim: no other array is made for it
+    first, begin = top - above, left - beside
+    soft[:first], soft[:, :begin] = 0.0, 0.0
+    soft[bottom - above :], soft[:, right - beside :] = 0.0, 0.0
+    below, further = rows - above - len(soft), columns - beside - soft.shape[1]
+    return soft, (above, beside, below, further)
 
 
 def _behind(seen: Seen, sigma_px: float, window: Window) -> Darkness:
-    """A window of a sheet, as far as the sheet goes, behind a spot that looks a halo beyond it."""
+    """A window of a sheet, as far as the sheet goes, behind a spot."""
+    top, left, bottom, right = window
+    soft, (above, beside) = _with_halo(seen, sigma_px, window)
+    return soft[top - above : bottom - above, left - beside : right - beside]
+
+
+def _with_halo(seen: Seen, sigma_px: float, window: Window) -> tuple[Darkness, tuple[int, int]]:
+    """The same with a halo, beyond which the spot does not look, and the halo's first row and column."""
     top, left, bottom, right = window
     halo = math.ceil(HALO_SPREADS * sigma_px) + 1
     above, beside = max(0, top - halo), max(0, left - halo)
     soft = cv2.GaussianBlur(seen(above, bottom + halo, beside, right + halo), (0, 0), sigma_px)
-    own = soft[top - above : bottom - above, left - beside : right - beside]
-    return np.asarray(own, np.float32)
+    return np.asarray(soft, np.float32), (above, beside)

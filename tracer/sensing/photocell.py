@@ -186,14 +186,19 @@ def sweep(cells, place, heading, swing_mm, samples):  # type: ignore[no-untyped-
     return 2.0 * first / samples, mean / samples
 
 
-@njit(cache=True, _nrt=False)
-def _look_round(cells, centre, radius_mm, out):  # type: ignore[no-untyped-def]
-    """Fill `out` with what a cell sees going once round a centre."""
-    for k in range(len(out)):
-        a = TWO_PI * k / len(out)
-        x = centre[0] + radius_mm * math.cos(a)
-        y = centre[1] + radius_mm * math.sin(a)
-        out[k] = darkness_at(cells, x, y)
+@njit(cache=True, inline="always")
+def look_round(cells, centre, radius_mm, look, looks):  # type: ignore[no-untyped-def]
+    """What a cell sees that goes round a centre, at one of so many looks."""
+    a = TWO_PI * look / looks
+    x = centre[0] + radius_mm * math.cos(a)
+    y = centre[1] + radius_mm * math.sin(a)
+    return darkness_at(cells, x, y)
+
+
+@njit(cache=True)
+def looks_round(cells, radius_mm):  # type: ignore[no-untyped-def]
+    """How often a cell looks that goes once round."""
+    return max(24, math.ceil(TWO_PI * radius_mm / (STEP_PX * cells.pitch_mm)))
 
 
 @njit(cache=True)
@@ -202,9 +207,16 @@ def ring(cells, centre, radius_mm):  # type: ignore[no-untyped-def]
 
     A ring that is dark all round is one arc of a whole turn.
     """
-    samples = max(24, math.ceil(TWO_PI * radius_mm / (STEP_PX * cells.pitch_mm)))
-    seen, level = np.empty(samples), cells.level
-    _look_round(cells, centre, radius_mm, seen)
+    seen = np.empty(looks_round(cells, radius_mm))
+    for k in range(len(seen)):
+        seen[k] = look_round(cells, centre, radius_mm, k, len(seen))
+    return dark_arcs(seen, cells.level)
+
+
+@njit(cache=True)
+def dark_arcs(seen, level):  # type: ignore[no-untyped-def]
+    """Dark arcs (n, 2) rad of what a cell has seen going once round."""
+    samples = len(seen)
     arcs = np.empty((samples // 2 + 1, 2))
     first_light = -1
     for k in range(samples):

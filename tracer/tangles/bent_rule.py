@@ -103,20 +103,19 @@ def _arc(places, own, radius_mm, count, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def wrong(ink, rule, figures, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n,) with the darkness that a rule of some figures draws too much at the places of an ink;
-    `rule`: its ends, and which of its corners are rounded.
+def wrong(ink, rule, figures, near, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n,) with the darkness that a rule of some figures draws too much at the places of an ink,
+    and `near` (n, 3) with where it is nearest to these; `rule`: its ends, and which of its corners are
+    rounded.
     """
     way = _way(rule, figures, np.zeros(len(rule[1]), np.int64))
-    away_mm = moved_way.away_from_ink(ink, way)
-    for k in range(len(out)):
-        out[k] = pen.ink_at(away_mm[k], figures[-1], ink.softness_mm) - ink.darkness[k]
+    moved_way.wrong(_drawn_with(ink, figures[-1]), way, np.zeros(len(way), np.bool_), near, out)
 
 
 @njit(cache=True)
-def changes(ink, rule, figures, out):  # type: ignore[no-untyped-def]
+def changes(ink, rule, figures, near, out):  # type: ignore[no-untyped-def]
     """Fill `out` (n, figures) with by how much each figure of a rule changes what is wrong at the places of
-    an ink, per mm.
+    an ink, to which it is nearest at `near` (n, 3), per mm.
     """
     # 1. how far each figure but the pen's moves the places of the way, each arc in as many steps
     last, counts = len(figures) - 1, np.zeros(len(rule[1]), np.int64)
@@ -129,12 +128,17 @@ def changes(ink, rule, figures, out):  # type: ignore[no-untyped-def]
         figures[i] = old
         moves[:, i] = (moved - way) / NUDGE_MM
     # 2. what that darkens, and what a wider pen does
-    half_mm, away_mm = figures[-1], moved_way.away_from_ink(ink, way)
-    pen_ink = pen.Ink(ink.places_mm, ink.darkness, ink.known_mm, half_mm, ink.softness_mm)
-    sharp = np.zeros(len(way), np.bool_)
-    moved_way.changes(pen_ink, (way, moves, sharp), away_mm, out[:, :last])
-    for k in range(len(away_mm)):
-        out[k, last] = pen.fades_at(away_mm[k], half_mm, ink.softness_mm)
+    half_mm, sharp = figures[-1], np.zeros(len(way), np.bool_)
+    moved_way.changes(_drawn_with(ink, half_mm), (way, moves, sharp), near, out[:, :last])
+    for k in range(len(near)):
+        away_mm = min(near[k, 0], ink.known_mm[k])
+        out[k, last] = pen.fades_at(away_mm, half_mm, ink.softness_mm)
+
+
+@njit(cache=True)
+def _drawn_with(ink, half_mm):  # type: ignore[no-untyped-def]
+    """An ink, with the pen that is to draw it."""
+    return pen.Ink(ink.places_mm, ink.darkness, ink.known_mm, half_mm, ink.softness_mm)
 
 
 @njit(cache=True)

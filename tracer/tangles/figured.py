@@ -54,30 +54,33 @@ class Figured(NamedTuple):
 
 
 @njit(cache=True)
-def wrong(figured, ink, figures, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n,) with what some figures draw too dark at the places of an ink."""
+def wrong(figured, ink, figures, near, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n,) with what some figures draw too dark at the places of an ink, and `near` (n, 3) with
+    where a way is nearest to these (see `moved_way.nearest`).
+    """
     if figured.kind == RULE:
-        bent_rule.wrong(ink, (figured.ends_mm, figured.rounded), figures, out)
+        bent_rule.wrong(ink, (figured.ends_mm, figured.rounded), figures, near, out)
     elif figured.kind == CORE:
         core_ink.ink(ink.places_mm, _core_of(figures), ink.softness_mm, False, out)
         out -= ink.darkness
     else:
-        moved_way.wrong(ink, _moved(figured, figures), figured.sharp, out)
+        moved_way.wrong(ink, _moved(figured, figures), figured.sharp, near, out)
 
 
 @njit(cache=True)
-def changes(figured, ink, figures, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n, k) with by how much each figure darkens the places of an ink, per unit of it."""
+def changes(figured, ink, figures, near, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, k) with by how much each figure darkens the places of an ink, per unit of it; `near` is
+    what `wrong` filled in for the same figures.
+    """
     if figured.kind == RULE:
-        bent_rule.changes(ink, (figured.ends_mm, figured.rounded), figures, out)
+        bent_rule.changes(ink, (figured.ends_mm, figured.rounded), figures, near, out)
     elif figured.kind == CORE:
         core_ink.changes(ink.places_mm, _core_of(figures), ink.softness_mm, out)
         if len(figures) % 2 == 0 and figures[-2] < 0:  # a radius below 0 is drawn as one above
             out[:, -2] *= -1.0
     else:
-        way = _moved(figured, figures)
-        near_mm = moved_way.away_from_ink(ink, way)
-        moved_way.changes(ink, (way, figured.moves, figured.sharp), near_mm, out)
+        moved = _moved(figured, figures), figured.moves, figured.sharp
+        moved_way.changes(ink, moved, near, out)
 
 
 @njit(cache=True)

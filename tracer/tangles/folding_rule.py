@@ -35,7 +35,7 @@ from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import bent_rule, beside_itself, pen
 from morfax.tracer.tangles.figured import Figured
 from morfax.tracer.tangles.least_squares import fitted
-from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
+from morfax.tracer.tangles.seen_ink import LIKE, PRICE, STEPS, SeenInk, best_of
 
 # which of so many corners are rounded: the patterns that are tried
 ROUNDED = {
@@ -47,6 +47,9 @@ ROUNDED = {
 ROUNDING = 0.8  # of half a width, as a rounded rule begins
 LIKE_PEN = 0.7, 1.4  # times as wide as was felt: another pen explains nothing
 MOST_SETTLED = 8  # of the rules, those that explain most to begin with
+# times what a bay may leave: a rule about a bar of ink that leaves more to begin with comes to no bay; those
+# of parts and of handwriting that did left up to 7.4
+FAR = 10.0
 BESIDE = 1.2  # half widths from the line: darker ink further away is a bar's
 FEWEST = 20  # places that a bar of ink has, at the least
 APART = 0.8  # widths: the sides of a bay begin, at the least
@@ -152,6 +155,12 @@ def round_bar(ink: SeenInk, legs: Array) -> Iterator[Rule]:
     point = tips.mean(axis=0) + ROUNDING * half_mm * out
     for corners in (np.vstack([feet[0], tips, feet[1]]), np.vstack([feet[0], point, feet[1]])):
         yield from _of_corners(legs[0], legs[-1], corners, half_mm)
+
+
+def not_far(ink: SeenInk, rules: Iterable[Rule]) -> list[Rule]:
+    """Those of some rules about a bar of ink that may come to a bay: they leave not far more than one may."""
+    most = FAR * LIKE / ink.width_mm
+    return [rule for rule in rules if _drawn(ink, rule).misfit < most * rule.length_mm]
 
 
 def explained(ink: SeenInk, rules: Iterable[Rule], of_bay: bool = True) -> Rule | None:

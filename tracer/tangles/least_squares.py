@@ -45,11 +45,12 @@ def settled(drawn, ink, figures, most):  # type: ignore[no-untyped-def]
     places, count = len(ink.darkness), len(figures)
     figures, now, after = figures.copy(), np.empty(places), np.empty(places)
     change, scale = np.empty((places, count)), np.zeros(count)
-    figured.wrong(drawn, ink, figures, now)
+    near, then = np.empty((places, 3)), np.empty((places, 3))
+    figured.wrong(drawn, ink, figures, near, now)
     left, reach, damping, asked = _length(now), 0.0, 0.0, 1
     while True:
         # 1. what each figure changes, and whether any makes less wrong
-        figured.changes(drawn, ink, figures, change)
+        figured.changes(drawn, ink, figures, near, change)
         square, right = _normal(change, now)
         each, is_first = np.sqrt(np.diag(square)), asked == 1
         if not np.any(np.abs(right) > TOLERANCE * left * each):
@@ -64,7 +65,7 @@ def settled(drawn, ink, figures, most):  # type: ignore[no-untyped-def]
             step, damping = _step(square, right, scale, (reach, damping))
             long = _length(scale * step)
             reach = min(reach, long) if is_first else reach
-            figured.wrong(drawn, ink, figures - step, after)
+            figured.wrong(drawn, ink, figures - step, then, after)
             asked, still = asked + 1, _length(after)
             gain = 1 - (still / left) ** 2 if TENTH * still < left else -1.0
             by_slope, damped = _along(square, step) / left**2, damping * (long / left) ** 2
@@ -74,6 +75,7 @@ def settled(drawn, ink, figures, most):  # type: ignore[no-untyped-def]
             if gained >= GOOD:
                 figures -= step
                 now, after, left = after, now, still
+                near, then = then, near
             is_enough = abs(gain) <= ENOUGH and expected <= ENOUGH and gained <= 2
             if is_enough or reach <= TOLERANCE * _length(scale * figures) or asked >= most:
                 return figures

@@ -27,39 +27,28 @@ from morfax.tracer.tangles import pen
 
 
 @njit(cache=True)
-def pieces_of(way):  # type: ignore[no-untyped-def]
-    """The pieces of a way (m, 2), for `nearest`: where each begins, x and y, along which way it leads, x and
-    y, one over the square of its length, and room.
+def nearest(places, way, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, 3) with how far places (n, 2) are from a way (m, 2) mm, on which of its pieces it comes
+    nearest, and at which share of that.
+
+    All squares first, and then the least: so four pieces are held against a place at a time.
     """
-    last = len(way) - 1
-    x, y, along_x, along_y = np.empty(last), np.empty(last), np.empty(last), np.empty(last)
-    per, room = np.empty(last), np.empty(last)
-    for i in range(last):
-        x[i], y[i] = way[i, 0], way[i, 1]
-        along_x[i], along_y[i] = way[i + 1, 0] - way[i, 0], way[i + 1, 1] - way[i, 1]
-        per[i] = 1.0 / max(along_x[i] * along_x[i] + along_y[i] * along_y[i], NOT_ZERO)
-    return x, y, along_x, along_y, per, room
-
-
-@njit(cache=True)
-def nearest(pieces, x, y):  # type: ignore[no-untyped-def]
-    """Where the pieces of a way are nearest to a place: which piece, the share of that, the distance, mm.
-
-    All squares first, and then the least: so four pieces are held against the place at a time.
-    """
-    x0, y0, along_x, along_y, per, squares = pieces
-    for i in range(len(squares)):
-        wx, wy = x - x0[i], y - y0[i]
-        t = min(max((wx * along_x[i] + wy * along_y[i]) * per[i], 0.0), 1.0)
-        dx, dy = wx - t * along_x[i], wy - t * along_y[i]
-        squares[i] = dx * dx + dy * dy
-    best, piece = math.inf, 0
-    for i in range(len(squares)):
-        if squares[i] < best:
-            best, piece = squares[i], i
-    wx, wy = x - x0[piece], y - y0[piece]
-    share = (wx * along_x[piece] + wy * along_y[piece]) * per[piece]
-    return piece, min(max(share, 0.0), 1.0), math.sqrt(best)
+    x0, y0 = way[:-1, 0].copy(), way[:-1, 1].copy()
+    along_x, along_y = way[1:, 0] - x0, way[1:, 1] - y0
+    per = 1.0 / np.maximum(along_x * along_x + along_y * along_y, NOT_ZERO)
+    shares, squares = np.empty(len(per)), np.empty(len(per))
+    for k in range(len(places)):
+        x, y = places[k, 0], places[k, 1]
+        for i in range(len(per)):
+            wx, wy = x - x0[i], y - y0[i]
+            t = min(max((wx * along_x[i] + wy * along_y[i]) * per[i], 0.0), 1.0)
+            dx, dy = wx - t * along_x[i], wy - t * along_y[i]
+            shares[i], squares[i] = t, dx * dx + dy * dy
+        best, piece = math.inf, 0
+        for i in range(len(per)):
+            if squares[i] < best:
+                best, piece = squares[i], i
+        out[k, 0], out[k, 1], out[k, 2] = math.sqrt(best), piece, shares[piece]
 
 
 @njit(cache=True)
@@ -71,60 +60,42 @@ def at_corner(piece, share, sharp):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def away_from_ink(ink, way):  # type: ignore[no-untyped-def]
-    """How far the ink's places are from a way (m, 2) mm or from what is drawn anyway, (n,) mm."""
-    last = len(way) - 1
-    lines, out = np.empty((4, last)), np.empty(len(ink.places_mm))
-    for i in range(last):
-        lines[0, i], lines[1, i] = way[i, 0], way[i, 1]
-        lines[2, i], lines[3, i] = way[i + 1, 0], way[i + 1, 1]
-    out[:] = pen.NOWHERE_MM
-    pen.away(ink.places_mm, lines, last, out)
-    for k in range(len(out)):
-        out[k] = min(out[k], ink.known_mm[k])
-    return out
-
-
-@njit(cache=True)
-def wrong(ink, way, sharp, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n,) with what a pen along a way (m, 2) mm draws too dark at each place of the ink; `sharp`
-    are its corners.
+def wrong(ink, way, sharp, near, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n,) with what a pen along a way (m, 2) mm draws too dark at each place of the ink, and
+    `near` (n, 3) with where the way is nearest to that; `sharp` are its corners.
 
     A pen's ink is round at a corner, a plotting program's may come to a point: neither is too little.
     """
-    near_mm, pieces, has_corners = away_from_ink(ink, way), pieces_of(way), np.any(sharp)
-    for k in range(len(near_mm)):
-        drawn = pen.ink_at(near_mm[k], ink.half_mm, ink.softness_mm)
+    nearest(ink.places_mm, way, near)
+    has_corners = np.any(sharp)
+    for k in range(len(near)):
+        drawn = pen.ink_at(min(near[k, 0], ink.known_mm[k]), ink.half_mm, ink.softness_mm)
         out[k] = drawn - ink.darkness[k]
-        if has_corners and out[k] < 0:
-            i, t, _ = nearest(pieces, ink.places_mm[k, 0], ink.places_mm[k, 1])
-            out[k] = 0.0 if at_corner(i, t, sharp) else out[k]
+        if has_corners and out[k] < 0 and at_corner(int(near[k, 1]), near[k, 2], sharp):
+            out[k] = 0.0
 
 
 @njit(cache=True)
-def changes(ink, moved, near_mm, out):  # type: ignore[no-untyped-def]
+def changes(ink, moved, near, out):  # type: ignore[no-untyped-def]
     """Fill `out` (n, f) with by how much each figure darkens each place of the ink, per unit of the figure;
-    `moved`: the way, how far each figure moves its places, and its corners (m,); `near_mm` (n,): how far each
-    place is from the way, or from what is drawn anyway.
+    `moved`: the way, how far each figure moves its places, and its corners (m,); `near` (n, 3): where the way
+    is nearest to each place.
 
-    Only where the ink fades is the nearest piece looked for. Ink that comes to a point at one of the corners
-    is not wrong, and no figure changes that.
+    Ink that comes to a point at one of the corners is not wrong, and no figure changes that.
     """
     way, moves, sharp = moved
-    pieces = pieces_of(way)
-    for k in range(len(near_mm)):
+    for k in range(len(near)):
         out[k, :] = 0.0
-        if pen.fades_at(near_mm[k], ink.half_mm, ink.softness_mm) == 0.0:
+        away_mm, i, t = near[k, 0], int(near[k, 1]), near[k, 2]
+        fades = pen.fades_at(away_mm, ink.half_mm, ink.softness_mm)
+        if fades == 0.0 or away_mm > ink.known_mm[k] or away_mm < NOT_ZERO:
             continue
-        x, y = ink.places_mm[k, 0], ink.places_mm[k, 1]
-        i, t, away_mm = nearest(pieces, x, y)
-        if away_mm > ink.known_mm[k] or away_mm < NOT_ZERO:
-            continue
-        is_less = pen.ink_at(away_mm, ink.half_mm, ink.softness_mm) < ink.darkness[k]
-        if is_less and at_corner(i, t, sharp):
-            continue
+        if at_corner(i, t, sharp):
+            drawn = pen.ink_at(away_mm, ink.half_mm, ink.softness_mm)
+            if drawn < ink.darkness[k]:
+                continue
         # the ink fades along the line from the way's nearest place
-        fades = pen.fades_at(away_mm, ink.half_mm, ink.softness_mm) / away_mm
+        x, y, fades = ink.places_mm[k, 0], ink.places_mm[k, 1], fades / away_mm
         dx = fades * (x - way[i, 0] - t * (way[i + 1, 0] - way[i, 0]))
         dy = fades * (y - way[i, 1] - t * (way[i + 1, 1] - way[i, 1]))
         for f in range(moves.shape[1]):

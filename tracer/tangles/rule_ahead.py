@@ -16,7 +16,6 @@ Source: our own (see `wavefront` and `folding_rule`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from itertools import groupby
 
 import numpy as np
@@ -24,10 +23,12 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.plane import direction, heading_of
 from morfax.motion.polyline import evenly, length_mm
+from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
 from morfax.tracer.junctions.rings import FARTHEST_MM, FARTHEST_WIDTHS
+from morfax.tracer.junctions.width_change import STEP
 from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
@@ -39,7 +40,6 @@ from morfax.tracer.tangles.solution import TWICE, Approach
 from morfax.tracer.tangles.tangle import CLEAN_FRONTS, LEAST_BROAD, MOST_BROAD, ink_of
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 
-EVERY_MM = 0.1  # of the way behind there is a place; by trial
 # for each width of its length, as misfit: a right rule leaves less; by trial on teeth at 200 to 600 dpi, of
 # which those that were looked at left 0.001 to 0.012
 LEFT = 0.014
@@ -62,20 +62,24 @@ def rule_ahead(view: View, approach: Approach, softness_mm: float) -> Plan | Non
         most = LEFT * length_mm(way) / view.width_mm
         if plan is not None and ink.misfit_along(_planned(plan)) < TWICE * most:
             return None
-        rule = _explained(ink, way)
+        rule = _explained(ink, way, TWICE * most)
         if rule is not None and most <= rule.misfit < TWICE * most:
             rule = _with_free_end(ink, rule)
-        if rule is not None and rule.misfit < most and _leads_on(rule, incoming):
+        if rule is not None and rule.misfit < most and _leads_on(rule, incoming, view.width_mm):
             return _plan(incoming, approach.stands, rule)
     return None
 
 
-def _explained(ink: SeenInk, way: Array) -> Rule | None:
+def _explained(ink: SeenInk, way: Array, most: float) -> Rule | None:
     """The rule about a way (n, 2) mm that explains the ink best with few figures: those of few corners are
-    tried first, and one of more only where they leave ink.
+    tried first, and one of more only where they leave ink. None are where that of most leaves too much: what
+    it does not explain, fewer do not. If it comes off the ink, it tells nothing.
     """
     best: Rule | None = None
-    rules = folding_rule.along(way, ink.half_mm)
+    rules = list(folding_rule.along(way, ink.half_mm))
+    of_most = folding_rule.explained(ink, rules[-2:-1], of_bay=False)  # the last is rounded
+    if of_most is not None and of_most.misfit > most:
+        return None
     for _, alike in groupby(rules, lambda rule: len(rule.corners_mm)):
         rule = folding_rule.explained(ink, alike, of_bay=False)
         if rule is not None and (best is None or rule.cost < best.cost):
@@ -102,34 +106,38 @@ def _with_free_end(ink: SeenInk, rule: Rule) -> Rule | None:
     )
 
 
-def _leads_on(rule: Rule, incoming: Leg) -> bool:
-    """Whether a rule begins ahead of a leg, and not back along it."""
-    return float(rule.ahead @ direction(incoming.heading_rad)) > 0
+def _leads_on(rule: Rule, incoming: Leg, width_mm: float) -> bool:
+    """Whether a rule begins ahead of a leg, and not back along it, with the pen of its line."""
+    is_ahead = float(rule.ahead @ direction(incoming.heading_rad)) > 0
+    return is_ahead and abs(2 * rule.half_mm / width_mm - 1) < STEP
 
 
-def _lasts(view: View, fronts: Fronts) -> Iterator[int]:
-    """The fronts to which a rule may lead, the nearest first: beyond a corner, and as broad as the line. None
-    beyond where the ink forks, or near its end.
+def _lasts(view: View, fronts: Fronts) -> list[int]:
+    """The fronts to which a rule may lead, beyond a corner and as broad as the line: the nearest of those
+    that are so one after the other, and before it, or without it, the two nearest that are so alone, as
+    between sides that run together. None if the ink forks before, and none near its end.
     """
     goes_on = fronts.beyond_mm() > ABOUT_WIDTHS * view.width_mm
-    clean, is_beyond, come = 0, False, -1
+    clean, is_beyond, come, alone = 0, False, -1, list[int]()
     for k in np.flatnonzero(goes_on).tolist():
         if fronts.at[k] == come:
-            return
+            return []
         come = fronts.at[k]
-        if LEAST_BROAD < fronts.breadth_mm[k] / view.width_mm < MOST_BROAD:
-            clean += 1
-            if clean == CLEAN and is_beyond:
-                yield k
-        else:
+        if not LEAST_BROAD < fronts.breadth_mm[k] / view.width_mm < MOST_BROAD:
             clean, is_beyond = 0, is_beyond or k > CLEAN_FRONTS
+        elif is_beyond:
+            clean += 1
+            if clean == CLEAN:
+                return [k, *alone[:-1]][:3]
+            alone.append(k)
+    return alone[:2]
 
 
 def _behind(approach: Approach, reach_mm: float) -> Array:
     """The way (n, 2) mm by which the head came, as far as the wave reaches, to the end of its leg."""
     place_mm, incoming = approach.stands[0], approach.incoming
-    come = evenly(np.vstack([approach.trail.recent(), place_mm]), EVERY_MM)
-    come = come[-round(reach_mm / EVERY_MM) :]
+    come = evenly(np.vstack([approach.trail.recent(), place_mm]), LOOKED_MM)
+    come = come[-round(reach_mm / LOOKED_MM) :]
     to_end_mm = ahead_mm(place_mm, incoming)
     if to_end_mm > 0:
         return np.vstack([come, incoming.at(np.array([-0.5 * to_end_mm, 0.0]))])

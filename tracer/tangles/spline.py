@@ -28,7 +28,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
-from morfax.motion.compiled import njit
 from morfax.motion.plane import left_of, unit
 from morfax.tracer.tangles import moved_way
 from morfax.tracer.tangles.figured import Figured
@@ -175,19 +174,8 @@ def _cubics(weights_mm: Array, places_mm: Array, clamped: tuple[bool, bool]) -> 
     return share
 
 
-@njit(cache=True)
-def nearest_pieces(places, way, out):  # type: ignore[no-untyped-def]
-    """Fill `out` (n, 2) with how far places (n, 2) mm are from a way (m, 2) mm, and at which of its places,
-    fractions included.
-    """
-    pieces = moved_way.pieces_of(way)
-    for k in range(len(places)):
-        piece, share, away_mm = moved_way.nearest(pieces, places[k, 0], places[k, 1])
-        out[k, 0], out[k, 1] = away_mm, piece + share
-
-
 def wrong_along(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
     """What a pen along a way (m, 2) mm, with some corners, draws too dark at places of an ink, (n,)."""
-    out = np.empty(len(ink.places_mm))
-    moved_way.wrong(ink.for_kernel(), np.ascontiguousarray(way), sharp, out)
+    out, near = np.empty(len(ink.places_mm)), np.empty((len(ink.places_mm), 3))
+    moved_way.wrong(ink.for_kernel(), np.ascontiguousarray(way), sharp, near, out)
     return out

@@ -39,7 +39,6 @@ START_PX, START_ASIDE = 1.5, 0.4
 SHUT, SHUT_PX, SHUT_ASIDE = 2.0, 2.0, 0.9
 SHUT_WAY = 0.6  # widths from a way that was run: shut off
 MARGIN_PX = 4  # of the window beyond the reach
-RECENT = 64  # links among which a pair is looked for: those of one row's neighbours
 
 # moves to a neighbour and by a knight's move (rows, columns), which is open if its half way is: distances
 # are then true to 3 %
@@ -227,7 +226,8 @@ def _split(distance, step_px):  # type: ignore[no-untyped-def]
                 stack[0, 0], stack[0, 1] = i, j
                 _fill(distance, step_px, label, stack, table[count])
                 count += 1
-    return label, table[:count].copy(), _links(label, table)
+    table = table[:count].copy()
+    return label, table, _links(label, table)
 
 
 @njit(cache=True)
@@ -256,7 +256,7 @@ def _fill(distance, step_px, label, stack, row):  # type: ignore[no-untyped-def]
 def _links(label, table):  # type: ignore[no-untyped-def]
     """Pairs of fronts (n, 2) that touch, the second one step further than the first; some several times."""
     rows, columns = label.shape
-    links = np.empty((8 * rows * columns, 2), np.int32)
+    links, newest = np.empty((8 * rows * columns, 2), np.int32), np.full(len(table), -1)
     found = 0
     for i in range(rows):
         for j in range(columns):
@@ -266,18 +266,10 @@ def _links(label, table):  # type: ignore[no-untyped-def]
             for y in range(max(0, i - 1), min(rows, i + 2)):
                 for x in range(max(0, j - 1), min(columns, j + 2)):
                     b = label[y, x]
-                    if b < 0 or table[b, 0] != table[a, 0] + 1:
+                    # most fronts lead on to one alone
+                    if b < 0 or b == newest[a] or table[b, 0] != table[a, 0] + 1:
                         continue
-                    if not _known(links, max(0, found - RECENT), found, a, b):
-                        links[found, 0], links[found, 1] = a, b
-                        found += 1
+                    links[found, 0], links[found, 1] = a, b
+                    newest[a] = b
+                    found += 1
     return links[:found].copy()
-
-
-@njit(cache=True)
-def _known(links, first, last, a, b):  # type: ignore[no-untyped-def]
-    """Whether a pair is among the links from first to last."""
-    found = False
-    for k in range(last - 1, first - 1, -1):
-        found = found or (links[k, 0] == a and links[k, 1] == b)
-    return found

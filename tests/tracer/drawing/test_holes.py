@@ -6,8 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
-from morfax.tracer.drawing.components import Mask
-from morfax.tracer.drawing.holes import Hole, holes
+import morfax.tracer.drawing.holes
+from morfax.tracer.drawing.components import Mask, Patches, runs_of
+from morfax.tracer.drawing.holes import Hole, holes, holes_in
 
 
 def patch_of(rows: str) -> Mask:
@@ -42,3 +43,11 @@ def test_the_paper_in_a_hole_is_as_much_as_its_pixels() -> None:
         around = pieces[0, 0]
         within = [int((pieces == k).sum()) for k in range(1, count) if k != around]
         assert sorted(hole.paper_px for hole in holes(ink)) == sorted(within)
+
+
+def test_the_holes_of_a_patch_are_looked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    mask = np.pad(patch_of("#### #..# ####"), 3)
+    patches, found = Patches.of([runs_of(mask, 0)]), holes(mask[3:6, 3:7])
+    assert holes_in(patches, 0) == found == [Hole(0, 0, 4, 3, 2)]
+    monkeypatch.setattr(morfax.tracer.drawing.holes, "holes", None)
+    assert holes_in(patches, 0) == found

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from morfax.tracer.following.attempts import DOUBTS, Attempts
+from morfax.motion.faults import LineFault
+from morfax.motion.polyline import area_mm2
+from morfax.tracer.following.attempts import DOUBTS, SHORTER, TRIED_MM, TURNS, Attempts
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head.leaders import CELL, STATIONS
@@ -210,3 +213,87 @@ def test_no_more_doubts_are_looked_into_than_is_allowed(
     monkeypatch.setattr(Attempts, "run", known)
     Attempts(DRAWING, Settings(), 100.0).all_of_it(replace(STANCE, at_end=True))
     assert len(tried) == 1 + more
+
+
+@pytest.mark.parametrize("shorter", [False, True])
+def test_of_both_ways_round_the_second_is_the_line_if_it_is_shorter_by_enough(
+    monkeypatch: pytest.MonkeyPatch, shorter: bool
+) -> None:
+    """Straight on has led elsewhere then, before it came back: by a twentieth of the way."""
+    share = SHORTER - 0.01 if shorter else SHORTER + 0.01
+    runs = {(True, False): run("closed", 100), (False, False): run("closed", 100 * share)}
+    assert chosen(monkeypatch, runs) is runs[not shorter, False]
+
+
+def with_turns(
+    monkeypatch: pytest.MonkeyPatch,
+    comes_to: Callable[[tuple[int, ...]], tuple[str, float]],
+    junctions: int,
+) -> tuple[Followed, list[tuple[int, ...]]]:
+    """The run that is kept of a line with so many junctions at which other turns come to what is told, and
+    the turns that were tried.
+    """
+    tried = list[tuple[int, ...]]()
+    places = tuple((9.5 + k, 4.0) for k in range(junctions))
+
+    def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
+        tried.append(turns)
+        return replace(run(*comes_to(turns)), junctions_mm=places)
+
+    monkeypatch.setattr(Attempts, "run", known)
+    found = Attempts(DRAWING, Settings(), 100.0).all_of_it(STANCE)
+    return found, [turns for turns in tried if turns]
+
+
+def test_of_other_turns_the_shortest_way_that_closes_is_taken(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """At two junctions only where no turn at one alone closes."""
+    closing = {(0,): 90.0, (2,): 60.0, (0, 1): 50.0}
+
+    def comes_to(turns: tuple[int, ...]) -> tuple[str, float]:
+        return ("closed", closing[turns]) if turns in closing else ("joined", 70.0)
+
+    found, tried = with_turns(monkeypatch, comes_to, 3)
+    assert (found.ending, found.travel_mm) == ("closed", 60.0)
+    assert tried == [(0,), (1,), (2,)]
+    del closing[0,], closing[2,]
+    found, tried = with_turns(monkeypatch, comes_to, 3)
+    assert (found.ending, found.travel_mm) == ("closed", 50.0)
+    assert tried == [(0,), (1,), (2,), (0, 1), (0, 2), (1, 2)]
+
+
+def test_other_turns_are_tried_at_so_many_junctions_and_for_so_long(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where none closes, the line stays as it was found at first."""
+    found, tried = with_turns(monkeypatch, lambda _: ("joined", 1.0), 2 * TURNS)
+    assert (found.ending, found.travel_mm) == ("joined", 1.0)
+    assert len(tried) == TURNS + TURNS * (TURNS - 1) // 2
+    _, tried = with_turns(monkeypatch, lambda _: ("joined", 0.4 * TRIED_MM), 2 * TURNS)
+    assert len(tried) == 3
+
+
+def round_about(sense: float) -> Followed:
+    """A run round a circle, left about or right about."""
+    angles = sense * np.linspace(0.0, math.tau, 100)
+    positions = 9 + np.column_stack([np.cos(angles), np.sin(angles)])
+    return Followed(positions, "closed", 0.0, math.tau, VIEW, ())
+
+
+def test_a_line_is_followed_in_the_direction_that_is_asked_for_or_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    senses = {True: 1.0, False: -1.0}  # by whether the head sets out as it stands
+
+    def known(self: Attempts, stance: Stance, turns: tuple[int, ...] = ()) -> Followed:
+        return round_about(senses[math.cos(stance.heading_rad) > 0])
+
+    monkeypatch.setattr(Attempts, "run", known)
+    attempts = Attempts(DRAWING, Settings(), 100.0)
+    for direction, sign in (("ccw", 1.0), ("cw", -1.0)):
+        found = attempts.asked_for(STANCE, direction)
+        assert sign * area_mm2(found.positions_mm) > 0
+    senses[False] = 1.0
+    with pytest.raises(LineFault, match="does not come back that way round"):
+        attempts.asked_for(STANCE, "cw")

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any, cast
+
 import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
 from morfax.motion.contour import distance
-from morfax.tracer.following import follower
+from morfax.tracer.following import follower, two_corners
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed
+from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.view import View
 from tests.tracer.inked import UM, arc, inked, polyline
 
 TURN = np.radians(60)
@@ -120,3 +125,43 @@ def test_as_one_bend_or_by_one_vertex_they_are_cut_off(
     monkeypatch.setattr(follower, "or_two_corners", lambda planner, felt, plan: plan)
     monkeypatch.setattr(follower, "or_two_before", lambda planner, seen, choice, plan: plan)
     assert worst_at_step_mm(stepped(0.6, turn_deg), seed) > STEP_CUT_OFF_MM
+
+
+def leg_from(x: float, y: float) -> Leg:
+    """A straight leg to the right."""
+    return Leg(np.array([x, y]), 0.0, 0.0, 0.5, np.empty((0, 3)))
+
+
+def test_sides_of_a_step_begin_at_30_60_and_90_degrees_about_its_middle() -> None:
+    view = cast(View, SimpleNamespace(width_mm=0.5))
+    round_mm = np.linspace([0.0, 0.0], [2.0, 0.6], 41)
+    sides = two_corners._stepping(view, leg_from(0.0, 0.0), leg_from(2.0, 0.6), round_mm)
+    assert sides is not None
+    turns_deg = np.degrees([sides.turns_rad(along_mm) for along_mm in sides.along_mm])
+    assert turns_deg == pytest.approx(np.array([[a, -a] for a in (30.0, 60.0, 90.0)]))
+    for along_mm in sides.along_mm:
+        middle = sides.incoming.at(along_mm[0]) + sides.outgoing.at(along_mm[1])
+        assert 0.5 * middle == pytest.approx([1.0, 0.3])
+
+
+def test_of_several_ways_by_two_corners_the_one_that_gains_most_is_taken(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    gains = iter([0.1, 0.3, 0.2])
+    sides = two_corners._Sides(leg_from(0, 0), leg_from(2, 1), np.zeros((1, 2)), 1.0)
+
+    def better(*_: object) -> two_corners._Two:
+        return two_corners._Two(sides, np.array([1.0, -1.0]), next(gains))
+
+    for name, instead in (
+        ("is_rough", lambda *_: False),
+        ("is_as_felt", lambda *_: True),
+        ("_as_felt", lambda *_: np.zeros((2, 2))),
+        ("_beside_another", lambda *_: [sides] * 3),
+        ("_better", better),
+        ("_plan", lambda _, two: two.gain),
+    ):
+        monkeypatch.setattr(two_corners, name, instead)
+    felt = cast(Any, SimpleNamespace(seen=np.zeros((9, 3))))
+    planner = cast(Any, SimpleNamespace(view=None))
+    assert two_corners.or_two_corners(planner, felt, None) == 0.3

@@ -44,6 +44,25 @@ def test_a_circle_that_crosses_a_line_twice_at_a_flat_angle_keeps_its_partners(
         assert min(off_mm) < OFF_MM
 
 
+@pytest.mark.parametrize("angle_deg", [2.0, 3.0])
+def test_two_lines_cross_though_others_cross_them_nearby(angle_deg: float) -> None:
+    """They run in one ink, and no more than 4 mm of it to either side are theirs alone."""
+    lines = [
+        polyline((4, 20 - high_mm), (56, 20 + high_mm))
+        for high_mm in (26 * math.tan(math.radians(side * angle_deg / 2)) for side in (1, -1))
+    ]
+    others = polyline((18, 10), (34, 30)), polyline((40, 10), (28, 30))
+    strokes = [
+        shapely.LineString(line.xy_mm[::5])
+        for line in trace_ink(inked(*lines, *others, seed=4)).lines
+    ]
+    for true in lines:
+        off_mm = [
+            shapely.hausdorff_distance(shapely.LineString(true), each) for each in strokes
+        ]
+        assert min(off_mm) < OFF_MM
+
+
 def _traced(bent: Array):  # type: ignore[no-untyped-def]
     return trace_ink(inked(STRAIGHT, bent, seed=1)).lines
 
@@ -72,12 +91,15 @@ def test_a_line_crosses_another_as_well_if_one_of_them_is_bent(radius_mm: float)
     assert above_mm[before] * above_mm[behind] < 0
 
 
+@pytest.mark.parametrize("stations", [80, 240])
 @pytest.mark.parametrize("radius_mm", [50.0, 150.0])
-def test_a_bent_line_that_only_touches_another_does_not_cross_it(radius_mm: float) -> None:
-    x = _along(240)
+def test_a_bent_line_that_only_touches_another_does_not_cross_it(
+    radius_mm: float, stations: int
+) -> None:
+    x = _along(stations)
     one, other = strands(_felt_with(x**2 / (2 * radius_mm)), WIDTH_MM, (True, True))
     sides = np.sign((one.places_mm - other.places_mm)[:, 1])
-    assert (sides[np.abs(x) > WIDTH_MM * 3] == sides[0]).all()
+    assert (sides[np.abs(x) > 0.4 * x[-1]] == sides[0]).all()
 
 
 def test_two_lines_are_told_from_where_they_are_apart_but_to_the_end_of_their_ink() -> None:

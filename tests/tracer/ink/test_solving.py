@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 
 from morfax.jobs.listener import never_back
 from morfax.tracer.program.trace_ink import SOLVED, trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
-from tests.tracer.inked import inked, polyline
+from tests.tracer.inked import UM, arc, inked, polyline
 
 GRID = [
     line
@@ -40,3 +41,16 @@ def test_progress_of_contours_moves_while_junctions_are_solved() -> None:
     before = heard[: int(np.argmax(np.diff(heard) < 0)) + 1]  # the head runs then, from 0
     assert len(before) > JUNCTIONS
     assert shown == sorted(shown)
+
+
+def test_circles_in_one_ink_keep_their_partners_where_a_third_crosses_them() -> None:
+    """Their rims tell how they cross there: cubics from where they part were 168 um off, in one stroke."""
+    circles = [arc((24, 27), 13.7), arc((26.5, 28.3), 16.1), arc((28, 36.5), 21.6)]
+    found = trace_ink(inked(*circles, width_mm=0.4, seed=1)).lines
+    strokes = [shapely.LineString(line.xy_mm[::5]) for line in found]
+    assert len(strokes) == len(circles)
+    for true in circles:
+        off_mm = [
+            shapely.hausdorff_distance(shapely.LineString(true), each) for each in strokes
+        ]
+        assert min(off_mm) < 60 * UM

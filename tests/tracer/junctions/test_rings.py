@@ -10,6 +10,8 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.junctions import arcs
+from morfax.tracer.junctions.arcs import ARC
 from morfax.tracer.junctions.rings import corner_in, fork_in, legs_around
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import Leg
@@ -58,6 +60,30 @@ def test_a_smooth_bend_is_no_corner() -> None:
         assert (
             corner_in(stations(radius_mm * _unit(np.arange(60) * 0.05 / radius_mm)), 0) is None
         )
+
+
+def test_of_a_ring_the_cell_sees_what_hangs_on_the_ring_within_and_looks_no_further() -> None:
+    """To the bit; a line that begins beyond that ring is not looked at."""
+    drawing = inked(
+        polyline((4, 10), (24, 10)), polyline((14, 2), (14, 20)), polyline((17, 12), (20, 14))
+    )
+    cells, inner = view(drawing).cells, np.empty(0, ARC)
+    for centre in (np.array([14.0, 10.0]), np.array([14.3, 10.2])):
+        for radius_mm in np.arange(0.2, 5.0, 0.05):
+            ring_mm = radius_mm, WIDTH_MM, math.nan
+            every = photocell.ring(cells, centre, radius_mm)
+            of_it = arcs._ring_on(cells, centre, radius_mm, inner)
+            is_on = [any(arcs._overlap(*own, *a) for own in _ends(inner)) for a in every]
+            hang = every[is_on] if len(inner) else every
+            assert np.array_equal(of_it, hang)
+            inner = arcs.outward(cells, centre, ring_mm, inner)
+            assert np.array_equal(_ends(inner), hang)
+        assert len(every) > len(hang) > 0
+
+
+def _ends(inner: Array) -> Array:
+    """Where some arcs begin and end."""
+    return np.column_stack([inner["begin"], inner["end"]])
 
 
 def _unit(angle: Array) -> Array:

@@ -19,6 +19,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.marks import marks as marks_along_path
+from morfax.tracer.marks import ticks
 from morfax.tracer.marks.head_path import HeadPath
 from tests.tracer.inked import UM, arc, cross, dot, inked, polyline, tick
 from tests.tracer.marked import trace, trace_lines
@@ -43,6 +44,24 @@ def off_mm(line: Line, *places: tuple[float, float]) -> list[float]:
     found = sorted(mark.place_mm for mark in line.marks)
     assert len(found) == len(places), found
     return [math.dist(a, b) for a, b in zip(found, sorted(places), strict=True)]
+
+
+def test_the_paper_beside_a_stroke_is_looked_at_for_one_row_of_cells_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Six rows see a tick of 4 mm on either side; a stroke aslant is no tick, whatever is beside it."""
+    looked_at = list[float]()
+    soiled = ticks.soiled_beside
+    monkeypatch.setattr(
+        ticks, "soiled_beside", lambda *seen: looked_at.append(soiled(*seen)) or looked_at[-1]
+    )
+    aslant = tick((14, 12), before_mm=0.0, beyond_mm=4.0, slant_deg=52)
+    across = tick((24, 12), before_mm=4.0, beyond_mm=4.0)
+    sheet = Sheet.of(inked(LINE, aslant, across, seed=7))
+    along = np.column_stack([np.linspace(4, 34, 6000), np.full(6000, 12.0)])
+    (found,) = marks_along_path.marks_along(view_of(sheet, None, 0.5), along)
+    assert math.dist(found.place_mm, (24, 12)) < STANDS_WITHIN_MM
+    assert len(looked_at) == 1  # of the stroke to the left of the line, which is the tick
 
 
 LEAST_WIDTHS = 4.0  # a tick is at least so long; a slanted one of three stands 0.14 mm off

@@ -189,10 +189,11 @@ def test_a_cross_in_a_circle_is_a_symbol_unless_a_program_is_drawn(across_mm: fl
     assert math.dist(meant.reference_mm, AT) < WITHIN_MM
 
 
+@pytest.mark.parametrize(("apart_mm", "asked_of_each"), [(8.0, 6), (10.0, 0)])
 def test_of_many_holes_each_line_asks_only_those_next_to_it(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, apart_mm: float, asked_of_each: int
 ) -> None:
-    holes = [arc((8 + 10 * (k % 5), 8 + 10 * (k // 5)), 3.0) for k in range(25)]
+    holes = [arc((8 + apart_mm * (k % 5), 8 + apart_mm * (k // 5)), 3.0) for k in range(25)]
     sheet, asked = Sheet.of(inked(*holes, seed=3)), list[Reference | None]()
     ring = reference._ring
     monkeypatch.setattr(
@@ -204,8 +205,9 @@ def test_of_many_holes_each_line_asks_only_those_next_to_it(
         stroke = sheet.stroke(int(patch))
         view = view_of(sheet, None, stroke.width_mm)
         assert at_ends(view, sheet, stroke, 0.5, None) == []
-    # its own hole, as ink and as a patch, and the four beside it
-    assert len(asked) <= 6 * len(holes)
+    # its own hole, as ink and as a patch, and the four beside it; none if it stands alone
+    assert len(asked) <= asked_of_each * len(holes)
+    assert bool(asked) == bool(asked_of_each)
     assert all(found is not None and found.kind == "ring" for found in asked)
 
 
@@ -223,3 +225,29 @@ def test_a_box_of_a_row_of_boxes_is_no_reference_point(size_mm: float) -> None:
     view = view_of(sheet, None, stroke.width_mm)
     ends = at_ends(view, sheet, stroke, 0.5, None)
     assert all(end.reference_mm is None for end in ends)
+
+
+RING = arc((15, 15), 3.0)
+
+
+@pytest.mark.parametrize(
+    ("beside", "may"),
+    [
+        ([], False),
+        ([arc((15, 15), 9.0)], False),  # round it, at 5.5 mm
+        ([arc((15, 15), 5.5)], True),
+        ([polyline((20, 10), (20, 20))], True),
+        ([polyline((17.1, 17.1), (18.4, 18.4))], True),  # a tail, within the ring's own square
+    ],
+)
+def test_a_ring_leads_somewhere_only_if_other_ink_is_near_or_a_line_leaves_it(
+    beside: list[np.ndarray], may: bool
+) -> None:
+    sheet = Sheet.of(inked(RING, *beside, seed=3))
+    ring = sheet.stroke(sheet.patch_at(RING[0]))
+    assert reference.may_lead(sheet, ring) == may
+
+
+def test_what_goes_round_no_ring_leads_nowhere() -> None:
+    sheet = Sheet.of(inked(arc((15, 15), 7.0), seed=3))
+    assert not reference.may_lead(sheet, sheet.stroke(0))

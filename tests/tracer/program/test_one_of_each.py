@@ -64,11 +64,12 @@ def test_a_tip_in_which_two_sides_meet_begins_no_lead_line() -> None:
     assert found.ending == "closed" and not found.is_lead
 
 
-@pytest.mark.parametrize(("apart_mm", "felt"), [(9.2, 1), (8.0, 2)])
+@pytest.mark.parametrize(("apart_mm", "felt"), [(9.2, 0), (8.0, 2)])
 def test_a_hole_s_neighbours_are_felt_as_reference_points_only_within_reach_of_a_lead_line(
     monkeypatch: pytest.MonkeyPatch, apart_mm: float, felt: int
 ) -> None:
-    """Holes of 6 mm: a lead line of a ring begins 1.8 mm off it at the most, and is felt for 1.2 mm."""
+    """Holes of 6 mm: a lead line of a ring begins 1.8 mm off it at the most, and is felt for 1.2 mm; if
+    no ink is so near, no ring is felt, nor the hole's own."""
     setup = Setup(Sheet.of(inked(arc((10, 10), 3), arc((10 + apart_mm, 10), 3))))
     places = list[np.ndarray]()
     monkeypatch.setattr(reference, "_ring", lambda view, place: places.append(place))
@@ -111,3 +112,18 @@ def test_a_patch_is_followed_on_all_of_a_sheet_only_if_the_head_came_far_off_it(
     one_of_each._follow_in_window(setup, about, contour, False)
     assert len(windows) == times and windows[0] is not None
     assert times == 1 or windows[-1] is None
+
+
+def test_of_a_sheet_no_more_is_seen_about_a_hole_than_what_may_lead_onto_it() -> None:
+    """A hole alone, and one with another beside it."""
+    drawn = [arc((x, 20), 3.0) for x in (20, 60, 68, 150)]
+    sheet, around_mm = Sheet.of(inked(*drawn, arc((90, 60), 3.0), dpi=150)), list[float]()
+    for place in (drawn[0][0], drawn[1][0]):
+        patch = sheet.patch_at(place)
+        top = sheet.patches.boxes[patch][0]
+        contour = selection.Contour(1, sheet.stroke(patch), 6.0)
+        window = one_of_each._about(Setup(sheet), contour).sheet.window
+        assert window is not None
+        around_mm.append((top - window[0]) * sheet.drawing.pitch_mm)
+    alone_mm, beside_mm = around_mm
+    assert beside_mm - alone_mm == pytest.approx(15.0 - 2.75, abs=0.5)

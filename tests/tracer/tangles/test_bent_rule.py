@@ -82,9 +82,11 @@ def test_the_kernels_are_what_the_plain_python_is() -> None:
     kernels = {name: getattr(bent_rule, name) for name in ("bent", "wrong", "changes")}
     ends = np.array([FIRST, LAST]), rule.rounded
     compiled, plain = np.empty(len(ink.places_mm)), np.empty(len(ink.places_mm))
-    kernels["wrong"](ink, ends, figures, compiled)
-    kernels["wrong"].py_func(ink, ends, figures, plain)
+    near, nearly = (np.empty((len(ink.places_mm), 3)) for _ in range(2))
+    kernels["wrong"](ink, ends, figures, near, compiled)
+    kernels["wrong"].py_func(ink, ends, figures, nearly, plain)
     assert np.allclose(compiled, plain, atol=1e-9)  # darkness: 1e-9 of ink's
+    assert np.allclose(near, nearly, atol=1e-9)
     ways = [np.empty((bent_rule.most_places.py_func(4), 3)) for _ in range(2)]
     counts = [
         bend(ends, rule.corners_mm, RADIUS_MM, np.zeros(4, np.int64), way)
@@ -93,8 +95,8 @@ def test_the_kernels_are_what_the_plain_python_is() -> None:
     assert counts[0] == counts[1]
     assert np.allclose(ways[0][: counts[0]], ways[1][: counts[0]], atol=1e-9)  # mm
     change, again = (np.empty((len(ink.places_mm), len(figures))) for _ in range(2))
-    kernels["changes"](ink, ends, figures, change)
-    kernels["changes"].py_func(ink, ends, figures, again)
+    kernels["changes"](ink, ends, figures, near, change)
+    kernels["changes"].py_func(ink, ends, figures, near, again)
     assert np.allclose(change, again, atol=1e-4)  # of ink's darkness per mm
 
 
@@ -102,15 +104,16 @@ def test_what_is_wrong_is_the_ink_along_the_way_and_changes_say_how_it_goes_on()
     ink, rule = seen(), rule_of(False, True, True, False)
     figures = np.r_[rule.corners_mm.ravel(), RADIUS_MM, HALF_MM]
     ends, out = (np.array([FIRST, LAST]), rule.rounded), np.empty(len(ink.darkness))
-    bent_rule.wrong(ink.for_kernel(), ends, figures, out)
+    near, other = np.empty((len(out), 3)), np.empty((len(out), 3))
+    bent_rule.wrong(ink.for_kernel(), ends, figures, near, out)
     wrong = ink.drawn_along(rule.way, HALF_MM) - ink.darkness
     assert np.allclose(out, wrong, atol=1e-9)  # of ink's darkness
     change = np.empty((len(ink.darkness), len(figures)))
-    bent_rule.changes(ink.for_kernel(), ends, figures, change)
+    bent_rule.changes(ink.for_kernel(), ends, figures, near, change)
     for k, step in enumerate(1e-5 * np.eye(len(figures))):
         after, before = (np.empty(len(ink.darkness)) for _ in range(2))
-        bent_rule.wrong(ink.for_kernel(), ends, figures + step, after)
-        bent_rule.wrong(ink.for_kernel(), ends, figures - step, before)
+        bent_rule.wrong(ink.for_kernel(), ends, figures + step, other, after)
+        bent_rule.wrong(ink.for_kernel(), ends, figures - step, other, before)
         off = np.abs((after - before) / 2e-5 - change[:, k])
         # where two pieces are as near, ink has no slope
         assert np.quantile(off, 0.98) < 1e-4 * np.abs(change).max()
@@ -142,5 +145,5 @@ def test_the_pen_of_a_rule_leaves_what_is_known_anyway() -> None:
     out, rule = np.empty(len(ink.darkness)), rule_of(False)
     figures = np.r_[rule.corners_mm.ravel(), HALF_MM]
     ends = np.array([FIRST, LAST]), rule.rounded
-    bent_rule.wrong(everywhere.for_kernel(), ends, figures, out)
+    bent_rule.wrong(everywhere.for_kernel(), ends, figures, np.empty((len(out), 3)), out)
     assert np.allclose(out + ink.darkness, 1.0)

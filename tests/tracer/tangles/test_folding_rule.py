@@ -70,6 +70,18 @@ def test_a_tip_is_laid_though_its_sides_run_together() -> None:
     assert rule is not None and apart_mm(rule.way, needle) < 20 * UM
 
 
+def test_of_rules_about_a_bar_those_far_from_its_ink_are_left_out() -> None:
+    """They come to no bay; one that lies a tenth of a line beside it does."""
+    near, out = (
+        folding_rule.sharp(FIRST, LAST, corners, HALF_MM)
+        for corners in (SQUARE + 0.05, SQUARE * (1, -1) + (0, 12))
+    )
+    ink = ink_of(SQUARE)
+    assert [rule is near for rule in folding_rule.not_far(ink, [out, near])] == [True]
+    laid = explained(ink, [near])
+    assert laid is not None and off_mm(laid, SQUARE) < 30 * UM
+
+
 def test_one_line_out_is_no_bay() -> None:
     """A tick of one line is followed out and back, and no two sides explain it."""
     tick = np.array([(3.5, 6), (3.5, 3), (3.5, 6)])

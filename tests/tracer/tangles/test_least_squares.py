@@ -40,14 +40,15 @@ def ink_of(way: Array) -> Ink:
 
 
 def wrong(drawn: Figured, ink: Ink, figures: Array) -> Array:
-    out = np.empty(len(ink.darkness))
-    figured.wrong(drawn, ink, figures, out)
+    out, near = np.empty(len(ink.darkness)), np.empty((len(ink.darkness), 3))
+    figured.wrong(drawn, ink, figures, near, out)
     return out
 
 
 def slopes(drawn: Figured, ink: Ink, figures: Array) -> Array:
-    out = np.empty((len(ink.darkness), len(figures)))
-    figured.changes(drawn, ink, figures.copy(), out)
+    out, near = np.empty((len(ink.darkness), len(figures))), np.empty((len(ink.darkness), 3))
+    figured.wrong(drawn, ink, figures, near, out[:, 0].copy())
+    figured.changes(drawn, ink, figures.copy(), near, out)
     return out
 
 
@@ -75,11 +76,12 @@ def test_the_kernel_is_what_plain_python_is(name: str) -> None:
     ink = ink_of(way)
     plain = ours.settled.py_func(drawn, ink, start, 60)
     assert np.allclose(ours.settled(drawn, ink, start, 60), plain, atol=1e-3 * UM)
+    near = np.zeros((len(ink.darkness), 3))
     for kernel, slope in ((figured.wrong, False), (figured.changes, True)):
         shape = (len(ink.darkness), len(start)) if slope else len(ink.darkness)
         compiled, again = np.empty(shape), np.empty(shape)
-        kernel(drawn, ink, start.copy(), compiled)
-        kernel.py_func(drawn, ink, start.copy(), again)
+        kernel(drawn, ink, start.copy(), near, compiled)
+        kernel.py_func(drawn, ink, start.copy(), near, again)
         assert np.allclose(compiled, again, atol=1e-6)
 
 

@@ -9,7 +9,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
 from morfax.tracer.tangles import moved_way
 from morfax.tracer.tangles.seen_ink import SeenInk
-from morfax.tracer.tangles.spline import Strip, Weights, nearest_pieces, wrong_along
+from morfax.tracer.tangles.spline import Strip, Weights, wrong_along
 from tests.tracer.inked import UM, arc
 from tests.tracer.tangles.pen_ink import HALF_MM, apart_mm, ink_along
 
@@ -107,9 +107,10 @@ def test_what_each_figure_changes_is_the_slope_of_what_is_wrong() -> None:
     figures = np.random.default_rng(3).normal(0, 0.02, strip.figures)
     seen, way = ink.for_kernel(), strip.moved(figures)
     slopes, plain = (np.empty((len(seen.places_mm), strip.figures)) for _ in range(2))
-    moved, near_mm = (way, strip.moves, strip.sharp), moved_way.away_from_ink(seen, way)
-    moved_way.changes(seen, moved, near_mm, slopes)
-    moved_way.changes.py_func(seen, moved, near_mm, plain)
+    moved, near = (way, strip.moves, strip.sharp), np.empty((len(seen.places_mm), 3))
+    moved_way.nearest(seen.places_mm, way, near)
+    moved_way.changes(seen, moved, near, slopes)
+    moved_way.changes.py_func(seen, moved, near, plain)
     assert np.allclose(slopes, plain, atol=1e-9)
     by = 1e-4
     for k in range(strip.figures):
@@ -126,11 +127,11 @@ def test_what_each_figure_changes_is_the_slope_of_what_is_wrong() -> None:
 def test_the_nearest_piece_of_a_way_is_that_of_plain_python() -> None:
     rng = np.random.default_rng(2)
     places, way = rng.uniform(0, 5, (40, 2)), rng.uniform(0, 5, (12, 2))
-    found, plain = np.empty((40, 2)), np.empty((40, 2))
-    nearest_pieces(places, way, found)
-    nearest_pieces.py_func(places, way, plain)
+    found, plain = np.empty((40, 3)), np.empty((40, 3))
+    moved_way.nearest(places, way, found)
+    moved_way.nearest.py_func(places, way, plain)
     assert np.allclose(found, plain)
-    ends = way[np.floor(found[:, 1]).astype(int)], way[np.ceil(found[:, 1]).astype(int)]
-    share = (found[:, 1] % 1)[:, None]
-    foot = ends[0] * (1 - share) + ends[1] * share
-    assert np.allclose(np.hypot(*(places - foot).T), found[:, 0])
+    away_mm, piece, share = found.T
+    first = way[piece.astype(int)]
+    foot = first + share[:, None] * (way[piece.astype(int) + 1] - first)
+    assert np.allclose(np.hypot(*(places - foot).T), away_mm)

@@ -1,6 +1,6 @@
 """Boxed lines: some lines with the boxes about them, so that those near a place are found without the others.
 
-Signals: lines in; those that reach into a box (mm) out.
+Signals: lines in; those that reach into a box (mm), and their parts within it, out.
 
 Source: our own.
 """
@@ -18,17 +18,21 @@ from morfax.tracer.following.line import Line
 
 
 class BoxedLines(NamedTuple):
-    """Some lines, and the boxes about them: their least and greatest x and y, (n, 2) mm."""
+    """Some lines, their places (m, 2) mm, and the boxes about these: their least and greatest x and y,
+    (n, 2) mm.
+    """
 
     lines: list[Line]
+    places_mm: list[Array]
     low_mm: Array
     high_mm: Array
 
     @classmethod
     def of(cls, lines: Sequence[Line]) -> BoxedLines:
         """Some lines."""
-        boxes = np.array([bounds(line.places_mm) for line in lines]).reshape(-1, 2, 2)
-        return cls(list(lines), boxes[:, 0], boxes[:, 1])
+        places_mm = [line.places_mm for line in lines]
+        boxes = np.array([bounds(places) for places in places_mm]).reshape(-1, 2, 2)
+        return cls(list(lines), places_mm, boxes[:, 0], boxes[:, 1])
 
     def reach(self, low_mm: Array, high_mm: Array) -> NDArray[np.bool_]:
         """Which of the lines (n,) have a box that reaches into another."""
@@ -41,6 +45,23 @@ class BoxedLines(NamedTuple):
         for k in np.flatnonzero(self.reach(low_mm, high_mm)).tolist():
             if self.lines[k] is not but:
                 yield self.lines[k]
+
+    def parts(
+        self, low_mm: Array, high_mm: Array, but: Line | None = None
+    ) -> Iterator[tuple[Line, Array]]:
+        """The parts within a box of the lines that reach into it, but for one, each with its line."""
+        for k in np.flatnonzero(self.reach(low_mm, high_mm)).tolist():
+            if self.lines[k] is not but:
+                for part in parts_within(self.places_mm[k], low_mm, high_mm):
+                    yield self.lines[k], part
+
+
+def parts_within(way: Array, low_mm: Array, high_mm: Array) -> Iterator[Array]:
+    """The parts of a way (n, 2) mm within a box."""
+    inside = np.flatnonzero(np.all((way > low_mm) & (way < high_mm), axis=1))
+    if len(inside):
+        for part in np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1):
+            yield way[part]
 
 
 def reaches(places_mm: Array, low_mm: Array, high_mm: Array) -> bool:

@@ -26,9 +26,10 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.felt_pen import FAR, PAPER_FROM, FeltPen
+from morfax.tracer.tangles.moved_way import nearest
 from morfax.tracer.tangles.pen import NOWHERE_MM, are_within, away_from
 from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
-from morfax.tracer.tangles.spline import nearest_pieces, wrong_along
+from morfax.tracer.tangles.spline import wrong_along
 
 REACH = 1.6  # widths from the way, the ink is looked at; chosen
 MOST_PLACES = 1500  # of ink, enough to place a corner within 10 um
@@ -159,6 +160,6 @@ def without_lone_pixels(ink: SeenInk, way: Array, pitch_mm: float) -> SeenInk:
 
 def _nearest(places: Array, way: Array) -> Array:
     """How far places (n, 2) mm are from a way, and at which of its places, fractions included, (n, 2)."""
-    out = np.empty((len(places), 2))
-    nearest_pieces(np.ascontiguousarray(places), np.ascontiguousarray(way), out)
-    return out
+    near = np.empty((len(places), 3))
+    nearest(np.ascontiguousarray(places), np.ascontiguousarray(way), near)
+    return np.column_stack([near[:, 0], near[:, 1] + near[:, 2]])

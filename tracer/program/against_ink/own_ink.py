@@ -39,11 +39,11 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.pen_on_ink import PenOnInk, Room, Ways, over_at
 from morfax.tracer.program.against_ink.surely_on_ink import may_be_over
+from morfax.tracer.tangles.felt_pen import FAR
 
 # Limits chosen by trial on 625 right ways of parts, holes, slots, notches and tongues, none of which comes
 # above them. Of 25 wrong ones 12 do, and of those that are more than 0.4 mm off all but two.
 MOST = 60.0  # percent of the line
-REACH_WIDTHS = 1.25  # from a way: ink further away is another line's
 OF_WIDTH = (0.8, 0.9, 1.0, 1.1, 1.25)  # of the line's: pens that are tried
 STATION_WIDTHS = 0.25  # between the places at which a way is judged
 # between the places that stand for a way: near its edge they are 0.04 px off it
@@ -241,7 +241,7 @@ def parts(
 ) -> Iterator[Part]:
     """The tiles of a side in which some of the places that stand for ways are stations."""
     tiles = _Tiles.of(ways, side_px)
-    margin = math.ceil(2 * (REACH_WIDTHS + 1) * pen.half_px) + 1
+    margin = math.ceil(2 * (FAR + 1) * pen.half_px) + 1
     room = Room.of((side_px + 2 * margin) ** 2, pen)
     for number in sorted(set(tiles.of_place[is_station].tolist())):
         row, column = divmod(number, tiles.across)
@@ -278,7 +278,7 @@ def _near_ends(ways: Ways) -> NDArray[np.bool_]:
 def _pen(drawing: Drawing, ways: Ways) -> PenOnInk:
     """The pen of most lines; what it draws on paper matters above the least limit."""
     half_px, noise = median(ways.half_px[ways.judged]), drawing.noise
-    reach_px, paper = 2 * REACH_WIDTHS * half_px, 0.5 * noise.paper**2
+    reach_px, paper = 2 * FAR * half_px, 0.5 * noise.paper**2
     return PenOnInk(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, NEARLY.over)
 
 

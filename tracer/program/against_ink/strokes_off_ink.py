@@ -36,7 +36,7 @@ from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
-from morfax.tracer.limits import CLEAR_WIDTHS, PAPER
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER
 from morfax.tracer.program.against_ink.own_ink import PLACES_PX, parts
 from morfax.tracer.program.against_ink.pen_on_ink import (
     PenOnInk,
@@ -56,7 +56,6 @@ OF_USUAL, MOST, PLACES = 6.0, 90.0, 200
 HALF = 0.5  # widths²: half of a box is off, whatever the pen
 OF_WIDTH = (0.9, 1.0, 1.1)  # of the line's: pens that are tried
 ABOUT_END = 2.0  # widths: nearer to an end, the round of its pen is looked at
-ABOUT_PLACE = 3.0  # widths from the worst place of several, the others are it
 TILE_PX = 192  # of what is judged in one
 STATION_PX = 2  # places from one that is judged to the next
 
@@ -203,7 +202,7 @@ def _places(
 ) -> Iterator[Unexplained]:
     """The places at which stations are off their ink, each the worst of those about it, the worst first."""
     rows, pitch_mm, left = drawing.darkness.shape[0], drawing.pitch_mm, np.argsort(-off)
-    about_px = ABOUT_PLACE * 2 * median(ways.half_px)
+    about_px = ABOUT_WIDTHS * 2 * median(ways.half_px)
     while len(left):
         at = ways.places_px[stations[left]]
         is_near = np.hypot(*(at - at[0]).T) < about_px

@@ -85,8 +85,8 @@ class Unexplained(NamedTuple):
 
 def unexplained(setup: Setup, own: OwnInk) -> tuple[Unexplained, ...]:
     """What some lines leave unexplained, the longest first: of closed ones all, of lines that ran into
-    themselves only ink, for there the head may have turned off its line, and of open ones where ink goes on
-    beyond an end, of others only where they may run beside their ink.
+    themselves only ink, for there the head may have turned off its line, and of an open one that is alone or
+    where ink goes on beyond an end, of others only where they may run beside their ink.
 
     Of a drawn program nothing: its guide lines, ticks and dots are beside the way, and so meant.
     """
@@ -133,12 +133,15 @@ def is_about(place: Unexplained, others: Sequence[Unexplained], lines: Sequence[
 
 
 def _accountable(sheet: Sheet, lines: Sequence[Line]) -> list[Line]:
-    """Those of some lines that must account for all their ink: that came round, or ended where it goes on."""
+    """Those of some lines that must account for all their ink: that came round, or ended and are alone, or
+    where it goes on.
+    """
+    is_alone = len(lines) == 1
     return [
         line
         for line in lines
         if line.ending in ("closed", "joined")
-        or (line.ending == "ended" and _ends_in_ink(sheet, line))
+        or (line.ending == "ended" and (is_alone or _ends_in_ink(sheet, line)))
     ]
 
 

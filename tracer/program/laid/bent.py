@@ -49,7 +49,6 @@ from morfax.tracer.program.laid.line_parts import (
     STILL_LEFT,
     is_bare,
     is_clear,
-    rest_of,
 )
 from morfax.tracer.program.laid.spline_fit import (
     CORNER_RAD,
@@ -109,9 +108,9 @@ class _Way(WayInk):
     @cached_property
     def turning(self) -> NDArray[np.bool_]:
         """Whether the way turns at each place."""
-        count, over = len(self.way), round(TURNS_OVER / STEP_WIDTHS)
-        at = np.arange(-over, count + over)
-        way = self.way[at % count if self.is_closed else np.clip(at, 0, count - 1)]
+        over = round(TURNS_OVER / STEP_WIDTHS)
+        beyond = ((over, over), (0, 0))
+        way = np.pad(self.way, beyond, mode="wrap" if self.is_closed else "edge")
         return np.asarray(turns_rad(way, TURNS_OVER)[over:-over] > MAYBE_RAD)
 
     @cached_property
@@ -158,12 +157,22 @@ class _Way(WayInk):
         own = way[np.arange(first, last + 1) % len(way)]
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
-        ways = [(rest, 0.0) for rest in rest_of(way, first, last, self.is_closed)]
-        for line in self.lines.reaching(low, high, self.line):
-            ways.append((line.places_mm, 0.5 * (line.width_mm - self.line.width_mm)))
-        near = [(part, wider) for way, wider in ways for part in _within(way, low, high)]
+        near = [(part, 0.0) for part in self._rest_within(first, last, low, high)]
+        for line, part in self.lines.parts(low, high, self.line):
+            near.append((part, 0.5 * (line.width_mm - self.line.width_mm)))
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_lone_pixels(ink, own, drawing.pitch_mm), own
+
+    def _rest_within(self, first: int, last: int, low: Array, high: Array) -> Iterator[Array]:
+        """The parts of the way within a box, but for the stretch from one of its places to another."""
+        count, near = len(self.way), _within(self.way, low, high)
+        if self.is_closed:
+            # in the order of the way, from the end of the stretch on
+            come = np.sort((near - last) % count)
+            yield from _parts(self.way, last + come[come <= first + count - last])
+        else:
+            yield from _parts(self.way, near[near <= first])
+            yield from _parts(self.way, near[near >= last])
 
     def _bay(self, first: int, last: int, felt: UsualPen) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""
@@ -213,12 +222,19 @@ def _runs(chosen: NDArray[np.bool_], apart: int, is_closed: bool) -> Iterator[tu
         yield int(run[0]), int(run[-1])
 
 
-def _within(way: Array, low: Array, high: Array) -> Iterator[Array]:
-    """The parts of a way (n, 2) mm within a box."""
-    inside = np.flatnonzero(np.all((way > low) & (way < high), axis=1))
-    if len(inside):
-        for part in np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1):
-            yield way[part]
+def _within(way: Array, low: Array, high: Array) -> NDArray[np.int64]:
+    """The numbers of the places of a way (n, 2) mm within a box."""
+    x, y = way.T
+    return np.flatnonzero((x > low[0]) & (x < high[0]) & (y > low[1]) & (y < high[1]))
+
+
+def _parts(way: Array, chosen: NDArray[np.int64]) -> Iterator[Array]:
+    """Some places of a way by their numbers, from one round to the next: those that follow one another are
+    a part.
+    """
+    if len(chosen):
+        for part in np.split(chosen, np.flatnonzero(np.diff(chosen) > 1) + 1):
+            yield way[part % len(way)]
 
 
 def _off_corners(at: int, corners: Sequence[int], away: int) -> int:

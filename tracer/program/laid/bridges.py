@@ -152,7 +152,7 @@ def _joined(setup: Setup, pair: tuple[Line, Line], bar: Array, leg_mm: float) ->
         second = back_along(second)
     ways = first.places_mm, second.places_mm
     # 2. the sides of the bar, from the end of each way to a leg of the other
-    legs = tuple(1 + int(np.searchsorted(lengths_mm(way), leg_mm)) for way in ways)
+    legs = tuple(int(np.searchsorted(lengths_mm(way), leg_mm)) for way in ways)
     sides = _sides(setup, one.width_mm, ways, legs, bar)
     return None if sides is None else run_on(setup, (first, second), sides)
 

@@ -27,7 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.plane import cross, left_of, meeting
 from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
@@ -38,7 +38,7 @@ from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.corner_chains import with_chains
 from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
-from morfax.tracer.program.laid.news import moved
+from morfax.tracer.program.laid.news import moved, near_box
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT
@@ -48,7 +48,6 @@ from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 
 OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
-LEAST_GAIN = 0.003  # for each width of its length; of teeth it is 0.01 to 0.03
 BENT = 0.05  # widths: a leg that bends by more tells no corner
 MOVED = 0.01  # widths: a way is looked at again where it was laid by so much
 HALF = 0.8  # widths from the middle of a corner to its legs: the head rounds none by more
@@ -114,7 +113,7 @@ class _Corners(WayInk):
 
     def _beside_ink(self) -> Iterator[tuple[int, int]]:
         """The stretches that run beside their ink: their first and last places."""
-        for place in self.left:
+        for place in near_box(self.left, *bounds(self.way), self.step_mm):
             away_mm = np.hypot(*(self.way - place.place_mm).T)
             at = int(np.argmin(away_mm))
             if away_mm[at] < self.step_mm:  # else another line's
@@ -181,7 +180,7 @@ class _Corners(WayInk):
         gain, widths = ink.misfit(by_own) - rule.misfit, rule.length_mm / width_mm
         is_like = rule.misfit < LIKE * widths
         is_like &= ink.share_left(ink.drawn_along(rule.way, rule.half_mm), by_own) < MOST_LEFT
-        return (rule, gain) if is_like and gain > LEAST_GAIN * widths else None
+        return (rule, gain) if is_like and gain > SURE * widths else None
 
     def _along_legs(self, own: Array, leg: int) -> Rule | None:
         """The rule along both legs of a stretch (n, 2) mm to where these meet, if the way leaves them."""
@@ -207,6 +206,8 @@ def _turns(way: Array, half: int) -> list[int]:
     places = way[:, 0] + 1j * way[:, 1]
     before, after = places - np.roll(places, half), np.roll(places, -half) - places
     turn = np.abs(np.angle(after * before.conj()))
+    if turn.max() <= STRAIGHT:
+        return []
     most = np.max([np.roll(turn, by) for by in range(-half, half + 1)], axis=0)
     return np.flatnonzero((turn == most) & (turn > STRAIGHT)).tolist()
 

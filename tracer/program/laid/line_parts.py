@@ -52,11 +52,11 @@ def is_bare(line: Line) -> bool:
 
 
 def is_clear(drawing: Drawing) -> bool:
-    """Whether a drawing is of lines that show where a pen was: on large pixels each step of them looks like
-    a corner.
+    """Whether a drawing is of lines that show where a pen was: of pixels that no lens has softened each step
+    looks like a corner.
     """
-    is_fine = drawing.noise.softness_px > 0 and drawing.finer == 1
-    return is_fine and not drawing.grainy and not drawing.edges_mm
+    is_soft = drawing.noise.softness_px > 0 and not drawing.is_hard
+    return is_soft and not drawing.grainy and not drawing.edges_mm
 
 
 def rest_of(way: Array, first: int, last: int, is_closed: bool) -> tuple[Array, ...]:
@@ -70,8 +70,8 @@ def is_beside(own: Array, line: Line, lines: BoxedLines) -> bool:
     """Whether another of some lines comes so near to a stretch (n, 2) mm of one that they share ink."""
     near_mm = BESIDE * line.width_mm
     low, high = own.min(axis=0) - near_mm, own.max(axis=0) + near_mm
-    others = lines.reaching(low, high, line)
-    return any(nearest_mm(own, other.places_mm).min() < near_mm for other in others)
+    others = lines.parts(low, high, line)
+    return any(nearest_mm(own, part).min() < near_mm for _, part in others)
 
 
 def part_of(line: Line, first: int, last: int) -> Line:

@@ -20,6 +20,7 @@ from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.limits import FADES
 from morfax.tracer.program.against_ink.own_ink import SURE
+from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.compass import Core
 from morfax.tracer.tangles.seen_ink import SeenInk
@@ -30,7 +31,6 @@ STATION, ABOUT_STATION = 0.25, 0.75
 # the same of ink that the pen does not draw: a line that joins a loop leaves a half; of 50 right loops of all
 # shapes the worst leaves 0.15
 ABOUT_LEFT, MOST_LEFT = 1.0, 0.25
-NEAR_STEP = 0.1  # widths between the places of a way that are held against each other
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 
 
@@ -75,7 +75,7 @@ def leaves_none(ink: SeenInk, core: Core) -> bool:
 
 def is_single(core: Core) -> bool:
     """Whether a core's way comes nowhere beside itself, as one does that runs out along a line and back."""
-    step_mm = NEAR_STEP * 2 * core.half_mm
+    step_mm = STEP_WIDTHS * 2 * core.half_mm
     way = evenly(np.vstack(core.stretches()), step_mm)
     return not beside_itself.stretches(way, step_mm, 2 * core.half_mm)
 

@@ -199,6 +199,7 @@ class _Bays(WayInk):
         if suspect.is_beside_itself or len(suspect.beyond_mm):
             legs = np.vstack([seen.own[: leg + 1], seen.own[-leg - 1 :]])
             rules += folding_rule.round_bar(seen.ink, legs)
+            rules = folding_rule.not_far(seen.ink, rules)
         rule = self.explained(seen.ink, rules)
         gain = self._gain(seen, rule, suspect) if rule is not None else None
         if rule is not None and gain is not None:

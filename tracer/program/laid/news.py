@@ -12,7 +12,7 @@ Source: our own.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,9 +20,12 @@ from morfax.motion.arrays import Array, bounds
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.bars import ABOUT
+from morfax.tracer.program.against_ink.own_ink import BesideInk
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.laid.line_parts import REACH
 from morfax.tracer.sensing.view import STEP_WIDTHS
+
+Left = TypeVar("Left", Unexplained, BesideInk)
 
 
 class News(NamedTuple):
@@ -60,11 +63,11 @@ class News(NamedTuple):
 
 
 def near_box(
-    left: Sequence[Unexplained], low_mm: Array, high_mm: Array, width_mm: float
-) -> list[Unexplained]:
+    left: Sequence[Left], low_mm: Array, high_mm: Array, width_mm: float
+) -> list[Left]:
     """Those of some places left unexplained that lie as near to a box as they are long, or a width nearer."""
     (left_mm, low), (right_mm, high) = low_mm.tolist(), high_mm.tolist()
-    found = list[Unexplained]()
+    found = list[Left]()
     for place in left:
         (x, y), reach_mm = place.place_mm, place.length_mm + width_mm
         if (

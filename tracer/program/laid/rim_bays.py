@@ -36,13 +36,13 @@ from morfax.tracer.ink.rim import felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE
 from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.program.laid.laid_way import LaidWay
+from morfax.tracer.program.laid.line_parts import LEGS
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
 
 # In widths of the pen:
 NEAR = 1.0  # from an end of the stretch to the rim's way
 ASIDE = 0.2  # the same, where both run side by side
-LEG = 1.5  # over so much the way comes to the stretch's ends
 LONGER = 1.5  # than the stretch: a way that is not goes along no bay
 LOOP = 2.0  # of the way: a longer loop at a crossing is none of a narrow end
 OPEN = 0.2  # in the mean between its sides: a way with less runs out and back along one line
@@ -102,7 +102,7 @@ def _between(way: Array, own: Array, width_mm: float) -> Iterator[Array]:
         if np.hypot(*(way[at] - ends).T).max() < ASIDE * width_mm:
             count = (side * (at[1] - at[0])) % len(way)
             part = way[(at[0] + side * np.arange(count + 1)) % len(way)]
-            yield _without_loops(_to_ends(part, ends, LEG * width_mm), LOOP * width_mm)
+            yield _without_loops(_to_ends(part, ends, LEGS[0] * width_mm), LOOP * width_mm)
 
 
 def _to_ends(way: Array, ends: Array, leg_mm: float) -> Array:

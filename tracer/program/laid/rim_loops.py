@@ -19,7 +19,6 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.motion.polyline import area_mm2, broad_mm, length_mm
 from morfax.tracer.drawing.narrow import LONG_WIDTHS
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
@@ -48,13 +47,17 @@ def narrow_outline(sheet: Sheet, patch: int, pen_mm: float) -> Array | None:
     own = sheet.patches.alone(patch)
     ink = np.pad(sheet.patches.painted(own, top, bottom, left, right), 1)
     outlines, _ = cv2.findContours(ink, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    column, row = max(outlines, key=len)[:, 0].T.astype(float)
+    outline = max(outlines, key=len)
+    area_px2, long_px = cv2.contourArea(outline, True), cv2.arcLength(outline, False)
+    # the outline runs through the middles of pixels
+    pen_px, broad_px = pen_mm / sheet.drawing.pitch_mm, 2 * abs(area_px2) / max(long_px, 1) + 1
+    is_narrow = BROAD[0] < broad_px / pen_px < BROAD[1] and long_px < LONGEST * pen_px
+    if not is_narrow:
+        return None
+    column, row = outline[:, 0].T.astype(float)
     up = len(sheet.drawing.darkness) - (row - 1 + top) - 0.5
     places = np.column_stack([column - 1 + left + 0.5, up]) * sheet.drawing.pitch_mm
-    # the outline runs through the middles of pixels
-    broad = (broad_mm(places) + sheet.drawing.pitch_mm) / pen_mm
-    is_narrow = BROAD[0] < broad < BROAD[1] and length_mm(places) < LONGEST * pen_mm
-    return places[:: 1 if area_mm2(places) > 0 else -1] if is_narrow else None
+    return places[:: -1 if area_px2 > 0 else 1]  # rows go down
 
 
 def core_within(view: View, outline: Array, width_mm: float) -> Core | None:

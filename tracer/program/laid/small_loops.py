@@ -61,7 +61,6 @@ BROADEST, SHORT_WIDTHS = 2.7, 2.0
 NO_BROADER = 0.9  # times as broad as a line: in the mean a seam may make up for it
 # for each width of the length: so much more the same shape leaves if it is filled, and more than it leaves
 SEAM = 0.002
-GOES_BACK = 1.2  # widths: a closed way that is so much longer runs a piece of its line twice
 RIM_PLACES = 40  # for each width of the way round, of a loop of any shape
 
 
@@ -212,7 +211,8 @@ class SmallLoops:
         own = math.inf
         if way is not None:
             thinned = one_in(way, THINNED)
-            goes_back = length_mm(thinned) > core.length_mm + GOES_BACK * self.pen_mm
+            # longer by a width: a piece of the line is run twice
+            goes_back = length_mm(thinned) > core.length_mm + self.pen_mm
             own = math.inf if goes_back else ink.misfit_along(thinned)
         return self._run_if_two_lines(ink, with_misfit(ink, core), own)
 

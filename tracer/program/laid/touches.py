@@ -1,21 +1,22 @@
-"""Touches: where two sides of closed lines run together for a while, each is laid within its own rim.
+"""Touches: where two sides of closed lines run together for a while, each is laid as its legs go on, or
+within its own rim.
 
     ──╲_______╱──      touching lines bend away from one another: the rims of their ink go on from either line
     ──╱‾‾‾‾‾‾‾╲──      into itself, smoothly. The head may have gone over from one to the other between them
 
-If the ways within the rims explain the ink, and the head's ways do not, the lines are those: each run along
-its own rim; or, where the head went over, two lines out of one, or the same line round one of its lobes the
-other way.
+If ways that bend evenly from leg to leg explain the ink better than the head's, the lines are those; or, if
+the head's do not explain it, the ways within the rims. Each line is run along its own way; or, where the head
+went over, two lines out of one, or the same line round one of its lobes the other way.
 
 Signals: the set-up and the closed lines of a patch of ink in; the lines out.
 
-Source: our own (see `ink.rim`). Questions: lines that cross at less than about 7 degrees, and are followed
-badly, are taken to touch.
+Source: our own (see `ink.rim`). Questions: lines that cross at less than about 7 degrees, where one has a
+corner in that ink, are taken to touch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations_with_replacement, product
 from typing import NamedTuple
 
@@ -32,6 +33,7 @@ from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.program.against_ink.boxed_lines import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
+from morfax.tracer.program.against_ink.own_ink import STATION_WIDTHS
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
@@ -44,14 +46,14 @@ from morfax.tracer.program.laid.line_parts import (
     run_on,
 )
 from morfax.tracer.program.laid.rim_bays import ways_within_rims
+from morfax.tracer.program.laid.smooth_ways import BothWays, Left, smooth_ways
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import partners, shortest
 from morfax.tracer.tangles.pen import away_from
-from morfax.tracer.tangles.seen_ink import SeenInk
+from morfax.tracer.tangles.seen_ink import GAIN, SeenInk
 
 # In widths of the line; chosen by trial on circles that touch lines and each other:
-STEP = 0.25  # between the places that are looked at
 NEAR = 1.3  # sides that are nearer leave one ink
 ON = 8.0  # of way between two sides of one line
 SHORT, LONG = 5.0, 60.0  # a shorter one is a crossing; a longer one is no touch
@@ -93,13 +95,13 @@ def touching(setup: Setup, lines: Sequence[Line]) -> list[Line]:
 
 def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[_Touch]:
     """The touches of closed lines, given by their numbers."""
-    ways = {n: evenly(lines[n].loop_mm, STEP * lines[n].width_mm) for n in closed}
+    ways = {n: evenly(lines[n].loop_mm, STATION_WIDTHS * lines[n].width_mm) for n in closed}
     for one, other in combinations_with_replacement(closed, 2):
         width_mm = lines[one].width_mm
         low, high = bounds(ways[one])
         near_mm = NEAR * width_mm
         if one == other:
-            partner = partners(ways[one], near_mm, round(ON / STEP))
+            partner = partners(ways[one], near_mm, round(ON / STATION_WIDTHS))
         elif reaches(ways[other], low - near_mm, high + near_mm):
             away_mm, nearest = Neighbours(ways[other]).nearest(ways[one], near_mm)
             partner = np.where(np.isfinite(away_mm), nearest, -1)
@@ -121,15 +123,17 @@ def _grouped(
     first, last = shortest(near, len(ways[0]))
     if last >= len(ways[0]):  # over its beginning: in order from behind the widest gap
         near = np.concatenate([near[near >= first], near[near < first] + len(ways[0])])
-    for group in np.split(near, np.flatnonzero(np.diff(near) > LONGER_WIDTHS / STEP) + 1):
+    for group in np.split(
+        near, np.flatnonzero(np.diff(near) > LONGER_WIDTHS / STATION_WIDTHS) + 1
+    ):
         others = partner[group % len(ways[0])]
         begin, end = shortest(np.unique(others), len(ways[1]))
-        long = max(group[-1] - group[0], end - begin) * STEP
+        long = max(group[-1] - group[0], end - begin) * STATION_WIDTHS
         is_once = pair[0] != pair[1] or group[0] % len(ways[0]) < begin
         if not is_once or not SHORT < long < LONG:
             continue
         apart = np.diff(others) if len(others) > 1 else np.zeros(1)
-        leg, step_mm = LEG / STEP, STEP * width_mm
+        leg, step_mm = LEG / STATION_WIDTHS, STATION_WIDTHS * width_mm
         firsts = (group[0] - leg) * step_mm, (begin - leg) * step_mm
         lasts = (group[-1] + leg) * step_mm, (end + leg) * step_mm
         yield _Touch(pair, firsts, lasts, bool(np.median(np.sign(apart[apart != 0])) > 0))
@@ -140,6 +144,15 @@ class _Ways(NamedTuple):
 
     one: Array
     other: Array
+
+
+def _ways(pair: tuple[Line, Line], touch: _Touch, more_mm: float, step_mm: float) -> _Ways:
+    """The stretches of a touch as the head ran, with so much more of either line before and after."""
+    first, second = (
+        _stretch(line, begin - more_mm, end + more_mm, step_mm)
+        for line, begin, end in zip(pair, touch.first_mm, touch.last_mm, strict=True)
+    )
+    return _Ways(first, second if touch.is_parallel else second[::-1])
 
 
 def _stretch(line: Line, first_mm: float, last_mm: float, step_mm: float) -> Array:
@@ -161,11 +174,7 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
     if sum(long) > OF_LOOP * min(whole):
         return None
     # 1. the ways as they are, held against the ink
-    first, second = (
-        _stretch(line, begin, end, step_mm)
-        for line, begin, end in zip((one, other), touch.first_mm, touch.last_mm, strict=True)
-    )
-    ways = _Ways(first, second if touch.is_parallel else second[::-1])
+    ways, longer = (_ways((one, other), touch, more * width_mm, step_mm) for more in (0.0, LEG))
     if _steepest_rad(ways) > CROSSES:
         return None
     ink = ink_about(setup.sheet.drawing, np.vstack(ways), width_mm, REACH)
@@ -177,15 +186,16 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: _Touch) -> list[Line] | 
         return ink.misfit(ink.best_drawn(away_mm)) / widths
 
     own = left(*ways)
-    if own < LEAVES:
-        return None
-    # 2. the ways within the rims
-    rims = _rims(setup, width_mm, ways, left)
-    if rims is None or own < rims.left:
-        return None
-    if not rims.is_exchanged:
-        return _laid_each(setup, (one, other), touch, rims, whole)
-    return _exchanged(setup, one, touch, rims) if one is other else None
+    # 2. the ways as their legs go on, or within the rims
+    both = smooth_ways(*longer, LEG, width_mm, left, may_exchange=one is other)
+    if both.left > LEAVES or not (both.is_exchanged or both.left < own - GAIN):
+        rims = None if own < LEAVES else _rims(setup, width_mm, ways, left)
+        if rims is None or own < rims.left:
+            return None
+        both = rims
+    if not both.is_exchanged:
+        return _laid_each(setup, (one, other), touch, both, whole)
+    return _exchanged(setup, one, touch, both) if one is other else None
 
 
 def _steepest_rad(ways: _Ways) -> float:
@@ -224,24 +234,11 @@ def _rest_mm(
     return np.min([away_from(ink.places_mm, way) for way in ways], axis=0)
 
 
-class _Rims(NamedTuple):
-    """The ways within both rims of a touch, in the first line's direction, one from where the first line
-    comes; whether they end on the other line; and what they leave unexplained for each width.
-    """
-
-    one: LaidWay
-    other: LaidWay
-    is_exchanged: bool
-    left: float
-
-
-def _rims(
-    setup: Setup, width_mm: float, ways: _Ways, left: Callable[[Array, Array], float]
-) -> _Rims | None:
+def _rims(setup: Setup, width_mm: float, ways: _Ways, left: Left) -> BothWays | None:
     """The ways within the rims that leave least, from either way's beginning to either's end."""
     view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
     drawing, about = setup.sheet.drawing, np.vstack(ways)
-    best: _Rims | None = None
+    best: BothWays | None = None
     for is_exchanged in (False, True):
         onto = ways[::-1] if is_exchanged else ways
         found = list[list[LaidWay]]()
@@ -249,7 +246,7 @@ def _rims(
             own = np.vstack([into[:2], out_of[-2:]])
             found.append(list(ways_within_rims(drawing, view, own, about)))
         for one, other in product(*found):
-            rims = _Rims(one, other, is_exchanged, left(one.way, other.way))
+            rims = BothWays(one, other, is_exchanged, left(one.way, other.way))
             if best is None or rims.left < best.left:
                 best = rims
     return best
@@ -259,13 +256,13 @@ def _laid_each(
     setup: Setup,
     pair: tuple[Line, Line],
     touch: _Touch,
-    rims: _Rims,
+    both: BothWays,
     whole: Sequence[float],
 ) -> list[Line]:
-    """The lines of a touch, or the one line, along their rims."""
-    other = rims.other if touch.is_parallel else rims.other.turned_round()
+    """The lines of a touch, or the one line, each along its way."""
+    other = both.other if touch.is_parallel else both.other.turned_round()
     (first, begin), (last, end) = touch.first_mm, touch.last_mm
-    bays = Bay(first, last, rims.one, 0.0), Bay(begin, end, other, 0.0)
+    bays = Bay(first, last, both.one, 0.0), Bay(begin, end, other, 0.0)
     if pair[0] is pair[1]:
         return [laid(setup, pair[0], bays, whole[0])]
     return [
@@ -274,7 +271,7 @@ def _laid_each(
     ]
 
 
-def _exchanged(setup: Setup, line: Line, touch: _Touch, rims: _Rims) -> list[Line]:
+def _exchanged(setup: Setup, line: Line, touch: _Touch, both: BothWays) -> list[Line]:
     """What one line is that goes over to itself at a touch: two lines, or one round a lobe the other way."""
     come_mm, more_mm = lengths_mm(line.places_mm), HALF_LEG * line.width_mm
     (first, begin), (last, end) = touch.first_mm, touch.last_mm
@@ -285,7 +282,7 @@ def _exchanged(setup: Setup, line: Line, touch: _Touch, rims: _Rims) -> list[Lin
 
     if touch.is_parallel:
         own, other = part(last - more_mm, begin), part(end - more_mm, first)
-        return [run_on(setup, [own], [rims.other]), run_on(setup, [other], [rims.one])]
+        return [run_on(setup, [own], [both.other]), run_on(setup, [other], [both.one])]
     lobe = back_along(part(last, begin + more_mm))
-    sides = [rims.one, rims.other.turned_round()]
+    sides = [both.one, both.other.turned_round()]
     return [run_on(setup, [part(end - more_mm, first), lobe], sides)]

@@ -139,13 +139,12 @@ class WayInk:
     def _ink(self, about: Array, rest: Sequence[Array]) -> SeenInk:
         """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
         ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm, REACH)
-        reach_mm = REACH * self.line.width_mm
+        # what is beyond that is nearer to no place of the ink than the pen reaches
+        reach_mm = 2 * REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = np.min([pen.away_from(ink.places_mm, part) for part in rest], axis=0)
-        for line in self.lines.reaching(low, high, self.line):
+        for line, part in self.lines.parts(low, high, self.line):
             # a known line is as wide as it was felt, and drawn by this line's pen
             wider_mm = 0.5 * (line.width_mm - self.line.width_mm)
-            known_mm = np.minimum(
-                known_mm, nearest_mm(ink.places_mm, line.places_mm) - wider_mm
-            )
+            known_mm = np.minimum(known_mm, nearest_mm(ink.places_mm, part) - wider_mm)
         return ink._replace(known_mm=known_mm)

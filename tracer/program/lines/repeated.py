@@ -21,9 +21,9 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import NEAR
 
-ALIKE = 0.9  # the shorter of two to the longer
+# the shorter of two to the longer; and of each what is beside the other: the rest are spurs, and bridges
+ALIKE = 0.9
 BOX_MM = 5.0  # between the edges of their boxes, at the most: a spur is no longer
-SAME = 0.95  # of each of two is beside the other; the rest are spurs, and bridges across gaps
 
 
 def without_repeats(lines: Sequence[Line]) -> list[Line]:
@@ -50,5 +50,6 @@ def _are_one(line: Line, other: Line) -> bool:
     near_mm = NEAR * min(line.width_mm, other.width_mm)
     ways = evenly(line.loop_mm, EVERY_MM), evenly(other.loop_mm, EVERY_MM)
     return all(
-        float(np.mean(nearest_mm(one, two) < near_mm)) > SAME for one, two in (ways, ways[::-1])
+        float(np.mean(nearest_mm(one, two) < near_mm)) > ALIKE
+        for one, two in (ways, ways[::-1])
     )

@@ -28,8 +28,10 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array, bounds
 from morfax.motion.faults import LineFault
+from morfax.motion.median import median
 from morfax.motion.nesting import lies_inside, size_mm
 from morfax.motion.polyline import nearest_mm
+from morfax.tracer.drawing import lettering
 from morfax.tracer.drawing.inner_rings import inner_rings
 from morfax.tracer.drawing.lengths import told_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
@@ -40,7 +42,7 @@ from morfax.tracer.marks.reference import LARGEST_MM
 Which = str | tuple[int, ...]  # "contours", "outer", or the numbers of lines
 
 LEAST_MM, LEAST_WIDTHS = 4.0, 6.0  # a shorter patch is a speck, a letter or a burr, ...
-LETTER_MM = 12.0  # ... unless it reaches as far as this
+LETTER_MM = lettering.LARGEST_MM  # ... unless it reaches as far as this
 # The limits below were chosen by trial on the test drawings.
 # the ink about a place of a plain stretch differs by less than this share from the line's usual
 PLAIN = 0.06
@@ -49,8 +51,7 @@ STARTS_WIDTHS = 4.0  # ... this far apart
 LOOKED_AT = 400  # places of a line that are looked at for them
 # of the ink that is joined to it: a shorter run is along another line, which crosses this one
 SHORT = 0.5
-SAME_WIDTHS = 0.7  # a place nearer to another line is that line's, ...
-NEW = 0.6  # ... and a line is new if so much of its way is no other line's
+NEW = 0.6  # a line is new if so much of its way is no other line's
 COVERED = 0.8  # a stroke is a part of a followed line if this share of it lies on that line
 ABOUT_REFERENCE_MM = 1.0  # ink as far beyond the largest reference point is still a part of it
 BESIDE_MM = 1.0  # a stroke further outside a followed line's bounds does not lie on it
@@ -70,7 +71,7 @@ class Contour:
         stroke = self.stroke
         some = slice(None, None, max(1, len(stroke.middles_mm) // LOOKED_AT))
         places, filled = stroke.middles_mm[some], stroke.filled[some]
-        odd = places[np.abs(filled / np.median(filled) - 1) > PLAIN]
+        odd = places[np.abs(filled / median(filled) - 1) > PLAIN]
         clear_mm = nearest_mm(places, odd) if len(odd) else np.zeros(len(places))
         apart_mm, kept = STARTS_WIDTHS * stroke.width_mm, list[tuple[float, float]]()
         places = places[np.argsort(-clear_mm, kind="stable")]

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from morfax.motion.faults import LineFault
 from morfax.motion.median import median
 from morfax.tracer.drawing.enclosure import NONE
-from morfax.tracer.drawing.holes import holes
+from morfax.tracer.drawing.holes import holes_in
 from morfax.tracer.drawing.inked import is_filled
 from morfax.tracer.drawing.inner_rings import LEAST_PX, LEAST_WIDTHS
 from morfax.tracer.drawing.lettering import lettering
@@ -144,6 +144,4 @@ def none_begun(unclear: Sequence[SmallPatch]) -> LineFault:
 
 def paper_within_px(sheet: Sheet, patch: int) -> int:
     """The largest area of paper that a patch of ink goes round, pixels."""
-    top, bottom, left, right = sheet.patches.boxes[patch].tolist()
-    ink = sheet.patches.painted(sheet.patches.alone(patch), top, bottom, left, right)
-    return max((hole.paper_px for hole in holes(ink)), default=0)
+    return max((hole.paper_px for hole in holes_in(sheet.patches, patch)), default=0)

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import evenly
+from morfax.motion.polyline import evenly, steps_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import NEAR
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -53,11 +53,16 @@ def stubs(line: Line) -> list[Stub]:
 
 def _found(way: Array, width_mm: float) -> Iterator[Stub]:
     """The stubs of a way at even steps; the same one more than once."""
-    near = round(APPROACH / STEP_WIDTHS)
+    near, next_out = round(APPROACH / STEP_WIDTHS), 0
+    step = steps_mm(way).max() / width_mm
     for out in range(round(LEAST_OUT / STEP_WIDTHS), round(MOST_OUT / STEP_WIDTHS) + 1):
+        if out < next_out:
+            continue
         feet = len(way) - 2 * out
-        # 1. where it comes back to where it was, and goes straight on
-        back = np.hypot(*(way[2 * out :] - way[:feet]).T) < CLOSE * width_mm
+        # 1. where it comes back to where it was, and goes straight on; two steps bring it no nearer than that
+        away = np.hypot(*(way[2 * out :] - way[:feet]).T) / width_mm
+        next_out = out + int((away.min() - CLOSE) / (2 * step))
+        back = away < CLOSE
         back[:near] = back[feet - near :] = False
         first = np.flatnonzero(back)
         if not len(first):

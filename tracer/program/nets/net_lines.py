@@ -26,11 +26,11 @@ import numpy as np
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import ends_of
+from morfax.tracer.limits import OWN_WIDTHS
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.program.lines.selection import (
     LETTER_MM,
     NEW,
-    SAME_WIDTHS,
     SHORT,
     Contour,
     least_mm,
@@ -159,7 +159,7 @@ class NetLines:
 
     def besides(self, line: Line) -> list[Line]:
         """The lines beside one that was followed."""
-        near_mm = SAME_WIDTHS * self._width_mm
+        near_mm = OWN_WIDTHS * self._width_mm
         followed = {
             n
             for n, felt in enumerate(self._junctions.net.lines)

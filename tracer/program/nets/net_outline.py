@@ -53,10 +53,10 @@ NEARLY_ALL = 0.97
 # by trial
 MOST_OF_IT = 0.6
 CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round leaves too much out; by trial
-# of the junctions of a line that only touches itself have an odd number of legs; by trial
-ODD = 1 / 3
+# of the junctions of a line that only touches itself, at the most: have an odd number of legs, or are ends of
+# it; by trial
+FEW = 1 / 3
 WORKS_MM = 10.0  # a head whose cell is out of order is lost before it has run so far
-ENDS = 1 / 6  # of a line that only touches itself, for each of its junctions; by trial
 # from a patch to the edge of what is looked at for its junctions: as far as cells look, and as much again
 ABOUT_WIDTHS = 20.0
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
@@ -183,7 +183,7 @@ def touches_itself(junctions: Junctions) -> bool:
     at_junctions, ends = legs[legs > 2], int(np.sum(legs == 1))
     if not len(at_junctions):
         return False
-    return bool(np.mean(at_junctions % 2) < ODD and ends < ENDS * len(at_junctions))
+    return bool(np.mean(at_junctions % 2) < FEW and ends < FEW * len(at_junctions))
 
 
 def _is_program(setup: Setup) -> bool:

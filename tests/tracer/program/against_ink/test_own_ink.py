@@ -143,7 +143,8 @@ def test_an_open_line_that_cuts_a_notch_short_is_found_and_its_ends_are_not() ->
     for first_mm in (9.0, 12.0):
         right = closed(open_notch(first_mm, DEEP_MM), "ended")
         assert found(drawing, right, closed(bar, "ended")) == []
-    assert [each.kind for each in left_by(Setup(drawing.sheet), [short])] == ["beside"]
+    others = [short, closed(bar, "ended")]
+    assert [each.kind for each in left_by(Setup(drawing.sheet), others)] == ["beside"]
 
 
 def test_lines_that_ran_into_others_and_drawn_programs_are_not_judged() -> None:

@@ -129,10 +129,14 @@ def test_a_way_over_bare_paper_is_told_unless_it_is_a_gap_that_may_be_crossed() 
     assert left_by(allowing, [closed(arc((20, 20), 12))]) == ()
 
 
-def test_only_of_closed_lines_and_not_of_a_drawn_program() -> None:
+def test_of_open_lines_among_others_and_of_a_drawn_program_no_ink_is_missed() -> None:
+    """An open line alone accounts for all its ink; among others these may have been meant to be left."""
     setup = Setup(Sheet.of(inked(with_tip(6.0), seed=1)))
     circle = closed(arc((20, 20), 12))
-    assert left_by(setup, [replace(circle, ending="ended")]) == ()
+    ended = replace(circle, ending="ended")
+    far = replace(closed(polyline((2, 2), (9, 2))), ending="ended")
+    assert [place.kind for place in left_by(setup, [ended])] == ["ink"]
+    assert left_by(setup, [ended, far]) == ()
     assert left_by(replace(setup, operator=Operator(marks="on")), [circle]) == ()
 
 

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+from typing import cast
+
 import numpy as np
 import pytest
 import shapely
 
 from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.tracer.drawing import coarse
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.off_ink import UsualPen
 from morfax.tracer.program.laid import bent as bent_stretches
 from morfax.tracer.program.laid.bent import bent
+from morfax.tracer.program.laid.line_parts import LEGS
+from morfax.tracer.program.lines.selection import Which
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace_lines import found_lines
+from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import UM, Points, arc, inked, polyline
+from tests.tracer.program.laid.ways import run_along
 
 WIDTH_MM, DPI = 0.35, 300.0
 RELIEF_MM = 0.7  # the radius of a relief at an inner corner
@@ -42,8 +54,13 @@ def before_and_after(
 ) -> tuple[list[Line], list[Line]]:
     """The lines of a sheet as the head ran along them, and as they are bent."""
     drawing = inked(*lines, width_mm=width_mm, dpi=DPI, seed=seed)
+    return as_found_and_bent(drawing, (1,) if len(lines) == 1 else "contours")
+
+
+def as_found_and_bent(drawing: Drawing, which: Which) -> tuple[list[Line], list[Line]]:
+    """The lines of a drawing as the head ran along them, and as they are bent."""
     setup = Setup(drawing.sheet, Settings(), Operator())
-    found = found_lines(setup, (1,) if len(lines) == 1 else "contours").lines
+    found = found_lines(setup, which).lines
     return found, bent(setup, found)
 
 
@@ -112,6 +129,16 @@ def test_reliefs_of_inner_corners_are_followed_as_they_are_drawn(seed: int) -> N
     assert len(line.led.of(len(line.xy_mm))) == len(line.xy_mm)
 
 
+def test_reliefs_are_followed_on_a_scan_whose_pixels_were_made_finer() -> None:
+    """Lines of 2.4 pixels: within 60 um, half a pixel; the head's own way is 114 um off."""
+    truth = with_reliefs()
+    scan = inked(truth, width_mm=0.3, dpi=200.0, seed=1)
+    finer, pitch_mm = coarse.finer(scan.darkness, coarse.TIMES), scan.pitch_mm / coarse.TIMES
+    drawing = Drawing(finer, pitch_mm, finer=coarse.TIMES)
+    (own,), (line,) = as_found_and_bent(drawing, (1,))
+    assert off_mm(line, truth) < 60 * UM < 100 * UM < off_mm(own, truth)
+
+
 def test_corners_with_a_bent_leg_are_followed_though_they_leave_little_ink() -> None:
     """A bulge of 47 um beside a line of 0.7 mm leaves hardly more ink than the spline takes figures."""
     truth = with_knob()
@@ -172,3 +199,27 @@ def test_a_stretch_ends_away_from_corners() -> None:
     assert bent_stretches._off_corners(40, [36, 90], -1) == 21
     assert bent_stretches._off_corners(40, [36, 90], 1) == 51
     assert bent_stretches._off_corners(60, [36, 90], 1) == 60
+
+
+def test_nothing_is_laid_nearer_than_half_a_leg_to_an_end_of_an_open_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """There the way has no leg by which it could be laid: the ink is not even looked at."""
+    drawn = polyline((4, 4), (24, 6))
+    setup = Setup(inked(drawn, width_mm=WIDTH_MM).sheet)
+    line = run_along(drawn, "ended")
+    way = bent_stretches._Way(setup, line, BoxedLines.of([line]))
+    looked_at = list[tuple[int, int]]()
+
+    def seen(_: object, first: int, last: int, felt: object) -> tuple[SeenInk, Points]:
+        looked_at.append((first, last))
+        raise LookupError
+
+    monkeypatch.setattr(bent_stretches._Way, "_seen", seen)
+    leg, felt = round(LEGS[0] / STEP_WIDTHS), cast(UsualPen, None)
+    last = len(way.way) - 1 - leg
+    for off, is_laid in ((leg // 3, False), (leg - 2, True)):
+        for first in (leg + off, last - off - 20):
+            with nullcontext() if not is_laid else pytest.raises(LookupError):
+                assert way._bay(first, first + 20, felt) is None
+    assert len(looked_at) == 2

@@ -9,7 +9,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import nearest_mm, with_places
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.own_ink import OwnInk
-from morfax.tracer.program.laid.corner_chains import with_chains
+from morfax.tracer.program.laid.corner_chains import _along, _Corner, with_chains
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, inked, polyline
@@ -86,3 +86,13 @@ def test_a_line_on_its_ink_stays_as_the_head_ran() -> None:
     drawing = inked(drawn, seed=3)
     own = OwnInk(drawing, trace(drawing).lines)
     assert with_chains(Setup(drawing.sheet), own) is own
+
+
+def test_a_chain_runs_through_its_sharp_corners_and_rounds_the_others_by_their_radius() -> None:
+    """A round of radius r at a right angle is r (sqrt 2 - 1) off the corner."""
+    places, radius_mm = np.array([[4.0, 0.0], [4.0, 3.0], [8.0, 3.0]]), 0.5
+    radii = 0.0, radius_mm, 0.0
+    run = [_Corner(0, 0, 0, place, radius) for place, radius in zip(places, radii, strict=True)]
+    way = _along(run, (np.zeros(2), np.array([8.0, 6.0])), 0.25).way
+    off_mm = nearest_mm(places, with_places(way, 0.01))
+    assert off_mm == pytest.approx([0.0, radius_mm * (2**0.5 - 1), 0.0], abs=1 * UM)

@@ -107,7 +107,8 @@ def test_lines_with_marks_guides_or_leads_and_edges_are_not_plain() -> None:
 def test_only_lines_on_pixels_that_show_where_a_pen_was_are_clear() -> None:
     drawing = inked(SQUARE)
     assert is_clear(drawing)
-    assert not is_clear(replace(drawing, finer=2))
+    assert is_clear(replace(drawing, finer=2))
+    assert not is_clear(replace(drawing, is_hard=True))
     assert not is_clear(replace(drawing, edges_mm=(SQUARE,)))
     assert not is_clear(
         Drawing(np.asarray(drawing.darkness > 0.5, np.float32), drawing.pitch_mm)

@@ -118,6 +118,7 @@ def test_the_same_rules_are_fitted_to_the_same_ink_once(
 
     def counted(ink: SeenInk, rules: list[folding_rule.Rule]) -> folding_rule.Rule | None:
         fitted.append(ink)
+        assert len(folding_rule.not_far(ink, rules)) == len(rules)  # no others are fitted
         return explained(ink, rules)
 
     monkeypatch.setattr(folding_rule, "explained", counted)

@@ -14,6 +14,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.laid import touches
 from morfax.tracer.program.laid.laid_way import LaidWay
+from morfax.tracer.program.laid.smooth_ways import BothWays
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import Points, arc, inked, polyline
@@ -101,6 +102,49 @@ def test_circles_that_cross_at_a_small_angle_still_cross(
     first, second = (shapely.LinearRing(line.loop_mm) for line in lines)
     crossings = first.intersection(second)
     assert isinstance(crossings, shapely.MultiPoint) and len(crossings.geoms) == 2
+
+
+def test_circles_of_which_one_just_leaves_the_other_are_as_round_as_drawn() -> None:
+    """They cross at 5.4 degrees: within 30 um. Within their rims, or as the head ran, they are 66 um off."""
+    apart_mm = math.sqrt(9**2 + 6**2 - 2 * 9 * 6 * math.cos(math.radians(5.4)))
+    truths = [turned(circle(19, 15, 9)), turned(circle(19 + apart_mm, 15, 6))]
+    lines = closed(*truths)
+    assert len(lines) == 2
+    for line, truth in zip(lines, truths, strict=True):
+        assert off_mm(line, truth) < 30 * UM
+
+
+def test_a_figure_of_eight_along_two_circles_that_touch_is_two_lines() -> None:
+    """Its way explains the ink as well, but goes on from leg to leg less smoothly than theirs."""
+    apart_mm = 7 + 8 + 0.1 * WIDTH_MM
+    drawn = [arc((12, 15), 7), arc((12 + apart_mm, 15), 8, 180, -180)]
+    found = touches.touching(Setup(inked(*drawn, seed=1).sheet), [run_along(np.vstack(drawn))])
+    assert [line.ending for line in found] == ["closed", "closed"]
+    for line in found:
+        assert min(off_mm(line, truth) for truth in drawn) < 20 * UM
+
+
+def test_a_figure_of_eight_that_was_drawn_is_one_line() -> None:
+    """Straight on where it crosses itself at 12 degrees."""
+    lean = 6.0
+    far_mm = 10 / math.cos(math.radians(lean))
+    radius_mm = 10 * math.tan(math.radians(lean))
+    right = arc((20 + far_mm, 15), radius_mm, -90 - lean, 90 + lean)
+    left = arc((20 - far_mm, 15), radius_mm, 270 + lean, 90 - lean)
+    drawn = np.vstack([right, left, right[:1]])
+    found = touches.touching(Setup(inked(drawn, seed=1).sheet), [run_along(drawn)])
+    assert len(found) == 1 and off_mm(found[0], drawn) < 20 * UM
+
+
+def test_a_hole_that_touches_three_sides_is_a_line_though_half_of_its_way_is_theirs() -> None:
+    """A circle of 2.5 mm in a triangle of which each side comes to it; it was missing, and told."""
+    angles = np.radians([97, 217, 337, 97])
+    triangle = (20, 15) + 5.1 * np.column_stack([np.cos(angles), np.sin(angles)])
+    hole = circle(20, 15, 2.5)
+    lines = closed(triangle, hole)
+    assert len(lines) == 2
+    for line, truth in zip(lines, (triangle, hole), strict=True):
+        assert off_mm(line, truth) < 60 * UM
 
 
 def beside(apart_mm: float, long_mm: float, other_way: bool = False) -> list[Line]:
@@ -198,7 +242,7 @@ def test_a_line_that_went_over_to_its_other_side_is_run_round_one_lobe_the_other
     )
     ends = [along_mm(line, place) for place in ((18, 14.7), (22, 15.3), (22, 14.7), (18, 15.3))]
     touch = touches._Touch((0, 0), (ends[0], ends[2]), (ends[1], ends[3]), False)
-    rims = touches._Rims(side((18, 14.7), (22, 14.7)), side((18, 15.3), (22, 15.3)), True, 0.0)
+    rims = BothWays(side((18, 14.7), (22, 14.7)), side((18, 15.3), (22, 15.3)), True, 0.0)
     (found,) = touches._exchanged(Setup(inked(truth).sheet), line, touch, rims)
     assert_run(found, truth, 8.0)
 
@@ -216,8 +260,20 @@ def test_a_line_that_went_over_to_the_one_beside_it_and_back_is_two_lines() -> N
     firsts = along_mm(line, outer[0]), along_mm(line, inner[0])
     lasts = along_mm(line, inner[1]), along_mm(line, outer[1])
     touch = touches._Touch((0, 0), firsts, lasts, True)
-    rims = touches._Rims(*(LaidWay((way,), 0.5 * WIDTH_MM) for way in sides), True, 0.0)
+    rims = BothWays(*(LaidWay((way,), 0.5 * WIDTH_MM) for way in sides), True, 0.0)
     found = touches._exchanged(Setup(inked(*rounds).sheet), line, touch, rims)
     assert len(found) == 2
     for each, truth in zip(sorted(found, key=lambda one: -one.length_mm), rounds, strict=True):
         assert_run(each, truth, length_mm(truth) * 40 / 360)
+
+
+@pytest.mark.parametrize(("first_mm", "last_mm"), [(5.0, 15.0), (76.0, 84.0)])
+def test_a_stretch_has_a_place_each_step_also_over_the_line_s_beginning(
+    first_mm: float, last_mm: float
+) -> None:
+    line = run_along(polyline((15, 5), (25, 5), (25, 25), (5, 25), (5, 5), (15, 5)))
+    stretch = touches._stretch(line, first_mm, last_mm, 0.25)
+    come_mm = lengths_mm(stretch)
+    off_mm = 60 * UM  # the places of a line lie 50 um apart, so may end and beginning
+    assert come_mm == pytest.approx(0.25 * np.arange(len(stretch)), abs=off_mm)
+    assert come_mm[-1] == pytest.approx(last_mm - first_mm, abs=off_mm)
