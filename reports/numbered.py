@@ -57,7 +57,8 @@ def draw_numbered(result: LinesResult) -> None:
         for mark in corrected.marks(drawing.corrected):
             vector.put(axes, mark)
     _legend(axes, seen)
-    figure.draw_without_rendering()  # the layout gives the axes their size
+    if (layout := figure.get_layout_engine()) is not None:
+        layout.execute(figure)  # which gives the axes their size
     _put_numbers(axes, seen, _inked(image, extent), extent)
     name = drawing.file.name if drawing.file else "drawing"
     axes.set_title(f"{name}: numbers for --lines", fontsize=TITLE_PT)
