@@ -128,7 +128,7 @@ def test_a_correction_on_the_page_is_the_one_that_its_command_writes(
     page.keyboard.press("b")
     page.keyboard.press("Enter")
     page.evaluate("letGo()")
-    page.wait_for_function("said")
+    soon(lambda: bool(page.evaluate("said")))  # the page lets no string be waited for
     page.keyboard.press("ArrowLeft")
     page.keyboard.press("Enter")
     page.wait_for_selector("#corrections li:nth-child(2)", timeout=RUN_MS)
