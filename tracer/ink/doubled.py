@@ -116,7 +116,7 @@ class Doubled(NamedTuple):
             for n, some in found.items()
             if (flags := _broad(felt[n], some.averaged, pen_mm)) is not None
         }
-        spreads = {n: _spread(found[n].averaged) for n in broad}
+        spreads = {n: spread(found[n].averaged) for n in broad}
         steps = {n: sure.step_mm / median(found[n].known) for n in broad}
         even = {n for n in broad if spreads[n] <= max(EVEN, steps[n])}
         if _are_most(felt, even, broad):
@@ -192,7 +192,7 @@ def _broad(run: Run, averaged: Array, pen_mm: float) -> Flags | None:
     return flags if stations * run.view.step_mm > LEAST_WIDTHS * pen_mm else None
 
 
-def _spread(averaged: Array) -> float:
+def spread(averaged: Array) -> float:
     """How much the width of a stretch differs along it, of its width."""
     low_mm, high_mm = np.nanpercentile(averaged, (10, 90))
     return float(1 - low_mm / high_mm)

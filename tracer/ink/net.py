@@ -20,7 +20,7 @@ from typing import NamedTuple
 from morfax.motion.neighbours import pairs_within
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.both_lines import strands
-from morfax.tracer.ink.doubled import LEAST_WIDTHS
+from morfax.tracer.ink.doubled import LEAST_WIDTHS, SWELLS, spread
 from morfax.tracer.ink.felt import FEWEST_STATIONS, Parted, whole
 from morfax.tracer.ink.felt_lines import FeltLine, end_leg
 from morfax.tracer.ink.graph import RING
@@ -159,8 +159,12 @@ def _two_lines(sheet: FeltSheet, number: int) -> list[Run]:
 
 
 def shows_two_lines(sheet: FeltSheet, number: int) -> bool:
-    """Whether the rims along a stretch are for a while those of two lines of a clean sheet's pen."""
+    """Whether the rims along a stretch are for a while those of two lines of a clean sheet's pen, and swell:
+    even ink is a line of a broader pen.
+    """
     pen_mm = sheet.doubled.pen_mm
+    if spread(sheet.felt[number].widths_mm) < SWELLS:
+        return False
     two = strands(with_width(sheet.felt[number], pen_mm), pen_mm, sheet.ends[number])
     return bool(two) and two[0].length_mm > STILL_SHARE * sheet.measured[number].length_mm
 

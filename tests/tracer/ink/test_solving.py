@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from morfax.jobs.listener import never_back
 from morfax.motion.polyline import evenly, nearest_mm
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink.left_out import ink_left
+from morfax.tracer.ink.net import shows_two_lines
+from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import SOLVED, trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, arc, inked, polyline
@@ -52,3 +58,10 @@ def test_circles_in_one_ink_keep_their_partners_where_others_cross_them() -> Non
     for true in circles:
         off_mm = [nearest_mm(evenly(true, 0.1), line.places_mm).max() for line in found]
         assert min(off_mm) < 60 * UM
+
+
+def test_even_ink_of_a_broader_pen_is_not_two_lines() -> None:
+    left = ink_left(inked(polyline((5, 10), (45, 10)), width_mm=0.63, seed=4).sheet)
+    felt = FeltSheet.of(left.drawing, Settings(), left.ink)
+    pen_of_others = felt.doubled._replace(pen_mm=0.45)
+    assert not shows_two_lines(replace(felt, doubled=pen_of_others), 0)
