@@ -142,12 +142,19 @@ def _ended(words: Sequence[str] | None) -> int:
     except click.ClickException as wrong_use:
         return _say(_told(wrong_use), wrong_use.exit_code)
     except (click.Abort, KeyboardInterrupt) as stop:
-        said = "interrupted; no unfinished file was left under its final name"
-        return _say(said, 128 + _signal_of(stop))
+        return _interrupted(stop)
     except SystemExit:  # what click makes of a broken pipe
         return _broken_pipe()
     except Exception as error:
-        return _failed(error)
+        # a kernel that was interrupted as it returned raises a SystemError for that reason
+        is_interrupt = isinstance(error.__cause__, KeyboardInterrupt)
+        return _interrupted(error) if is_interrupt else _failed(error)
+
+
+def _interrupted(stop: BaseException) -> int:
+    """Say that the work was interrupted; the exit code that the signal asks for."""
+    said = "interrupted; no unfinished file was left under its final name"
+    return _say(said, 128 + _signal_of(stop))
 
 
 def _failed(error: Exception) -> int:
@@ -221,7 +228,7 @@ def _comes_again(hook: Callable[[Any], object]) -> Callable[[Any], object]:
 
 
 def _signal_of(stop: BaseException) -> int:
-    """The number of the signal that interrupted: what click makes of it has it as its cause."""
+    """The number of the signal that interrupted: what click or a kernel makes of it has it as its cause."""
     cause = stop.__cause__ or stop
     return (
         int(cause.args[0])

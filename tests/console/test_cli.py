@@ -159,6 +159,22 @@ def test_an_interrupt_that_was_lost_where_none_can_be_caught_comes_again(
     assert answer.fault.startswith("morfax: interrupted")
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_as_a_kernel_returns_is_no_mistake(
+    morfax: Morfax, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
+) -> None:
+    """Compiled code that returns a result while one is raised: Python makes a SystemError of it."""
+
+    def returning(ctx: click.Context, name: str) -> None:
+        raise SystemError("returned a result with an exception set") from KeyboardInterrupt(
+            number
+        )
+
+    monkeypatch.setattr(cli.cli, "get_command", returning)
+    answer = morfax("trace", "a.png")
+    assert answer.exit_code == 128 + number and answer.fault.startswith("morfax: interrupted")
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_ctrl_c_or_being_asked_to_end_stops_the_work_and_leaves_no_half_file(
     tmp_path: Path, number: signal.Signals
