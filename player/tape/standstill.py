@@ -156,9 +156,8 @@ def _demand_standstill(cycles: Float64s, names: Sequence[str]) -> None:
 
 def _demand_steady(standing: Float64s, names: Sequence[str]) -> None:
     """Raise TapeFault for phases that swing too far at standstill for a certain position."""
-    low, high = np.percentile(
-        standing, [TWO_BELOW, 100 - TWO_BELOW], axis=0
-    )  # without dropouts
+    # without dropouts
+    low, high = np.percentile(standing, [TWO_BELOW, 100 - TWO_BELOW], axis=0)
     swing = (high - low) / 4
     axis = int(np.argmax(swing))
     if not swing[axis] <= UNSTEADY_CYCLES:

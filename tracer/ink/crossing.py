@@ -48,7 +48,6 @@ from morfax.tracer.limits import WIDER
 from morfax.tracer.sensing.leg import Leg, turn
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.sketch import MOST_LEGS
 from morfax.tracer.tangles.strands import stretches_over
 
 # of a stretch within a crossing, along which ways go; by trial on drawings of nets
@@ -132,7 +131,7 @@ class Crossing:
         their ink only.
         """
         pairs, costs = self._by_turnings, self.turnings_rad
-        if len(self.legs) != MOST_LEGS or len(pairs) != MOST_LEGS // 2:
+        if len(pairs) != 2 or len(self.legs) != 2 * len(pairs):
             return {}
         reach_mm = float(np.ptp([leg.end_mm for leg in self.legs], axis=0).max())
         is_smooth = max(costs[pair] for pair in pairs) < SMOOTH

@@ -54,9 +54,8 @@ STRAIGHT_COS = math.cos(BEND_RAD)
 # the width of a line as the head wants it: of a narrower one pixels make the width swell; and where they are
 # ink or paper alone, and tell a width to one of them: `WIDER` is more then
 LEAST_PX = 3.0, 7.0
-LEAST_WIDTHS = (
-    8.0  # widths of a pen that are a long way: no crossing between two pieces is longer
-)
+# widths of a pen that are a long way: no crossing between two pieces is longer
+LEAST_WIDTHS = 8.0
 
 
 class SureWidths(NamedTuple):

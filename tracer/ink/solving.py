@@ -56,21 +56,18 @@ def solved(sheet: FeltSheet, told: Told | None = None) -> Junctions:
             if stretch not in parted | bare
             and (width_mm := junctions.single_mm(n, _narrower_mm(sheet, stretch))) is not None
         }
-        sheet.together.update(n for n in together if n in doubled or sheet.is_broad(n))
         too_long = parted.intersection(lines) - two - bare
         if together or too_long:
+            bare -= _beside(junctions.net, too_long.union(together))
+        else:
+            too_long = _unexplained(junctions, sheet, two | bare)
+            together = dict.fromkeys(too_long, sheet.doubled.pen_mm)
+        if together or too_long:
+            sheet.together.update(n for n in together if n in doubled or sheet.is_broad(n))
             for stretch, width_mm in together.items():
                 sheet.widths_mm[stretch] = width_mm
             parted |= set(together)
             two |= too_long
-            bare -= _beside(junctions.net, too_long.union(together))
-            continue
-        if further := _unexplained(junctions, sheet, two | bare):
-            sheet.together.update(further)
-            for stretch in further:
-                sheet.widths_mm[stretch] = sheet.doubled.pen_mm
-            parted |= further
-            two |= further
             continue
         inner = _heard(junctions.net.inner, told, done + quarter, quarter)
         more = {it.stretch for it in inner if not junctions.covers(it)}

@@ -224,9 +224,8 @@ def _turned_back(
     measured = _from_tip(excess, first, tip, JUMP * width_mm)
     if len(measured) < FEWEST_BACK or tip < FEWEST_BACK:
         return None
-    if (
-        excess[measured[-1]] < (WIDE - 0.5) * width_mm
-    ):  # along the line itself: this is a corner
+    is_beside = excess[measured[-1]] >= (WIDE - 0.5) * width_mm
+    if not is_beside:  # the way back would be the way there: this is a corner
         return None
     # 2. the way back, half a width within the far edge
     back = np.empty((len(measured), 3))

@@ -41,9 +41,8 @@ from morfax.tracer.marks.crosses import crosses
 from morfax.tracer.marks.sizes import BOX, CROSS_MM, RING_LIKE, RING_ROUND, RING_SEEN
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS
-from morfax.tracer.sensing.scout import leg_mm
 from morfax.tracer.sensing.spokes import SPOKES, WAYS, spokes
-from morfax.tracer.sensing.view import View
+from morfax.tracer.sensing.view import View, leg_mm
 
 LEAST_MM, LARGEST_MM = CROSS_MM
 MOST_PX = 50_000_000  # of a patch that is searched for holes: a tenth of a second
@@ -98,7 +97,7 @@ def reach_mm(width_mm: float, pitch_mm: float) -> float:
     """How far from a line of a width without ends what leads onto it may be: three and a half widths off
     (`BEYOND`), and a third of what is felt of it.
     """
-    return 0.5 * float(leg_mm(width_mm, pitch_mm)) + 4 * width_mm
+    return 0.5 * leg_mm(width_mm, pitch_mm) + 4 * width_mm
 
 
 def may_lead(sheet: Sheet, stroke: Stroke) -> bool:

@@ -199,21 +199,18 @@ def _follow_in_window(setup: Setup, about: Setup, contour: Contour, is_letter: b
     if about is setup:
         return found
     is_found = line is not None and line.ending != "lost" and _keeps_to(contour, line)
-    off_mm = _off_mm(setup.sheet, contour.stroke)
-    is_seen = is_found or about.runs.kept_to(*_box_mm(contour, off_mm))
+    is_seen = is_found or about.runs.kept_to(
+        *_box_mm(contour, _off_mm(setup.sheet, contour.stroke))
+    )
     is_lead = line is not None and line.reference_mm is not None
     return found if is_seen and not is_lead else _follow(setup, contour, is_letter)
 
 
-def _keeps_to(contour: Contour, line: Line | None) -> bool:
+def _keeps_to(contour: Contour, line: Line) -> bool:
     """Whether a line runs nowhere beyond its own patch."""
-    if line is None:
-        return False
-    (low_mm, high_mm), ends_mm = (
-        _box_mm(contour, contour.stroke.width_mm),
-        bounds(line.places_mm),
-    )
-    return bool(((ends_mm[0] > low_mm) & (ends_mm[1] < high_mm)).all())
+    low_mm, high_mm = _box_mm(contour, contour.stroke.width_mm)
+    line_low_mm, line_high_mm = bounds(line.places_mm)
+    return bool(((line_low_mm > low_mm) & (line_high_mm < high_mm)).all())
 
 
 def _box_mm(contour: Contour, around_mm: float) -> tuple[Array, Array]:

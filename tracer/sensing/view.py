@@ -60,6 +60,11 @@ class OtherInk:
         return {"patches": self.patches, "patch_at": None}
 
 
+def leg_mm(width_mm: float, pitch_mm: float, pixels: float = LEG_PX) -> float:
+    """How much of a leg is felt for its direction, of a line of a width, mm."""
+    return max(LEG_MM, pixels * pitch_mm, CLEAR_WIDTHS * width_mm)
+
+
 @dataclass(frozen=True, slots=True)
 class View:
     """What the head knows of the line it is on: what the cells see, and the line's width.
@@ -100,8 +105,7 @@ class View:
     @property
     def leg_mm(self) -> float:
         """How much of a leg is felt for its direction."""
-        pixels = EDGE_LEG_PX if self.on_edge else LEG_PX
-        return max(LEG_MM, pixels * self.pitch_mm, CLEAR_WIDTHS * self.width_mm)
+        return leg_mm(self.width_mm, self.pitch_mm, EDGE_LEG_PX if self.on_edge else LEG_PX)
 
     def at_level(self, level: float) -> View:
         """The view with another darkness at an edge."""

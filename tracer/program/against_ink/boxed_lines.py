@@ -54,17 +54,25 @@ class BoxedLines(NamedTuple):
         """
         for k in np.flatnonzero(self.reach(low_mm, high_mm)).tolist():
             if self.lines[k] is not but:
-                around = low_mm - around_mm, high_mm + around_mm
-                for part in parts_within(self.places_mm[k], *around):
+                way = self.places_mm[k]
+                for part in parts_of(way, within(way, low_mm - around_mm, high_mm + around_mm)):
                     yield self.lines[k], part
 
 
-def parts_within(way: Array, low_mm: Array, high_mm: Array) -> Iterator[Array]:
-    """The parts of a way (n, 2) mm within a box."""
-    inside = np.flatnonzero(np.all((way > low_mm) & (way < high_mm), axis=1))
-    if len(inside):
-        for part in np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1):
-            yield way[part]
+def within(way: Array, low_mm: Array, high_mm: Array) -> NDArray[np.int64]:
+    """The numbers of the places of a way (n, 2) mm within a box."""
+    x, y = way.T
+    (left_mm, low), (right_mm, high) = low_mm, high_mm
+    return np.flatnonzero((x > left_mm) & (x < right_mm) & (y > low) & (y < high))
+
+
+def parts_of(way: Array, chosen: NDArray[np.int64]) -> Iterator[Array]:
+    """Some places of a way by their numbers, from one round to the next: those that follow one another are
+    a part.
+    """
+    if len(chosen):
+        for part in np.split(chosen, np.flatnonzero(np.diff(chosen) > 1) + 1):
+            yield way[part % len(way)]
 
 
 def reaches(places_mm: Array, low_mm: Array, high_mm: Array) -> bool:

@@ -29,7 +29,7 @@ from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
-from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines, parts_of, within
 from morfax.tracer.program.against_ink.off_ink import (
     OFF,
     REACH,
@@ -165,14 +165,14 @@ class _Way(WayInk):
 
     def _rest_within(self, first: int, last: int, low: Array, high: Array) -> Iterator[Array]:
         """The parts of the way within a box, but for the stretch from one of its places to another."""
-        count, near = len(self.way), _within(self.way, low, high)
+        count, near = len(self.way), within(self.way, low, high)
         if self.is_closed:
             # in the order of the way, from the end of the stretch on
             come = np.sort((near - last) % count)
-            yield from _parts(self.way, last + come[come <= first + count - last])
+            yield from parts_of(self.way, last + come[come <= first + count - last])
         else:
-            yield from _parts(self.way, near[near <= first])
-            yield from _parts(self.way, near[near >= last])
+            yield from parts_of(self.way, near[near <= first])
+            yield from parts_of(self.way, near[near >= last])
 
     def _bay(self, first: int, last: int, felt: UsualPen) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""
@@ -220,21 +220,6 @@ def _runs(chosen: NDArray[np.bool_], apart: int, is_closed: bool) -> Iterator[tu
         found = np.r_[found[begin:], found[:begin] + count]
     for run in np.split(found, np.flatnonzero(np.diff(found) > 2 * apart) + 1):
         yield int(run[0]), int(run[-1])
-
-
-def _within(way: Array, low: Array, high: Array) -> NDArray[np.int64]:
-    """The numbers of the places of a way (n, 2) mm within a box."""
-    x, y = way.T
-    return np.flatnonzero((x > low[0]) & (x < high[0]) & (y > low[1]) & (y < high[1]))
-
-
-def _parts(way: Array, chosen: NDArray[np.int64]) -> Iterator[Array]:
-    """Some places of a way by their numbers, from one round to the next: those that follow one another are
-    a part.
-    """
-    if len(chosen):
-        for part in np.split(chosen, np.flatnonzero(np.diff(chosen) > 1) + 1):
-            yield way[part % len(way)]
 
 
 def _off_corners(at: int, corners: Sequence[int], away: int) -> int:
