@@ -139,21 +139,17 @@ def _family(darkness: Darkness, pitch_mm: float, is_upright: bool) -> Family | N
     along = along - 0.5 * long
     # 1. the tilt at which ink gathers on lines
     some = slice(None, None, max(1, len(rows) // SAMPLES))
-    tilt = 0.0
-    for step_deg in (TILT_STEP_DEG, 0.1 * TILT_STEP_DEG):
-        span_deg = TILT_DEG if step_deg == TILT_STEP_DEG else TILT_STEP_DEG
-        tilts = tilt + np.radians(np.arange(-span_deg, span_deg + 0.5 * step_deg, step_deg))
-        gathered = [_gathered(over[some] - np.tan(t) * along[some], wide) for t in tilts]
-        tilt = float(tilts[int(np.argmax(gathered))])
+    tilt = _tilt_rad(along[some], over[some], wide)
     # 2. how much of each line's length is inked
-    inked = _counts(over - math.tan(tilt) * along, wide) / long
+    beside_px = over - math.tan(tilt) * along
+    inked = _counts(beside_px, wide) / long
     # 3. lines a period apart
     comb = _comb(inked, pitch_mm)
     if comb is None:
         return None
     # 4. from edge to edge of the sheet: a drawn grid has paper about it
     for is_edge in (along < (EDGE - 0.5) * long, along > (0.5 - EDGE) * long):
-        there = _counts((over - math.tan(tilt) * along)[is_edge], wide) / (EDGE * long)
+        there = _counts(beside_px[is_edge], wide) / (EDGE * long)
         at_lines = np.arange(comb.first_px, wide, comb.period_px).astype(int)
         beside = np.clip(at_lines[:, None] + [-1, 0, 1, 2], 0, wide - 1)
         if np.mean(there[beside].max(axis=1) > SPANNED) < PRESENT - EDGE_LOST:
@@ -162,6 +158,19 @@ def _family(darkness: Darkness, pitch_mm: float, is_upright: bool) -> Family | N
     first_px = comb.first_px * c - 0.5 * long * s
     across = (c, -s) if is_upright else (-s, c)
     return Family(across, first_px, comb.period_px * c, comb.half_px)
+
+
+def _tilt_rad(along: Array, over: Array, wide: int) -> float:
+    """The tilt at which pixels of ink gather on upright lines, sought in steps and in tenths of them."""
+    tilt = 0.0
+    for span_deg, step_deg in (
+        (TILT_DEG, TILT_STEP_DEG),
+        (TILT_STEP_DEG, 0.1 * TILT_STEP_DEG),
+    ):
+        tilts = tilt + np.radians(np.arange(-span_deg, span_deg + 0.5 * step_deg, step_deg))
+        gathered = [_gathered(over - np.tan(t) * along, wide) for t in tilts]
+        tilt = float(tilts[int(np.argmax(gathered))])
+    return tilt
 
 
 def _counts(at: Array, wide: int) -> Array:
