@@ -36,6 +36,7 @@ from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
+from morfax.tracer.ink.crossing_on_ink import OFF
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER
 from morfax.tracer.program.against_ink.own_ink import PLACES_PX, parts
 from morfax.tracer.program.against_ink.pen_on_ink import (
@@ -49,7 +50,6 @@ from morfax.tracer.program.against_ink.pen_on_ink import (
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 
 # All limits below were chosen by trial on crowded sheets.
-OFF = 0.08  # widths²: of crossings that are right to 0.1 mm none comes above
 # times what is off at nine of ten of some places to which the cell led; on six sheets of felt pens, nibs and
 # print 0.03 to 0.08 of a width², on those of even pens 0.002 to 0.004
 OF_USUAL, MOST, PLACES = 6.0, 90.0, 200
