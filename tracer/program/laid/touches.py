@@ -47,7 +47,7 @@ from morfax.tracer.program.laid.line_parts import (
 )
 from morfax.tracer.program.laid.rim_bays import ways_within_rims
 from morfax.tracer.program.laid.smooth_ways import BothWays, Left, smooth_ways
-from morfax.tracer.program.laid.turned_back import Touch, tip_to_tip
+from morfax.tracer.program.laid.turned_back import LEG, LONG, NEAR, Touch, tip_to_tip
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import partners, shortest
@@ -55,10 +55,8 @@ from morfax.tracer.tangles.pen import away_from
 from morfax.tracer.tangles.seen_ink import GAIN, SeenInk
 
 # In widths of the line; chosen by trial on circles that touch lines and each other:
-NEAR = 1.3  # sides that are nearer leave one ink
 ON = 8.0  # of way between two sides of one line
-SHORT, LONG = 5.0, 60.0  # a shorter one is a crossing; a longer one is no touch
-LEG = 2.0  # of clean line before and after
+SHORT = 5.0  # a shorter one is a crossing
 HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
 LEAVES = 0.01  # for each width of the ways: head's ways that leave less explain the ink
 # lines that cross by more do not touch: at a corner of one, both went past the other
@@ -99,7 +97,7 @@ def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[Touch]:
             continue
         yield from _grouped((one, other), (ways[one], ways[other]), partner, width_mm)
     for n, way in ways.items():
-        yield from tip_to_tip(n, way, STATION_WIDTHS, lines[n].width_mm, NEAR, LEG)
+        yield from tip_to_tip(n, way, STATION_WIDTHS, lines[n].width_mm)
 
 
 def _grouped(
