@@ -34,11 +34,12 @@ from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.moved import moved
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.corner_chains import with_chains
 from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
-from morfax.tracer.program.laid.news import moved, near_box
+from morfax.tracer.program.laid.news import near_box
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT

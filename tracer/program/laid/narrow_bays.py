@@ -25,7 +25,6 @@ from morfax.motion.arrays import Array, bounds
 from morfax.motion.polyline import broad_mm, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import bar_at
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import OwnInk
@@ -218,10 +217,9 @@ class _Bays(WayInk):
 
     def _rim_bay(self, seen: BayInk, suspect: Suspect) -> Bay | None:
         """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
-        setup, ink, best = self.setup, seen.ink, None
-        view = view_of(setup.sheet, setup.settings.aperture_mm, self.line.width_mm)
-        for rim_bay in rim_bays(setup.sheet.drawing, view, seen.own, suspect.beyond_mm):
-            if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rim_bay.way)):
+        setup, ink, width_mm, best = self.setup, seen.ink, self.line.width_mm, None
+        for rim_bay in rim_bays(setup, width_mm, seen.own, suspect.beyond_mm):
+            if is_a_pen(setup.sheet, width_mm + broad_mm(rim_bay.way)):
                 continue
             drawn = ink.drawn_along(rim_bay.way, rim_bay.half_mm)
             rule = rim_bay._replace(misfit=ink.misfit(drawn))

@@ -29,7 +29,6 @@ from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import at_lengths, evenly, lengths_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.program.against_ink.boxed_lines import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
@@ -227,15 +226,14 @@ def _rest_mm(
 
 def _rims(setup: Setup, width_mm: float, ways: _Ways, left: Left) -> BothWays | None:
     """The ways within the rims that leave least, from either way's beginning to either's end."""
-    view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
-    drawing, about = setup.sheet.drawing, np.vstack(ways)
+    about = np.vstack(ways)
     best: BothWays | None = None
     for is_exchanged in (False, True):
         onto = ways[::-1] if is_exchanged else ways
         found = list[list[LaidWay]]()
         for into, out_of in zip(ways, onto, strict=True):
             own = np.vstack([into[:2], out_of[-2:]])
-            found.append(list(ways_within_rims(drawing, view, own, about)))
+            found.append(list(ways_within_rims(setup, width_mm, own, about)))
         for one, other in product(*found):
             rims = BothWays(one, other, is_exchanged, left(one.way, other.way))
             if best is None or rims.left < best.left:
