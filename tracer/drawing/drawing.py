@@ -238,7 +238,7 @@ class Drawing:
         darkness, shapes, paper_noise, has_shapes = _levelled(grey, pitch_mm, reading)
         darkness, cleared = _cleared(darkness, pitch_mm, reading)
         lines, pale_mm = within(darkness, paper_noise), 0.0
-        times = speckled.times_larger(darkness, lines)
+        times = speckled.times_larger(darkness, lines, pitch_mm)
         if times > 1:
             notes = (*notes, speckled.note(times, pitch_mm))
             larger = speckled.on_larger_pixels(np.asarray(grey), times)
