@@ -1,12 +1,13 @@
-"""Windows: the part of a sheet about some places, in its own pixels and in mm.
+"""Windows: the part of a sheet about some places, in its own pixels and in mm, and as cells see it.
 
-Signals: a drawing and places (n, 2) mm in; rows and columns out.
+Signals: a drawing and places (n, 2) mm in; rows and columns, or a view, out.
 
 Source: our own.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,10 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.limits import ABOUT_WIDTHS
+from morfax.tracer.sensing.view import View
 
 
 class SheetWindow(NamedTuple):
@@ -60,3 +65,12 @@ class SheetWindow(NamedTuple):
         """The place on the sheet of the middle of a pixel within it."""
         x_px, y_px = self.left + column + 0.5, self.rows - self.top - row - 0.5
         return x_px * self.pitch_mm, y_px * self.pitch_mm
+
+
+def view_about(sheet: Sheet, aperture_mm: float | None, width_mm: float, places: Array) -> View:
+    """What is about some places (n, 2) mm through cells for a line of a width, as far as a rim of the ink
+    there is felt: no more of the sheet is made.
+    """
+    window = SheetWindow.about(sheet.drawing, places, 2 * ABOUT_WIDTHS * width_mm)
+    edges = window.top, window.left, window.bottom, window.right
+    return view_of(replace(sheet, window=edges), aperture_mm, width_mm)

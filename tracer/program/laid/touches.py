@@ -29,11 +29,11 @@ from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import at_lengths, evenly, lengths_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.program.against_ink.boxed_lines import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.against_ink.own_ink import STATION_WIDTHS
+from morfax.tracer.program.against_ink.window import view_about
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
@@ -227,8 +227,8 @@ def _rest_mm(
 
 def _rims(setup: Setup, width_mm: float, ways: _Ways, left: Left) -> BothWays | None:
     """The ways within the rims that leave least, from either way's beginning to either's end."""
-    view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
     drawing, about = setup.sheet.drawing, np.vstack(ways)
+    view = view_about(setup.sheet, setup.settings.aperture_mm, width_mm, about)
     best: BothWays | None = None
     for is_exchanged in (False, True):
         onto = ways[::-1] if is_exchanged else ways
