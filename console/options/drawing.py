@@ -105,9 +105,10 @@ _DRAWING = (
         type=click.Choice(("auto", "plain", "squared", "ruled")),
         default="auto",
         show_default=True,
-        help="Leave out the printed lines of squared or ruled paper, even where they are as dark as the "
-        "drawing. auto: where they run over the whole sheet; squared, ruled: refuse a sheet without them; "
-        "plain: leave nothing out.",
+        help="Leave out the printed lines of squared (also millimetre) or ruled paper, even where they are "
+        "as dark as the drawing. auto: where they run over the whole sheet, or are paler or many squares "
+        "with a margin; squared, ruled: wherever they run, and refuse a sheet without them; plain: leave "
+        "nothing out.",
     ),
     option(
         "Drawing",

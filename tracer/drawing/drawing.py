@@ -236,7 +236,8 @@ class Drawing:
         """The lines in grey levels on square pixels."""
         # 1. darkness, without what is printed and the scan's border
         darkness, shapes, paper_noise, has_shapes = _levelled(grey, pitch_mm, reading)
-        darkness, cleared = _cleared(darkness, pitch_mm, reading)
+        cleared, told = _cleared(darkness, pitch_mm, reading)
+        darkness, paper_noise = cleared.darkness, paper_noise / cleared.ink
         lines, pale_mm = within(darkness, paper_noise), 0.0
         times = speckled.times_larger(darkness, lines)
         if times > 1:
@@ -249,7 +250,7 @@ class Drawing:
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
             pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
             lines = within(darkness, paper_noise) if pale_mm else lines
-        notes = (*notes, *cleared, *grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm))
+        notes = (*notes, *told, *grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm))
         hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
         # 3. grain, of lines as they are drawn
         averaged = grain.averaged(darkness, drawn_grain, lines.width_px, pitch_mm)
@@ -280,11 +281,14 @@ class Drawing:
         return drawing
 
 
-def _cleared(darkness: Any, pitch_mm: float, reading: Reading) -> tuple[Any, tuple[str, ...]]:
+def _cleared(
+    darkness: Darkness | Tiles, pitch_mm: float, reading: Reading
+) -> tuple[ruling.Cleared, tuple[str, ...]]:
     """Darkness without what is printed and without the scan's border, and notes of both."""
-    darkness, printed = ruling.left_out(darkness, pitch_mm, reading.printed)
-    edges = without_border(darkness, LEAST if reading.pale_is_ink else INK)
-    return darkness, tuple(filter(None, (printed, border_note(edges) if edges else None)))
+    cleared = ruling.left_out(darkness, pitch_mm, reading.printed)
+    edges = without_border(cleared.darkness, LEAST if reading.pale_is_ink else INK)
+    notes = tuple(filter(None, (cleared.note, border_note(edges) if edges else None)))
+    return cleared, notes
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Levelled:

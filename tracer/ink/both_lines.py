@@ -15,8 +15,8 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends
-from morfax.tracer.ink.run import Run, smooth
+from morfax.tracer.ink.felt import Ends
+from morfax.tracer.ink.run import LEAST_PLACES, Run, smooth
 
 # All limits below were chosen by trial on drawings of nets and on line art.
 # of its way: ink of two lines that becomes wider by more has come to others that cross it
@@ -42,7 +42,7 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
               │  ╲╱                                               ╲╱
     """
     known = np.flatnonzero(np.isfinite(stations.widths_mm))
-    if len(known) < FEWEST_STATIONS:
+    if len(known) < LEAST_PLACES:
         return []
     at = np.arange(len(stations))
     widths = np.interp(at, known, stations.widths_mm[known])
@@ -80,7 +80,7 @@ def _told_apart(aside: Array, ends: Ends, near: int, far: int) -> slice:
     before = [part[-1] + 1 for part in parts if part[0] < far and not ends[0]]
     behind = [part[0] for part in parts if part[-1] + far >= count and not ends[1]]
     begin, end = int(max(before, default=0)), int(min(behind, default=count))
-    return slice(begin, end) if end - begin > FEWEST_STATIONS else slice(0, count)
+    return slice(begin, end) if end - begin > LEAST_PLACES else slice(0, count)
 
 
 def _sides(aside: Array, width_mm: float, step_mm: float) -> Array:
@@ -114,7 +114,7 @@ def _without_flares(
         return first, last
     steps = widths[first + reach : last] - widths[first : last - reach]
     quiet = np.flatnonzero(np.abs(steps) < most_mm)
-    if len(quiet) < FEWEST_STATIONS:
+    if len(quiet) < LEAST_PLACES:
         return first, last
     # a flare is still for a moment where it is broadest
     parts = np.split(quiet, np.flatnonzero(np.diff(quiet) > reach) + 1)

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.crossing import Crossing
 
 # All limits below were chosen by trial on crowded sheets of lines, circles and rectangles.
-OFF = 0.08  # widths², in a box as wide as a line: of right crossings hardly any comes above
+OFF = 0.08  # widths², in a box as wide as a line: of crossings that are right to 0.1 mm none comes above
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
 REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
 TRIED = 5  # pairings

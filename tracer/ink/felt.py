@@ -49,7 +49,6 @@ Flags = NDArray[np.bool_]
 REACH = 1.0  # widths, with `REACH_PX`, within which the edges are looked for
 GUIDED_WIDTHS = 0.75  # to either side of a place: what its heading is taken over
 ROUGHER = 2.5  # standard deviations of a rough line's own width: so far a station may differ
-FEWEST_STATIONS = LEAST_PLACES  # of a clean run
 MARGIN = 2  # stations at the ends of a run that may have felt what ends it
 MEANT = 2.0  # lengths of a leg: a longer line's own width counts, and not its neighbours'
 # a part at an end of the ink that is as long is line, however it tapers, if so much of it has two edges
@@ -110,7 +109,7 @@ class Felt(NamedTuple):
                 )
                 if (b - a) * view.step_mm > TAPERED_WIDTHS * width_mm and _is_felt(part):
                     parts.append((a, b, own))
-            elif last - first > FEWEST_STATIONS and is_steady(part, width_mm):
+            elif last - first > LEAST_PLACES and is_steady(part, width_mm):
                 clean = judged(replace(part, view=own), width_mm).clean
                 parts += [(first + a, first + b, own) for a, b in _runs_of(clean, own)]
         return sorted(parts, key=lambda part: part[0])
@@ -204,7 +203,7 @@ def _runs_of(clean: Flags, view: View) -> list[tuple[int, int]]:
 
 def _is_long_enough(stations: int, view: View) -> bool:
     """Whether so many stations are a run, and no chance."""
-    return stations >= max(FEWEST_STATIONS, LEAST_WIDTHS * view.width_mm / view.step_mm)
+    return stations >= max(LEAST_PLACES, LEAST_WIDTHS * view.width_mm / view.step_mm)
 
 
 def _corners(places: Array) -> list[int]:

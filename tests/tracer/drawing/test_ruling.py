@@ -14,9 +14,9 @@ import pytest
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.motion.units import MM_PER_INCH
-from morfax.tracer.drawing import ruling
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
-from morfax.tracer.drawing.ruling import PaperKind, families
+from morfax.tracer.drawing.printed_lines import families
+from morfax.tracer.drawing.ruling import PaperKind, left_out
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.program.trace import trace
@@ -30,21 +30,30 @@ SLANTED = polyline((12, 14), (50, 9.3), (56, 44), (20, 52), (12, 14))
 
 
 def on_paper(
-    line: Points, apart_mm: tuple[float, ...], printed: float, tilt_deg: float = 0.0
+    line: Points,
+    apart_mm: tuple[float, ...],
+    printed: float,
+    tilt_deg: float = 0.0,
+    margin_mm: float = -SIDE_MM,
+    finer: float = 0.0,
 ) -> Darkness:
-    """Levels 0..255 of a drawn line on paper with lines so far apart, as dark as a share of the drawn ink."""
+    """Levels 0..255 of a drawn line on paper with lines so far apart, as dark as a share of the drawn ink,
+    with a margin on all sides, and with lines a fifth as far apart that are as dark as another share of it.
+    """
     rows = round(SIDE_MM / PITCH_MM)
     down, right = (np.indices((rows, rows)) + 0.5) * PITCH_MM
     ink = np.zeros((rows, rows))
     drawn = inked(line, width_mm=0.45).darkness
     ink[rows - len(drawn) :, : drawn.shape[1]] = drawn[:, :rows]
     c, s = math.cos(math.radians(tilt_deg)), math.sin(math.radians(tilt_deg))
-    grid = np.zeros_like(ink)
-    for k, mm in enumerate(apart_mm):
-        at = (c * down - s * right, c * right + s * down)[k] + 1.3
-        off = np.abs(at - np.round(at / mm) * mm)
-        grid = np.maximum(grid, np.clip((0.5 * PRINTED_MM - off) / PITCH_MM + 0.5, 0, 1))
-    ink = np.maximum(ink, printed * grid)
+    turned = c * down - s * right, c * right + s * down
+    on_grid = np.all([(at > margin_mm) & (at < SIDE_MM - margin_mm) for at in turned], axis=0)
+    for times, dark in ((1, printed), (5, finer)):
+        for k, mm in enumerate(apart_mm):
+            at, apart = turned[k] + 1.3, mm / times
+            off = np.abs(at - np.round(at / apart) * apart)
+            grid = np.clip((0.5 * PRINTED_MM - off) / PITCH_MM + 0.5, 0, 1) * on_grid
+            ink = np.maximum(ink, dark * grid)
     noise = np.random.default_rng(1).normal(0, 8, ink.shape)
     return np.asarray(235 - 130 * ink + noise, np.float32)
 
@@ -79,22 +88,76 @@ def test_the_drawn_line_is_followed_and_the_printed_ones_are_not(
 
 def test_the_period_and_the_tilt_are_measured() -> None:
     levels = on_paper(LINE, (5.0, 5.0), 0.9, 1.1)
-    found = families(np.asarray((235 - levels) / 130, np.float32), PITCH_MM)
+    found = [one for (one,) in families(np.asarray((235 - levels) / 130, np.float32), PITCH_MM)]
     assert [f.period_px * PITCH_MM for f in found] == pytest.approx([5.0, 5.0], abs=0.01)
     tilts = [math.degrees(math.asin(f.across[i])) for f, i in zip(found, (1, 0), strict=True)]
     assert np.abs(tilts) == pytest.approx([1.1, 1.1], abs=0.05)
 
 
+def left_of_printed(drawing: Drawing, line: Points) -> float:
+    """The share of the sheet further than 0.6 mm from the drawn line that is dark."""
+    far, near = drawing.darkness.copy(), round(0.6 / drawing.pitch_mm)
+    for x, y in line:
+        row, column = int(len(far) - y / drawing.pitch_mm), int(x / drawing.pitch_mm)
+        far[row - near : row + near + 1, column - near : column + near + 1] = 0
+    return float(np.mean(far > 0.5))
+
+
+@pytest.mark.parametrize("tilt_deg", [0.0, -1.3])
+def test_squares_with_a_margin_are_left_out_where_they_are_paler_than_the_drawing(
+    tilt_deg: float,
+) -> None:
+    """A pad's squares end 5 mm before the edge of the paper; squares as dark as the drawing may be drawn."""
+    pale = on_paper(LINE, (5.0, 5.0), 0.5, tilt_deg, margin_mm=5.0)
+    drawing = opened(pale)
+    assert left_of_printed(drawing, LINE) < 1e-4
+    run = trace(drawing).lines[0]
+    assert run.ending == "closed"
+    assert distance(run.xy_mm[::4], LINE).path_to_reference.rms_mm < 50 * UM
+    dark = on_paper(LINE, (5.0, 5.0), 1.0, tilt_deg, margin_mm=5.0)
+    (note,) = opened(dark).notes
+    assert "5.00 and 5.00 mm apart; if the paper is squared, give --paper squared" in note
+    assert left_of_printed(opened(dark), LINE) > 0.02
+    assert left_of_printed(opened(dark, "squared"), LINE) < 1e-4
+
+
+def test_more_squares_than_anybody_draws_are_left_out() -> None:
+    """28 lines each way, as dark as the drawing, with a margin; 12 may be drawn (see above)."""
+    drawing = opened(on_paper(LINE, (2.0, 2.0), 1.0, 0.5, margin_mm=5.0))
+    assert any("2.00 and 2.00 mm apart; they are left out" in note for note in drawing.notes)
+    assert left_of_printed(drawing, LINE) < 2e-3
+
+
+def test_what_is_drawn_beside_the_squares_stays() -> None:
+    """Printed lines end where they end: a line in their margin keeps its ink where they would go on."""
+    line = polyline((2.0, 2.5), (64.0, 2.5))
+    drawing = opened(on_paper(line, (5.0, 5.0), 0.5, margin_mm=5.0))
+    row = int(len(drawing.darkness) - 2.5 / drawing.pitch_mm)
+    columns = (np.arange(3.0, 63.0, 0.1) / drawing.pitch_mm).astype(int)
+    assert drawing.darkness[row, columns].min() > 0.7
+
+
+def test_millimetre_paper_is_left_out_with_its_finer_lines() -> None:
+    drawing = opened(on_paper(LINE, (5.0, 5.0), 0.45, 0.6, finer=0.3))
+    assert any("1.00 and 1.00 mm apart; they are left out" in note for note in drawing.notes)
+    assert left_of_printed(drawing, LINE) < 1e-4
+    run = trace(drawing).lines[0]
+    assert run.ending == "closed"
+    assert distance(run.xy_mm[::4], LINE).path_to_reference.rms_mm < 50 * UM
+
+
 def test_plain_paper_stays_as_it_is_and_a_drawn_grid_is_kept() -> None:
-    """A grid with paper about it is drawn, not printed."""
+    """A grid with paper about it, as dark as the rest, is drawn and not printed."""
     lines = [polyline((4 + 5 * k, 4), (4 + 5 * k, 44)) for k in range(9)]
     lines += [line[:, ::-1] for line in lines]
-    drawn = inked(*lines, seed=1)
-    assert families(drawn.darkness, PITCH_MM) == []
+    drawn = inked(*lines, arc((24, 24), 7.0), seed=1).darkness
+    kept = left_out(drawn, PITCH_MM, "auto")
+    assert kept.note is not None
+    assert np.array_equal(kept.darkness, drawn)
     plain = opened(on_paper(LINE, (), 0.0))
     assert plain.notes == ()
-    kept = opened(on_paper(LINE, (5.0, 5.0), 0.9), "plain")
-    assert np.mean(kept.darkness > 0.5) > 0.05
+    kept_squares = opened(on_paper(LINE, (5.0, 5.0), 0.9), "plain")
+    assert np.mean(kept_squares.darkness > 0.5) > 0.05
 
 
 def test_printed_lines_that_are_not_there_are_refused() -> None:
@@ -111,24 +174,20 @@ def lined(bare_mm: float) -> Darkness:
     return paper
 
 
-def test_as_few_lines_as_there_may_be_are_found() -> None:
-    """The middle of a line of three pixels is half a pixel before its second edge: within a hundredth."""
-    (family,) = families(lined(0.0), PITCH_MM)
-    assert family.period_px / TO_PX == pytest.approx(10, abs=0.01)
-    assert families(lined(4.0), PITCH_MM) == []
-
-
-@pytest.mark.parametrize("bare_mm", [0.0, 1.0, 4.0])
 @pytest.mark.parametrize("is_upright", [True, False])
-def test_lines_that_do_not_come_to_both_ends_of_the_sheet_are_not_looked_for(
-    monkeypatch: pytest.MonkeyPatch, bare_mm: float, is_upright: bool
-) -> None:
-    """The ends of 62 mm of paper are 3 % of it.
-
-    With paper of 1 mm at one end there is still ink for more than half of these lines there.
+@pytest.mark.parametrize("bare_mm", [0.0, 4.0, 40.0])
+def test_as_few_lines_as_there_may_be_are_found(bare_mm: float, is_upright: bool) -> None:
+    """The middle of a line of three pixels is half a pixel before its second edge: within a hundredth. Where
+    they end is told to a pixel; lines over less than half of the sheet are none.
     """
-    asked = list[bool]()
-    monkeypatch.setattr(ruling, "_family", lambda _, __, way: asked.append(way))
     paper = lined(bare_mm)
-    families(paper if is_upright else np.ascontiguousarray(paper.T), PITCH_MM)
-    assert (is_upright in asked) is (bare_mm < 2.0)
+    found = families(paper if is_upright else np.ascontiguousarray(paper.T), PITCH_MM)
+    if bare_mm > 31:
+        assert found == []
+        return
+    ((family,),) = found
+    assert family.lines == 6
+    assert family.period_px / TO_PX == pytest.approx(10, abs=0.01)
+    assert family.is_whole is (bare_mm == 0)
+    ends = sorted(abs(at) / TO_PX for at in family.run_px)
+    assert ends == pytest.approx([bare_mm, 62.0], abs=1.5 / TO_PX)

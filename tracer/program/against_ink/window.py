@@ -1,4 +1,4 @@
-"""Windows: the part of a sheet about some places, in its own pixels and in mm, and as cells see it.
+"""Windows: the part of a sheet about some places, in its own pixels and in mm, and what cells see of it.
 
 Signals: a drawing and places (n, 2) mm in; rows and columns, or a view, out.
 
@@ -17,7 +17,6 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.plain_places import view_of
-from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.sensing.view import View
 
 
@@ -67,10 +66,14 @@ class SheetWindow(NamedTuple):
         return x_px * self.pitch_mm, y_px * self.pitch_mm
 
 
-def view_about(sheet: Sheet, aperture_mm: float | None, width_mm: float, places: Array) -> View:
-    """What is about some places (n, 2) mm through cells for a line of a width, as far as a rim of the ink
-    there is felt: no more of the sheet is made.
+def view_about(
+    sheet: Sheet, aperture_mm: float | None, width_mm: float, places: Array, reach_mm: float
+) -> View:
+    """What is about some places (n, 2) mm, as far as that, through cells for a line of a width: of a sheet no
+    more than that is made.
     """
-    window = SheetWindow.about(sheet.drawing, places, 2 * ABOUT_WIDTHS * width_mm)
-    edges = window.top, window.left, window.bottom, window.right
-    return view_of(replace(sheet, window=edges), aperture_mm, width_mm)
+    if sheet.window is None:
+        window = SheetWindow.about(sheet.drawing, places, reach_mm)
+        edges = window.top, window.left, window.bottom, window.right
+        sheet = replace(sheet, window=edges)
+    return view_of(sheet, aperture_mm, width_mm)

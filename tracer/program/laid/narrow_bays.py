@@ -34,7 +34,6 @@ from morfax.tracer.program.against_ink.unexplained import (
     ink_beside,
     unexplained,
 )
-from morfax.tracer.program.against_ink.window import view_about
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.cut_corners import with_corners
 from morfax.tracer.program.laid.laid_way import LaidWay
@@ -227,11 +226,9 @@ class _Bays(WayInk):
 
     def _rim_bay(self, seen: BayInk, suspect: Suspect) -> Bay | None:
         """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
-        setup, ink, best = self.setup, seen.ink, None
-        about = np.vstack([seen.own, suspect.beyond_mm])
-        view = view_about(setup.sheet, setup.settings.aperture_mm, self.line.width_mm, about)
-        for rim_bay in rim_bays(setup.sheet.drawing, view, seen.own, suspect.beyond_mm):
-            if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rim_bay.way)):
+        setup, ink, width_mm, best = self.setup, seen.ink, self.line.width_mm, None
+        for rim_bay in rim_bays(setup, width_mm, seen.own, suspect.beyond_mm):
+            if is_a_pen(setup.sheet, width_mm + broad_mm(rim_bay.way)):
                 continue
             drawn = ink.drawn_along(rim_bay.way, rim_bay.half_mm)
             rule = rim_bay._replace(misfit=ink.misfit(drawn))

@@ -33,7 +33,6 @@ from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.program.against_ink.boxed_lines import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.against_ink.own_ink import STATION_WIDTHS
-from morfax.tracer.program.against_ink.window import view_about
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
@@ -227,15 +226,14 @@ def _rest_mm(
 
 def _rims(setup: Setup, width_mm: float, ways: _Ways, left: Left) -> BothWays | None:
     """The ways within the rims that leave least, from either way's beginning to either's end."""
-    drawing, about = setup.sheet.drawing, np.vstack(ways)
-    view = view_about(setup.sheet, setup.settings.aperture_mm, width_mm, about)
+    about = np.vstack(ways)
     best: BothWays | None = None
     for is_exchanged in (False, True):
         onto = ways[::-1] if is_exchanged else ways
         found = list[list[LaidWay]]()
         for into, out_of in zip(ways, onto, strict=True):
             own = np.vstack([into[:2], out_of[-2:]])
-            found.append(list(ways_within_rims(drawing, view, own, about)))
+            found.append(list(ways_within_rims(setup, width_mm, own, about)))
         for one, other in product(*found):
             rims = BothWays(one, other, is_exchanged, left(one.way, other.way))
             if best is None or rims.left < best.left:

@@ -38,6 +38,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
+from morfax.tracer.junctions.rings import FARTHEST_WIDTHS
 from morfax.tracer.program.nets.centre_crosses import is_centre_cross
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.behind_spot import ABOUT_MM
@@ -58,7 +59,7 @@ CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round
 FEW = 1 / 3
 WORKS_MM = 10.0  # a head whose cell is out of order is lost before it has run so far
 # from a patch to the edge of what is looked at for its junctions: as far as cells look, and as much again
-ABOUT_WIDTHS = 20.0
+ABOUT_WIDTHS = 2 * FARTHEST_WIDTHS
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
 
 
