@@ -13,7 +13,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +54,15 @@ class Trail:
         # lowest x, y and highest x, y of each full box
         self._boxes = np.empty((ROOM // BOXED, 4))
         self._boxed = 0
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Trail:
+        """A trail that goes on by itself. The places so far, which are never changed, are shared: it has no
+        room for more, and makes its own.
+        """
+        copied = Trail(self._places[0], self.step_mm)
+        copied._places, copied._count = self._places[: self._count], self._count
+        copied._boxes, copied._boxed = self._boxes.copy(), self._boxed
+        return copied
 
     def add(self, positions: Array) -> None:
         """Remember positions (n, 2) in the order of travel."""

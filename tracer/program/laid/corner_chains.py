@@ -93,7 +93,7 @@ class _Chains(WayInk):
         """The line as it is, or along the corners that explain its ink better."""
         if not is_whole(self.line) or self.line.as_told:
             return self.line
-        return self.along([bay for chain in self._chains() for bay in self._bays(chain)])
+        return self.along([b for chain in self._chains() for b in self._bays(chain)]).line
 
     def _chains(self) -> Iterator[list[_Corner]]:
         """The chains of corners of which each is near to the next, in the order of the way."""
