@@ -34,7 +34,7 @@ from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
-from morfax.tracer.program.against_ink.moved import moved
+from morfax.tracer.program.against_ink.moved import MOVED, moved
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.corner_chains import with_chains
@@ -50,7 +50,6 @@ from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 
 OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
 BENT = 0.05  # widths: a leg that bends by more tells no corner
-MOVED = 0.01  # widths: a way is looked at again where it was laid by so much
 HALF = 0.8  # widths from the middle of a corner to its legs: the head rounds none by more
 LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 
