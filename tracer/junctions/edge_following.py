@@ -33,7 +33,7 @@ from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, TURNS_BACK, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
-from morfax.tracer.sensing.scout import CLEAN, onward
+from morfax.tracer.sensing.scout import CLEAN, LEAP, onward
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
@@ -52,7 +52,7 @@ CENTRED = 0.8  # of the width: by so much a line that passes may be off the leg'
 BEFORE, BEYOND = 0.5, 1.0  # widths that a vertex may move towards the legs, and away from them
 
 NEAR_EDGE = 0.2  # of the width from the middle: the edge that is followed is further out
-OFF, OFF_PX = 1 / 6, 0.2  # of the width, and pixels: farther off its place the edge is lost
+OFF_PX = 0.2  # pixels, and `LEAP` of the width: farther off its place the edge is lost
 
 
 class Walk(NamedTuple):
@@ -270,7 +270,7 @@ def _along_edge(cells, pose, side, width_mm, walk):  # type: ignore[no-untyped-d
         nx = -side * math.sin(heading)
         ny = side * math.cos(heading)
         aside = end_of_ink(cells, Ray(x, y, nx, ny, 0.0), near, across) - 0.5 * width_mm
-        if not abs(aside) < OFF * width_mm + OFF_PX * cells.pitch_mm:
+        if not abs(aside) < LEAP * width_mm + OFF_PX * cells.pitch_mm:
             return out[:n].copy()
         x += aside * nx
         y += aside * ny

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from unittest import mock
 
 import numpy as np
 import pytest
 
 from morfax.motion.neighbours import Neighbours
 from morfax.tracer.effort import EVERY_MM
-from morfax.tracer.ink import lifted
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink import crossing, lifted
+from morfax.tracer.ink.crossing import Crossing
+from morfax.tracer.ink.net import Inner
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import leg_of
 from morfax.tracer.sensing.view import View
@@ -48,6 +53,23 @@ def test_a_leg_of_a_millimetre_tells_where_its_line_ends_seven_further_on() -> N
     (end_mm,) = lifted.ends_in_ink_mm([lifted.Loose(view, leg, seen[:, :2])], ACROSS)
     assert end_mm is not None
     assert math.dist(leg.at(end_mm), MEETS) < 100 * UM  # 0.7 degrees
+
+
+@pytest.mark.parametrize(("apart_mm", "are_two"), [(0.5, False), (0.7, True)])
+def test_tips_a_width_apart_are_one_lines(
+    apart_mm: float, are_two: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def ends_in_ink_mm(*_: object, are_tips: bool) -> list[float]:
+        assert are_tips
+        return [1.0, 2.0]
+
+    line = loose_line()
+    other = replace(line.leg, end_mm=line.leg.at(-1.0) + np.array([apart_mm, 0.0]))
+    monkeypatch.setattr(crossing, "ends_in_ink_mm", ends_in_ink_mm)
+    monkeypatch.setattr(crossing, "are_side_by_side", lambda *_: True)
+    legs = [line.leg, other]
+    there = Crossing(legs, [line.view, line.view], Settings(), inked=[mock.Mock(spec=Inner)])
+    assert there._tips == ({0: 1.0, 1: 2.0} if are_two else {})
 
 
 def test_the_nearest_of_the_others_is_that_of_all_their_places() -> None:

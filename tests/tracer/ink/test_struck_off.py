@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm
-from morfax.tracer.ink.struck_off import struck_off
+from morfax.tracer.ink.struck_off import _Struck, struck_off
 from morfax.tracer.ink.track import InkStroke
 from tests.tracer.inked import UM, WIDTH_MM, Points, inked, polyline
 
@@ -37,6 +38,17 @@ def test_the_end_along_which_another_runs_is_cut_off(aside_mm: float, turned: bo
     # from there on its pen is within the other's ink, and it keeps what leads there
     assert end == pytest.approx([25, 10 + aside_mm], abs=WIDTH_MM)
     assert cut.length_mm == pytest.approx(other.length_mm - 6, abs=WIDTH_MM)
+
+
+def test_an_end_of_less_than_half_a_width_is_not_cut_off(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def votes(_: _Struck, some: Array) -> Array:
+        return np.where(some < 2, 1, -1)  # 0.4 widths
+
+    monkeypatch.setattr(_Struck, "_votes", votes)
+    stroke = stroke_along(LINE)
+    assert struck_off(inked(LINE), [stroke], NOWHERE) == [stroke]
 
 
 @pytest.mark.parametrize("share", [0.25, 0.45])
