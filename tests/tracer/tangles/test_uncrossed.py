@@ -1,7 +1,7 @@
 """Spikes narrower than two lines: the outline goes down one side and up the other, and does not cross its own
 mouth.
 
-Broken on purpose, with every redrawing left as it was found, all of the first test fail: the path comes down
+Broken on purpose, with every redrawing left as it was found, all of them fail: the path comes down
 by the far side and is 0.12 to 0.2 mm off at the mouth, though the ink is explained. Bound: 30 um, as the
 issue allows where lines come within a width of each other.
 """
