@@ -30,6 +30,7 @@ from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault
 from morfax.panel import actions, own_files, state, uploads
 from morfax.panel.head_path import FRAME_S
+from morfax.panel.page_words import in_page_words
 
 if TYPE_CHECKING:
     from starlette.requests import Request
@@ -222,4 +223,4 @@ class _Pages:
 
 def _refused(text: str, status: int, revision: int | None = None) -> Response:
     """A refusal in words."""
-    return JSONResponse({"refused": text, "revision": revision}, status)
+    return JSONResponse({"refused": in_page_words(text), "revision": revision}, status)

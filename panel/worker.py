@@ -28,6 +28,7 @@ from morfax.panel import pipe
 from morfax.panel.head_path import FRAME_S
 from morfax.panel.kept_knots import KeptKnots
 from morfax.panel.lookout import Lookout
+from morfax.panel.page_words import in_page_words
 
 if TYPE_CHECKING:
     from morfax.jobs.play import PlayJob
@@ -50,7 +51,9 @@ class Teller:
         self._out, self._lock, self._lookout = out, threading.Lock(), lookout
 
     def say(self, event: str, /, **more: Any) -> None:
-        """Send a message; a server that is gone ends the worker."""
+        """Send a message, in the page's words; a server that is gone ends the worker."""
+        if "text" in more:
+            more["text"] = in_page_words(more["text"])
         with self._lock:
             try:
                 self._out.write(pipe.packed({"say": event, **more}))

@@ -176,12 +176,13 @@ class _OfVerbs:
     def _field(self, group: str, name: str) -> OptionField:
         """An option as a field."""
         from morfax.panel.commands import OWN_FILES, OptionField
+        from morfax.panel.page_words import in_page_words
         from morfax.recorder.gcode.machine import names
 
         param = self._options[name]
         context = click.Context(click.Command("trace"), max_content_width=1000)
         record = param.get_help_record(context)
-        told = " ".join((record[1] if record else "").split())
+        told = in_page_words(" ".join((record[1] if record else "").split()))
         if param.is_flag:
             return OptionField(name, group, "switch", told)
         if name in OWN_FILES:

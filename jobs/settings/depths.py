@@ -118,7 +118,8 @@ def refuse_without_z(card: Card, medium: str) -> None:
 
 def of_tabs(trace: Trace) -> Iterator[str]:
     """A remark on lines inside others that have fewer tabs than asked for, or none."""
-    from morfax.tracer.program.passes.tabs import is_milled_away
+    from morfax.motion.plane import CORNER_RAD
+    from morfax.tracer.program.passes.tabs import FELT_MM, is_milled_away
 
     asked = trace.work.tabs
     if asked is None:
@@ -133,7 +134,8 @@ def of_tabs(trace: Trace) -> Iterator[str]:
         listed = ", ".join(f"line {number} has {count or 'none'}" for number, count in fewer)
         yield (
             f"there is no room for {asked.count} tabs inside the part: {listed}; what is cut out there may"
-            " come loose: hold it down in another way (tabs stand where a line bends by 3 mm radius or more)"
+            " come loose: hold it down in another way (tabs stand where a line bends by a radius of"
+            f" {2 * FELT_MM / CORNER_RAD:.0f} mm or more)"
         )
     if not any(trace.tabs):
         yield (

@@ -25,7 +25,7 @@ from collections.abc import Sequence
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
 from morfax.motion.motion import IN_WORK_BELOW_MM
-from morfax.player.tape.frame_report import FrameReport
+from morfax.player.tape.calm_frames import Heard
 from morfax.player.tape.phases import Phases
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
@@ -54,11 +54,11 @@ class BareTape:
         self.notes: tuple[str, ...] = (NOT_VOUCHED,) if is_placed else (NOT_VOUCHED, NOT_PLACED)
         self._own = OwnMotion(len(fmt.axes))
 
-    def listen(self, frames: Stored) -> list[FrameReport]:
+    def listen(self, frames: Stored) -> list[Heard]:
         """Nothing is to be heard in the next frames of the tape."""
         return []
 
-    def hear(self, reports: list[FrameReport]) -> None:
+    def hear(self, heard: list[Heard]) -> None:
         """Take what there is not."""
 
     def begin(self, rows: Phases) -> Phases:

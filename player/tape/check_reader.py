@@ -26,6 +26,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import TapeFault
+from morfax.player.tape.calm_frames import Heard, unfolded
 from morfax.player.tape.erasures import Erasures
 from morfax.player.tape.frame_report import FrameReport, frame_report
 from morfax.player.tape.quiet_frame import MOMENTS, QuietFrames
@@ -122,7 +123,7 @@ class CheckReader:
         self._number, self._theta = 0, 0.0  # the next frame, and where it begins
         self._erasures = Erasures(fmt.tracks)
         turns = (self._turns, self._zero_turns)
-        self._quiet = QuietFrames(fmt.tracks, reference_hz, self._erasures, turns)
+        self._quiet = QuietFrames(fmt, reference_hz, first_row, self._erasures, turns)
         self._clock_lost = False  # whether the reference said nothing in the last frame
         self._sound_from = -1.0  # the last point before which the reference is counted right
         if self.is_checked:
@@ -152,10 +153,10 @@ class CheckReader:
         """Take the next frames of the tape."""
         self._points.feed(frames)
 
-    def heard(self, frames: Stored) -> list[FrameReport]:
+    def listen(self, frames: Stored) -> list[Heard]:
         """The frames of the check signal that are whole with the next frames of the tape."""
         self.feed(frames)
-        return self.reports()
+        return self.heard()
 
     def finish(self) -> None:
         """Take the end of the tape: a frame that ends with it is whole."""
@@ -164,16 +165,41 @@ class CheckReader:
         self._reach = -CYCLES_PER_SYMBOL / 2
 
     def reports(self) -> list[FrameReport]:
-        """The frames that are whole by now."""
-        told = []
-        theta = self._points.theta
-        while len(theta) and self._theta + CYCLES_PER_FRAME + self._reach <= theta[-1]:
-            told.append(self._report())
-            self._number, self._theta = self._number + 1, self._theta + CYCLES_PER_FRAME
-            theta = self._points.theta  # may have been put right
+        """The frames that are whole by now, one by one."""
+        return unfolded(self.heard())
+
+    def heard(self) -> list[Heard]:
+        """The frames that are whole by now; those that are calm all at once."""
+        told: list[Heard] = []
+        while self._whole():
+            self._put_right()
+            # a loss of the reference behind the next frame is put right before the one behind it
+            is_lost = self._points.lost[1] > self._sound_from
+            most = 1 if is_lost else max(self._whole(), 1)
+            calm, is_quiet = self._quiet.read(self._points, self._theta, self._number, most)
+            if calm.frames:
+                told.append(calm)
+                self._clock_lost = False
+                self._pass(calm.frames)
+            if calm.frames < most:
+                told.append(self._quiet_report() if is_quiet else self._report())
+                self._pass(1)
         if told:
             self._points.forget(self._theta - REACH_CYCLES)
         return told
+
+    def _whole(self) -> int:
+        """How many frames are whole by now."""
+        theta = self._points.theta
+        left = theta[-1] - self._reach - self._theta if len(theta) else 0.0
+        return max(int(left // CYCLES_PER_FRAME), 0)
+
+    def _pass(self, frames: int) -> None:
+        """Go on by so many frames."""
+        self._number, self._theta = (
+            self._number + frames,
+            self._theta + frames * CYCLES_PER_FRAME,
+        )
 
     def _search(self, track: int, *, backwards: bool = False) -> list[Found]:
         """All frames of a track among the points, or among the points from the last to the first."""
@@ -230,21 +256,18 @@ class CheckReader:
             begins += (first.theta + late - late_by_phase).tolist()
         self._theta = float(np.median(begins))
 
+    def _quiet_report(self) -> FrameReport:
+        """The report of the frame that was read last, which is quiet."""
+        self._clock_lost = False
+        return self._quiet.report(self._number)
+
     def _report(self) -> FrameReport:
-        """Read the next frame of all tracks."""
-        self._put_right()
-        held = (self._turns, self._zero_turns)
-        quiet = self._quiet.read(self._points, self._theta, self._number)
-        if quiet is not None:
-            self._clock_lost = False
-            rows = self._rows_of(quiet.frames)
-            return frame_report(
-                self._number, rows, quiet.said, quiet.figures, is_calm=quiet.is_calm
-            )
+        """The report of the frame whose gates were read last."""
         gates = self._quiet.gates
         said = self._erasures.read(gates, self._number)
         is_read = np.array([frame is not None for frame in said])
         figures = np.empty((len(said), FIGURES))
+        held = (self._turns, self._zero_turns)
         count_on(gates, is_read, held, 1 / self._reference_hz, figures)
         if self._clock_lost and len(self._erasures.weak[0]):
             # the clock was put right within this frame only: all seemed late by as much

@@ -65,13 +65,18 @@ class Delay:
         return self._rows[-1] if self._rows else 0.0
 
     def add(
-        self, rows: list[float], delays_s: list[float], error_s: float, *, is_calm: bool = False
+        self,
+        rows: list[float],
+        delays_s: list[float],
+        errors_s: Sequence[float],
+        *,
+        is_calm: bool = False,
     ) -> None:
-        """Take the next rows at which the delay is told, with the standard error of each.
+        """Take the next rows at which the delay is told, and the standard errors of it, frame by frame.
 
         `is_calm`: none is above the dead zone.
         """
-        self._errors_s.append(error_s)
+        self._errors_s.extend(errors_s)
         self._rows += rows
         self._told += delays_s
         if not (self.moves or is_calm):

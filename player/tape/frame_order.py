@@ -21,6 +21,7 @@ import math
 
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
+from morfax.player.tape.calm_frames import CalmFrames
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.symbols import PARTS
 from morfax.recorder.tape.check_frame import NUMBERS, CheckFrame
@@ -54,15 +55,19 @@ class FrameOrder:
         """Whether the last frame of every track said that the tape ends."""
         return all(self._is_last)
 
+    def takes(self, frames: CalmFrames) -> bool:
+        """Whether calm frames come behind one that was calm; then they are taken, and need no look."""
+        if not self._is_calm or self._number not in (None, frames.number):
+            return False
+        self._number = frames.number + frames.frames
+        self._missing, self._told = [0] * len(self._told), frames.figures[-1, :, 1:-2].tolist()
+        self._is_last = (frames.told[-1] >> 60 & 1).astype(bool).tolist()
+        return True
+
     def fault(self, report: FrameReport) -> Fault | None:
         """Take the next frame; the fault of the first track in which it is not as it should be."""
         expected = report.number if self._number is None else self._number
-        self._number = report.number + 1
-        was_calm, self._is_calm = self._is_calm, report.is_calm
-        if was_calm and report.is_calm and expected == report.number:
-            self._missing, self._told = [0] * len(report.said), report.delay_s
-            self._is_last = [said is not None and said.last for said in report.said]
-            return None
+        self._number, self._is_calm = report.number + 1, report.is_calm
         found: Fault | None = None
         for track, said in enumerate(report.said):
             if said is None:

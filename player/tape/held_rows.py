@@ -90,6 +90,14 @@ class HeldRows:
             for before, after in zip(near[0], near[-1], strict=True)
         ]
 
+    def around(self, row: float) -> tuple[int, Array]:
+        """The block in which a row of the tape lies, or the first one: its first row, and its places."""
+        found, dropped = self._blocks[0], self._dropped
+        for block in self._blocks[1:]:
+            if block.first_row <= row:
+                found, dropped = block, 0
+        return found.first_row + dropped, found.cycles[dropped:]
+
     def become(self, rows: Phases) -> None:
         """Hold these rows in place of all."""
         self._blocks, self._dropped, self._count = [rows], 0, len(rows)

@@ -62,9 +62,14 @@ class LostWays:
         """Whether an axis has a gap that no count has settled yet."""
         return bool(self._open[axis])
 
+    @property
+    def are_open(self) -> bool:
+        """Whether any axis has such a gap."""
+        return any(self._open)
+
     def uncovered(self, axes: Iterable[int], row: float) -> list[int]:
         """Those of some axes for which a row lies in no gap."""
-        if not any(self._open):  # as nearly always, and it is asked twice a frame
+        if not self.are_open:  # as nearly always, and it is asked twice a frame
             return list(axes)
         return [
             axis

@@ -29,10 +29,10 @@ from morfax.motion.faults import TapeFault
 from morfax.player.tape.ahead import ReadAhead
 from morfax.player.tape.bare import BareTape
 from morfax.player.tape.bridges import Bound, Bridge
+from morfax.player.tape.calm_frames import Heard
 from morfax.player.tape.check_reader import CheckReader, read_ahead, read_check
 from morfax.player.tape.discriminator import Discriminator, discriminate
 from morfax.player.tape.dropouts import Gaps, under_way
-from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.lost_ways import Laid
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.riding import Riding
@@ -44,7 +44,7 @@ from morfax.player.tape.watch import Watch, demand_apart
 from morfax.recorder.sound.source import BLOCK_FRAMES
 from morfax.recorder.tape.tape import Stored, Tape, TapeFormat, full_scale
 
-Listened = tuple[Stored, list[FrameReport]]
+Listened = tuple[Stored, list[Heard]]
 
 
 class ReadRows(NamedTuple):

@@ -89,120 +89,127 @@ def gates_of(tracks: int) -> Gates:
     )
 
 
-@njit(cache=True, nogil=True, inline="always")
-def _power(point):  # type: ignore[no-untyped-def]
-    """Square of the size of a complex number; numba's own size takes care not to overflow, and its time."""
-    return point.real * point.real + point.imag * point.imag
-
-
-@njit(cache=True, nogil=True)
+# The order of the sums is free (reassoc, contract), so that they run in vectors; nan keeps its meaning.
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
 def read_gates(points, theta, begins, word, frame):  # type: ignore[no-untyped-def]
     """Read one frame of all tracks, whose symbols are 24 cycles of theta apart; see `Gates`."""
     bits, strengths, sizes, shares, late, turns, swings, errors = frame
-    gates = _gates(points, theta, begins, bits.shape[1])
-    part = bits.shape[1] // turns.shape[1]
+    symbols = bits.shape[1]
+    part = symbols // turns.shape[1]
+    seen = np.empty((2, len(bits), GATES, symbols))  # along and across
+    _gates(points, theta, begins, seen[0], seen[1])
+    signs = np.empty(symbols)
     for track in range(len(bits)):
         # 1. the sync word tells the phase, and so the sign of each symbol
-        seen = gates[track]
-        alike = 0j
+        re, im = seen[0, track], seen[1, track]
+        alike_re = alike_im = 0.0
         for symbol in range(len(word)):
-            alike += seen[1, symbol] * word[symbol]
-        _signs(seen, alike, bits[track], strengths[track], sizes[track])
-        _share(seen, alike, bits[track], shares[track])
+            alike_re += re[1, symbol] * word[symbol]
+            alike_im += im[1, symbol] * word[symbol]
+        along = re * alike_re + im * alike_im
+        _signs((re, im), along[1], signs, strengths[track], sizes[track])
+        for symbol in range(symbols):
+            bits[track, symbol] = signs[symbol]
+        _share(along, signs, shares[track])
         # 2. with the signs known: how late, by a parabola through three gates; and the phase, part by part
-        late[track] = _lateness(seen, bits[track])
+        late[track] = _lateness(re, im, signs)
         for number in range(turns.shape[1]):
-            whole = 0j
-            for symbol in range(number * part, (number + 1) * part):
-                whole += seen[1, symbol] * bits[track, symbol]
-            turns[track, number] = math.atan2(whole.imag, whole.real) / (2 * math.pi)
+            whole_re, whole_im = _sum(re[1], im[1], signs, number * part, (number + 1) * part)
+            turns[track, number] = math.atan2(whole_im, whole_re) / (2 * math.pi)
         # 3. noise moves a symbol along and across alike; what is across beyond that is a swing of the phase
-        across, noise = _across(seen[1], bits[track], turns[track], part)
+        across, noise = _across(re[1], im[1], signs, turns[track], part)
         swings[track] = math.sqrt(max(across - noise, 0.0)) / (2 * math.pi)
         errors[track] = math.sqrt(across / part) / (2 * math.pi)
 
 
 @njit(cache=True, nogil=True)
-def _gates(points, theta, begins, symbols):  # type: ignore[no-untyped-def]
+def _gates(points, theta, begins, re, im):  # type: ignore[no-untyped-def]
     """Early, on and late of each symbol of all tracks, between the two points beside it."""
-    tracks = points.shape[1]
-    gates = np.empty((tracks, GATES, symbols), np.complex128)
     for gate in range(GATES):
         at = 0
-        for symbol in range(symbols):
+        for symbol in range(re.shape[2]):
             place = begins + symbol * CYCLES_PER_SYMBOL + (gate - 1) * QUARTER
             while at < len(theta) - 2 and theta[at + 1] < place:
                 at += 1
             share = (place - theta[at]) / (theta[at + 1] - theta[at])
             share = min(max(share, 0.0), 1.0)
-            for track in range(tracks):
+            for track in range(len(re)):
                 before, after = points[at, track], points[at + 1, track]
-                gates[track, gate, symbol] = before + share * (after - before)
-    return gates
+                re[track, gate, symbol] = before.real + share * (after.real - before.real)
+                im[track, gate, symbol] = before.imag + share * (after.imag - before.imag)
 
 
 @njit(cache=True, nogil=True)
-def _signs(gates, alike, bits, strengths, sizes):  # type: ignore[no-untyped-def]
-    """The sign of each symbol of a track along `alike`, how strong it is there, and its largest size."""
-    for symbol in range(len(bits)):
-        seen = gates[1, symbol]
-        along = seen.real * alike.real + seen.imag * alike.imag
-        bits[symbol] = 1 if along >= 0 else -1
-        strengths[symbol] = abs(along)
-        ahead, behind = _power(gates[0, symbol]), _power(gates[2, symbol])
-        sizes[symbol] = math.sqrt(max(ahead, _power(seen), behind))
+def _signs(seen, along, signs, strengths, sizes):  # type: ignore[no-untyped-def]
+    """The sign of each symbol of a track along its phase, how strong it is there, and its largest size."""
+    re, im = seen
+    for symbol in range(len(signs)):
+        signs[symbol] = 1.0 if along[symbol] >= 0 else -1.0
+        strengths[symbol] = abs(along[symbol])
+        largest = 0.0
+        for gate in range(GATES):
+            largest = max(largest, re[gate, symbol] ** 2 + im[gate, symbol] ** 2)
+        sizes[symbol] = math.sqrt(largest)
 
 
-@njit(cache=True, nogil=True)
-def _lateness(gates, bits):  # type: ignore[no-untyped-def]
+@njit(cache=True, nogil=True, inline="always")
+def _sum(re, im, signs, first, last):  # type: ignore[no-untyped-def]
+    """The sum of some symbols with their signs known."""
+    whole_re = whole_im = 0.0
+    for symbol in range(first, last):
+        whole_re += re[symbol] * signs[symbol]
+        whole_im += im[symbol] * signs[symbol]
+    return whole_re, whole_im
+
+
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+def _lateness(re, im, signs):  # type: ignore[no-untyped-def]
     """How late a track is, by a parabola through the strengths of its three gates."""
     sums = np.zeros(GATES)
     for gate in range(GATES):
-        whole = 0j
-        for symbol in range(len(bits)):
-            whole += gates[gate, symbol] * bits[symbol]
-        sums[gate] = abs(whole)
+        whole_re, whole_im = _sum(re[gate], im[gate], signs, 0, len(signs))
+        sums[gate] = math.sqrt(whole_re * whole_re + whole_im * whole_im)
     bend = 2 * sums[1] - sums[0] - sums[2]
     return QUARTER * (sums[2] - sums[0]) / (2 * bend) if bend > 0 else 0.0
 
 
 @njit(cache=True, nogil=True)
-def _share(gates, alike, bits, shares):  # type: ignore[no-untyped-def]
-    """How strong each gate is along `alike`, for what the symbols on both sides of it let expect."""
-    symbols = len(bits)
+def _share(along, signs, shares):  # type: ignore[no-untyped-def]
+    """How strong each gate is along its phase, for what the symbols on both sides of it let expect."""
+    symbols = len(signs)
     for symbol in range(symbols):
-        sign = float(bits[symbol])
-        for gate in range(GATES):
-            beside = symbol + gate - 1
-            same = beside == symbol
-            if 0 <= beside < symbols and not same:
-                same = bits[beside] == bits[symbol]
-            seen = gates[gate, symbol]
-            along = (seen.real * alike.real + seen.imag * alike.imag) * sign
-            shares[gate, symbol] = along if same else along / PASSING
+        shares[0, symbol] = along[0, symbol] * signs[symbol] / PASSING
+        shares[1, symbol] = along[1, symbol] * signs[symbol]
+        shares[2, symbol] = along[2, symbol] * signs[symbol] / PASSING
+    # between two that are the same it does not pass over
+    for symbol in range(symbols - 1):
+        same = PASSING if signs[symbol] == signs[symbol + 1] else 1.0
+        shares[2, symbol] *= same
+        shares[0, symbol + 1] *= same
 
 
-@njit(cache=True, nogil=True)
-def _across(seen, bits, turns, part):  # type: ignore[no-untyped-def]
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+def _across(re, im, signs, turns, part):  # type: ignore[no-untyped-def]
     """Power across and noise along of the symbols about the phases of their parts; no weak symbols."""
-    usual = 0.0
-    for symbol in range(len(seen)):
-        usual += math.sqrt(_power(seen[symbol])) / len(seen)
+    powers, usual = np.empty(len(re)), 0.0
+    for symbol in range(len(re)):
+        powers[symbol] = re[symbol] * re[symbol] + im[symbol] * im[symbol]
+        usual += math.sqrt(powers[symbol])
+    usual /= len(re)
     if not usual > 0:
         return 0.0, 0.0
-    count, along, alongs, acrosses = 0, 0.0, 0.0, 0.0
-    turned = 0j
-    for symbol in range(part * len(turns)):
-        if symbol % part == 0:
-            turn = -2 * math.pi * turns[symbol // part]
-            turned = complex(math.cos(turn), math.sin(turn)) / usual
-        if _power(seen[symbol]) < 0.25 * usual**2:
-            continue
-        straight = seen[symbol] * bits[symbol] * turned
-        count += 1
-        along += straight.real
-        alongs += straight.real**2
-        acrosses += straight.imag**2
+    count = along = alongs = acrosses = 0.0
+    for number in range(len(turns)):
+        turn = 2 * math.pi * turns[number]
+        cosine, sine = math.cos(turn) / usual, math.sin(turn) / usual
+        for symbol in range(number * part, (number + 1) * part):
+            strong = 1.0 if powers[symbol] >= 0.25 * usual * usual else 0.0
+            straight = (re[symbol] * cosine + im[symbol] * sine) * signs[symbol] * strong
+            aside = (im[symbol] * cosine - re[symbol] * sine) * strong
+            count += strong
+            along += straight
+            alongs += straight * straight
+            acrosses += aside * aside
     if not count:
         return 0.0, 0.0
     return acrosses / count, alongs / count - (along / count) ** 2

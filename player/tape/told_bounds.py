@@ -16,9 +16,11 @@ Source: our own. Questions: an axis that asks for more than a frame can tell is 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.player.tape.bridges import Bound
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.symbols import PARTS
@@ -44,11 +46,15 @@ class ToldBounds:
         said = report.said[track]
         if said is None or not math.isfinite(said.speed + said.acceleration):
             return
-        rows = (report.part_rows[-1] - report.part_rows[0]) * PARTS / (PARTS - 1)
-        fast = self._frame_rows / rows
-        acceleration = said.acceleration * fast**2 + FLUTTER_HZ * said.speed
-        bound = Bound(acceleration / self._rate_hz**2, said.speed * fast / self._rate_hz)
-        self._told = [*self._told[1 - KEPT :], (report.row, report.row + 2 * rows, bound)]
+        rows = report.row, report.part_rows[0], report.part_rows[-1]
+        most = said.speed, said.acceleration
+        self.take([told_span.py_func(rows, most, (self._rate_hz, self._frame_rows))])
+
+    def take(self, spans: Sequence[Sequence[float]]) -> None:
+        """Take what frames tell, one behind the other, as `told_span` has it."""
+        for starts, ends, acceleration, speed in spans[-KEPT:]:
+            self._told.append((starts, ends, Bound(acceleration, speed)))
+        del self._told[:-KEPT]
 
     def around(self, first: int, last: int) -> Bound | None:
         """The bound that the frames before, between and behind two rows tell, even if they do not reach."""
@@ -89,3 +95,17 @@ class ToldBounds:
             if known >= last:
                 return Bound(acceleration, speed)
         return None
+
+
+@njit(cache=True, nogil=True)
+def told_span(rows, most, usual):  # type: ignore[no-untyped-def]
+    """The first and last row of which a frame tells, and the most acceleration and speed there, of rows.
+
+    `rows`: of its start, and of the middle of its first part and its last; `most`: cycles/s and cycles/s²;
+    `usual`: Hz of the rows, and the rows of a frame where the tape runs at its own speed.
+    """
+    (row, first, last), (speed, acceleration), (rate_hz, frame_rows) = rows, most, usual
+    rows = (last - first) * PARTS / (PARTS - 1)
+    fast = frame_rows / rows
+    most = acceleration * fast**2 + FLUTTER_HZ * speed
+    return row, row + 2 * rows, most / rate_hz**2, speed * fast / rate_hz

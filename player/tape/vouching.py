@@ -21,19 +21,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from morfax.motion.arrays import Array, between
+from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
 from morfax.player.tape.bridges import Gap
+from morfax.player.tape.calm_frames import Heard
 from morfax.player.tape.check_reader import CheckReader
 from morfax.player.tape.counts import Counts, Off
-from morfax.player.tape.delays import Delay, corrected
+from morfax.player.tape.delays import corrected
 from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.held_rows import HeldRows
 from morfax.player.tape.lost_ways import Laid, LostWays, laid
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.tail import tail_of
+from morfax.player.tape.told_axes import ToldAxes
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.player.tape.warrant import Certain, Given, PlaceMm, StandsMm
 from morfax.recorder.tape.check_frame import SYMBOLS
@@ -55,10 +57,9 @@ class Vouching:
     def __init__(self, fmt: TapeFormat, check: CheckReader, *, mends: bool = False) -> None:
         self._format, self._check, self._mends = fmt, check, mends
         self._rate_hz, frame_s = fmt.motion_rate_hz, CYCLES_PER_FRAME / fmt.reference_hz
-        self._counts = Counts(len(fmt.axes), is_timed=check.is_timed)
+        self._counts = Counts(len(fmt.axes), fmt.reference_hz, is_timed=check.is_timed)
         self._place_mm: PlaceMm = lambda axis, cycles: math.nan
-        self._delays = [Delay(fmt.reference_hz, fmt.motion_rate_hz) for _ in fmt.axes]
-        self._bounds = [ToldBounds(fmt.motion_rate_hz, frame_s) for _ in fmt.axes]
+        self._told = ToldAxes(fmt)
         self._ways = LostWays(len(fmt.axes), frame_s / SYMBOLS * self._rate_hz)
         # rows of weak symbols that no gap explains yet
         self._weak: list[list[float]] = [[] for _ in fmt.axes]
@@ -69,20 +70,20 @@ class Vouching:
         self._given = 0  # rows that were given out and are still held, to lend their speed
         self._counted = [0.0] * len(fmt.axes)  # the last row at which the count was right
         self._order = FrameOrder(fmt)
-        self.listen = check.heard
-        self._heard = check.reports()  # of the first blocks
+        self.listen = check.listen
+        self._heard = check.heard()  # of the first blocks
         self._fault: Fault | None = None
         self.notes: tuple[str, ...] = ()
 
-    def hear(self, reports: list[FrameReport]) -> None:
+    def hear(self, heard: list[Heard]) -> None:
         """Take these frames; they are looked at when somebody asks what they tell."""
-        self._heard += reports
+        self._heard += heard
 
     def begin(self, rows: Phases) -> Phases:
         """The first rows, put right as far as the first frames tell; raises TapeFault for a wrong track."""
         self._demand_tracks_and_figures()
         self._take_reports()
-        return corrected(rows, self._delays)
+        return corrected(rows, self._told.delays)
 
     def bear(self, zero_cycles: Array | None, place_mm: PlaceMm) -> None:
         """Take the zeros of the axes; None: where their counts begin is told by the first frames."""
@@ -93,7 +94,7 @@ class Vouching:
     def bounds(self) -> Sequence[ToldBounds]:
         """What the track of each axis tells of the program, as far as its frames were read."""
         self._take_reports()
-        return self._bounds
+        return self._told.bounds
 
     def end(self, time_s: float) -> None:
         """The tape ends, and has said so."""
@@ -108,14 +109,21 @@ class Vouching:
     def _take_reports(self) -> None:
         """Take what was heard by now."""
         while self._heard and self._fault is None:
-            self._take(self._heard.pop(0))
+            heard = self._heard.pop(0)
+            if isinstance(heard, FrameReport):
+                self._take(heard)
+            elif self._told.moves or not (self._check.is_timed and self._order.takes(heard)):
+                self._heard[:0] = heard.reports()
+            else:
+                self._counts.take(heard)
+                self._told.take(heard)
 
     def feed(self, certain: Certain, stands_mm: StandsMm, *, last: bool = False) -> Given:
         """Take the next rows and the fault behind them; the rows that are vouched for, and the fault."""
         self._hold(certain)
         if last:
             self._check.finish()
-            self._heard += self._check.reports()
+            self._heard += self._check.heard()
         self._take_reports()
         self._check_counts(stands_mm)
         if last:
@@ -127,7 +135,7 @@ class Vouching:
         fault = self._fault or (certain.fault and certain.fault.fault)
         if fault is not None:
             return out, Uncertain(len(out), fault)
-        keep = max(upto - self._delays[0].span, 0)
+        keep = max(upto - self._told.delays[0].span, 0)
         held.drop(keep)
         self._given = upto - keep
         return out, None
@@ -151,15 +159,15 @@ class Vouching:
             self._fault = self._lost_way(left, None)
         elif not self._order.ended:
             self._fault = faults.no_end(self._vouched / self._rate_hz)
-        for axis, delay in enumerate(self._delays):
+        for axis, delay in enumerate(self._told.delays):
             if self._fault is None and delay.moves:
                 self._fault = self._tail_swings(axis)
 
     def _tail_swings(self, axis: int) -> Fault | None:
         """The fault of an axis whose delay at the end is in doubt, or that moves there more than it told."""
-        held, delay = self._rows, self._delays[axis]
+        held, delay = self._rows, self._told.delays[axis]
         way = delay.corrected(held.axis(axis, 0, len(held)), held.first_row)
-        found = tail_of(way, held.first_row, delay, self._bounds[axis], self._format)
+        found = tail_of(way, held.first_row, delay, self._told.bounds[axis], self._format)
         if found.rest_row is not None:
             self._rests[axis] = found.rest_row
         if not found.off_s:
@@ -171,7 +179,7 @@ class Vouching:
         """The rows up to one that are not yet given out, put right; those around them lend their speed."""
         if upto <= self._given:
             return held.cut(upto, upto)
-        beyond = corrected(held.cut(0, upto + self._delays[0].span), self._delays)
+        beyond = corrected(held.cut(0, upto + self._told.delays[0].span), self._told.delays)
         for axis, row in self._rests.items():
             at = row - beyond.first_row
             beyond.cycles[at:, axis] = beyond.cycles[at, axis]
@@ -180,8 +188,7 @@ class Vouching:
     @property
     def _vouched(self) -> float:
         """The row up to which delays and counts are known."""
-        settled = min(delay.settled_row for delay in self._delays)
-        return min(settled, *self._counted)
+        return min(self._told.settled_row, *self._counted)
 
     def _take(self, report: FrameReport) -> None:
         """Take the report of one frame."""
@@ -189,7 +196,7 @@ class Vouching:
         if self._fault is not None:
             return
         self._counts.begin(report.row, report.middle_row)
-        for axis in range(len(self._delays)):
+        for axis in range(len(self._told.delays)):
             if weak := report.weak_rows[0] + report.weak_rows[axis + 1]:
                 self._weak[axis] += sorted(weak)
             self._note(axis, report)
@@ -199,11 +206,8 @@ class Vouching:
         delays_s, said = report.delay_s[axis + 1], report.said[axis + 1]
         if said is None or not math.isfinite(sum(delays_s)):
             return  # the reference says nothing
-        error_s = report.error_s[axis + 1]
-        self._counts.tell(axis, said, error_s * self._format.reference_hz)
-        self._bounds[axis].add(report, axis + 1)
-        self._delays[axis].add(report.part_rows, delays_s, error_s, is_calm=report.is_calm)
-        off_s = self._delays[axis].off_s()
+        self._counts.tell(axis, said, report.error_s[axis + 1])
+        off_s = self._told.add(axis, report)
         if off_s > LARGEST_OFF_S and self._fault is None:
             time_s = report.row / self._rate_hz
             self._fault = faults.swings(axis + 1, self._format.axes, off_s, time_s)
@@ -212,19 +216,25 @@ class Vouching:
         """Compare the axes' counts with what their tracks say, as far as rows are held."""
         known = self._fault  # of a frame further on: what is before it is still compared
         while self._fault is known:
+            is_plain = not (
+                self._told.moves or self._lost or any(self._weak) or self._ways.are_open
+            )
+            passed = self._counts.pass_right(self._rows) if is_plain else None
+            if passed is not None:
+                self._counted = [passed] * len(self._told.delays)
             due = self._counts.due(self._rows.first_row, len(self._rows))
             if due is None:
                 return
             row = due.row
             open_ = self._ways.uncovered(due.told, row)
-            places = self._places(row)
+            places = self._told.places(self._rows, row)
             off = {axis: self._counts.off(axis, places[axis], due) for axis in open_}
             if due.is_middle:
                 self._check_middle(row, off, stands_mm)
                 continue
             for axis in open_:
                 self._settle(axis, row, off[axis], stands_mm)
-            if self._lost and len(open_) == len(self._delays) and not self._fault:
+            if self._lost and len(open_) == len(self._told.delays) and not self._fault:
                 first = min(self._lost.values(), key=lambda gap: gap.first)
                 self._fault = self._lost_way(first, (row, off))
 
@@ -241,18 +251,6 @@ class Vouching:
         """The fault of an axis that lies off its count."""
         name = self._format.axes[axis]
         return faults.miscounted(name, off, row / self._rate_hz, stands_mm()[axis])
-
-    def _places(self, row: float) -> list[float]:
-        """Where the axes are at a row that is held, cycles, without the delays of their tracks."""
-        held = self._rows
-        places = held.places(row - held.first_row)
-        for axis, delay in enumerate(self._delays):
-            if delay.moves:
-                at = max(int(row) - held.first_row, 0)
-                first, last = max(at - 2 * delay.span, 0), at + 2 * delay.span + 1
-                near = delay.corrected(held.axis(axis, first, last), held.first_row + first)
-                places[axis] = between(near, row - held.first_row - first)
-        return places
 
     def _settle(self, axis: int, row: float, off: Off, stands_mm: StandsMm) -> None:
         """Let a count vouch for the way until there; or note which gap lost it, or lay that gap anew."""
@@ -283,7 +281,7 @@ class Vouching:
     def _lay(self, axis: int, gap: Gap, more: int) -> None:
         """Lay the way over a gap anew, so that so many cycles more lie behind it."""
         self._rows.become(laid(self._rows.cut(0, len(self._rows)), gap, more))
-        near = self._bounds[axis].around(gap.first, gap.last)
+        near = self._told.bounds[axis].around(gap.first, gap.last)
         self.mended.append(Laid(gap.ending(more), more, near or gap.bound))
 
     def _lost_way(self, gap: Gap, behind: tuple[float, dict[int, Off]] | None) -> Fault:
@@ -291,7 +289,7 @@ class Vouching:
         known = None
         if behind is not None:
             row = math.ceil(behind[0])
-            places = self._places(row)
+            places = self._told.places(self._rows, row)
             off = [(axis, round(off.cycles)) for axis, off in sorted(behind[1].items())]
             places_mm = tuple(self._place_mm(axis, places[axis] - whole) for axis, whole in off)
             known = faults.Behind(row / self._rate_hz, places_mm, behind[1][gap.axis].cycles)

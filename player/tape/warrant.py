@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol
 
 from morfax.motion.arrays import Array
 from morfax.player.tape.bridges import Gap
-from morfax.player.tape.frame_report import FrameReport
+from morfax.player.tape.calm_frames import Heard
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.tape import Stored
@@ -40,11 +40,11 @@ class Warrant(Protocol):
     is_checked: bool
     notes: tuple[str, ...]  # on the tape, once it has begun
 
-    def listen(self, frames: Stored) -> list[FrameReport]:
+    def listen(self, frames: Stored) -> list[Heard]:
         """What the check signal says by the next frames of the tape; may run in a thread of its own."""
         ...
 
-    def hear(self, reports: list[FrameReport]) -> None:
+    def hear(self, heard: list[Heard]) -> None:
         """Take what it says, as far as rows were read."""
 
     def begin(self, rows: Phases) -> Phases:

@@ -199,10 +199,25 @@ def tell(bits, white, byte_crcs, told, is_right):  # type: ignore[no-untyped-def
 
 @njit(cache=True, inline="always")
 def is_of(told, track, number):  # type: ignore[no-untyped-def]
-    """Whether told bits are those of a track's frame of this number, of a version that is known."""
-    is_known = 0 < told >> 61 & 7 <= VERSION
+    """Whether told bits are those of a track's frame of this number, of the version that is written now."""
+    is_new = told >> 61 & 7 == VERSION
     is_its_own = told >> 56 & (MOST_TRACKS - 1) == track
-    return is_known and is_its_own and told >> 40 & (NUMBERS - 1) == number % NUMBERS
+    return is_new and is_its_own and told >> 40 & (NUMBERS - 1) == number % NUMBERS
+
+
+@njit(cache=True, inline="always")
+def said_of_axis(told, values):  # type: ignore[no-untyped-def]
+    """What the told bits of an axis say, in the version that is written now: cycles, those of the middle,
+    speed and acceleration, whose values of all codes are given.
+    """
+    codes, word = told & (1 << 2 * _CODE_BITS) - 1, told >> 2 * _CODE_BITS
+    middle = word & (1 << _MIDDLE_BITS) - 1
+    count = word >> _MIDDLE_BITS & (1 << _COUNT_BITS - _MIDDLE_BITS) - 1
+    if count >> _COUNT_BITS - _MIDDLE_BITS - 1:
+        count -= 1 << _COUNT_BITS - _MIDDLE_BITS
+    speed, acceleration = codes >> _CODE_BITS, codes & (1 << _CODE_BITS) - 1
+    per_cycle = 1 << _MIDDLE_BITS  # the middle is told modulo a cycle
+    return count / per_cycle, middle / per_cycle, values[0, speed], values[1, acceleration]
 
 
 def said_by(told: int) -> CheckFrame | None:
@@ -248,3 +263,10 @@ def to_value(code: int, least: float) -> float:
     if code == (1 << _CODE_BITS) - 1:
         return math.inf
     return least * 2.0 ** ((code - 1) / _PER_OCTAVE)
+
+
+def values_of_codes() -> NDArray[np.float64]:
+    """The speeds and accelerations of all codes (2, codes)."""
+    codes = range(1 << _CODE_BITS)
+    least = LEAST_SPEED, LEAST_ACCELERATION
+    return np.array([[to_value(code, of) for code in codes] for of in least])

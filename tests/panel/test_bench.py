@@ -73,7 +73,7 @@ def test_the_page_knows_the_lines_that_machine_and_cutter_are_for(
         ("--machine", "/tmp/my.toml", "may be"),
         ("--card", "card.toml", "a file of your own"),
         ("--settings", "/etc/passwd", "a file of your own"),
-        ("--arrow", "26,30", "--arrow"),
+        ("--arrow", "26,30", "value for “Arrow”"),
         ("--order", "3,x", "no order of lines"),
         ("-o", "/tmp/x.wav", "no option"),
         ("--print-settings", True, "no option"),

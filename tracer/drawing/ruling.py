@@ -32,14 +32,13 @@ from morfax.motion.plane import left_of
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.contrast import DARKER
-from morfax.tracer.drawing.printed_lines import (
+from morfax.tracer.drawing.even_lines import (
     FEWEST_LINES,
     INKED,
     LARGEST_PERIOD_MM,
     LEAST_PERIOD_MM,
-    Family,
-    families,
 )
+from morfax.tracer.drawing.printed_lines import Family, families
 from morfax.tracer.drawing.tiles import Kept, Tiles
 from morfax.tracer.effort import FEW_PX
 

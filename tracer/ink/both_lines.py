@@ -15,7 +15,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.ink.felt import Ends
+from morfax.tracer.ink.felt import Ends, between_rims
 from morfax.tracer.ink.run import LEAST_PLACES, Run, smooth
 
 # All limits below were chosen by trial on drawings of nets and on line art.
@@ -36,7 +36,9 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     """The two lines of a width whose ink runs together along some stations: half a width within its rims;
     `ends` says where their ink ends.
 
-    None where the ink swells on the way. Where the ink is as narrow as one line they touch, or change sides:
+    None where the ink swells on the way. Half a width before a junction begins the ink of what meets there:
+    they end before it if a leg of them is left. Where the ink is as narrow as one line they touch, or change
+    sides:
 
         width │ ╲  ╱  crosses: it comes and goes at a slope     ╲_  _╱  touches: the slope fades
               │  ╲╱                                               ╲╱
@@ -53,7 +55,15 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     stations, widths = stations.part(*part_of), widths[slice(*part_of)]
     near, far = (round(share * width_mm / stations.view.step_mm) for share in CROSSED)
     part = _told_apart(0.5 * (widths / width_mm - 1), ends, near, far)
-    return within_rims(stations.part(part.start, part.stop), widths[part], width_mm)
+    within = slice(
+        max(part.start, 0 if ends[0] else reach),
+        min(part.stop, len(widths) - (0 if ends[1] else reach)),
+    )
+    if (within.stop - within.start) * stations.view.step_mm > stations.view.leg_mm:
+        part = within
+    return within_rims(
+        between_rims(stations.part(part.start, part.stop)), widths[part], width_mm
+    )
 
 
 def within_rims(part: Run, widths: Array, width_mm: float) -> list[Run]:

@@ -135,6 +135,23 @@ def feel_along(view: View, guide_mm: Array) -> Run:
     return Run(places, headings, np.zeros(len(places)), widths, view)
 
 
+def between_rims(run: Run) -> Run:
+    """A run whose places lie in the middle between the rims of its ink where that has two, and whose headings
+    are those of the way through them: on broad ink `feel_along` keeps them to the guide. Stations that leap
+    onto other ink lie between the others.
+    """
+    view, leaps = run.view, _leaps(run, run.view.width_mm)
+    reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
+    found = _felt_across(view.cells, run.places_mm, run.headings_rad, reach_mm)
+    aside = np.nan_to_num(0.5 * (found[:, 0] + found[:, 1]))
+    places = run.places_mm + aside[:, None] * left_of_headings(run.headings_rad)
+    known = np.flatnonzero(~(np.r_[False, leaps] & np.r_[leaps, False]))
+    at = np.arange(len(run))
+    places = np.column_stack([np.interp(at, known, column[known]) for column in places.T])
+    reach = max(2, round(GUIDED_WIDTHS * view.width_mm / view.step_mm))
+    return replace(run, places_mm=places, headings_rad=_headings(places, reach))
+
+
 def judged(stations: Run, width_mm: float, *, is_smooth: bool = False) -> Felt:
     """Which stations are those of clean line, if a line is as wide as this; smooth ones all along."""
     view, widths = stations.view, stations.widths_mm
@@ -147,10 +164,14 @@ def judged(stations: Run, width_mm: float, *, is_smooth: bool = False) -> Felt:
         if abs(usual_mm - width_mm) < within_mm:
             within_mm = max(within_mm, ROUGHER * spread_mm)
     clean = known & (off < within_mm)
-    steps = np.hypot(*np.diff(stations.places_mm, axis=0).T)
-    leaps = np.abs(steps - view.step_mm) > LEAP * width_mm + LEAP_PX * view.pitch_mm
-    clean[1:] &= ~leaps
+    clean[1:] &= ~_leaps(stations, width_mm)
     return Felt(stations, clean)
+
+
+def _leaps(stations: Run, width_mm: float) -> Flags:
+    """Which steps between stations lead onto other ink than that of their line."""
+    view, steps = stations.view, np.hypot(*np.diff(stations.places_mm, axis=0).T)
+    return np.asarray(np.abs(steps - view.step_mm) > LEAP * width_mm + LEAP_PX * view.pitch_mm)
 
 
 def _is_felt(run: Run) -> bool:

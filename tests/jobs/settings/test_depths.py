@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from morfax.jobs.settings.depths import DepthSettings, equal_passes_mm
+from morfax.jobs.settings.depths import DepthSettings, equal_passes_mm, of_tabs
 from morfax.jobs.settings.settings import ToolSettings, TraceSettings
 from morfax.jobs.wrong_use import WrongUse
 from morfax.tracer.operator.card import Card
 from morfax.tracer.operator.work import Tabs
+from morfax.tracer.program.passes import tabs
 
 COUNT_MM = 0.01
 
@@ -66,3 +68,16 @@ def test_a_step_and_passes_go_together_only_where_they_are_the_same() -> None:
 def test_a_tab_is_longer_by_the_cutter_that_the_settings_have() -> None:
     asked = TraceSettings(tool=ToolSettings(cutter_mm=6.0), depths=DepthSettings(tabs=2))
     assert asked.operator(asked.card(), None).work.cutter_mm == 6.0
+
+
+def test_a_remark_on_missing_tabs_tells_the_radius_that_tabs_need(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    line = SimpleNamespace(number=2, comes_round=True)
+    work = SimpleNamespace(tabs=Tabs(3, 5.0, 2.0), cutter_mm=3.0)
+    trace = SimpleNamespace(work=work, lines=[line], tabs=[()])
+    monkeypatch.setattr(tabs, "is_milled_away", lambda line, cutter_mm: False)
+    for felt_mm, radius in ((tabs.FELT_MM, "3 mm"), (1.0, "6 mm")):
+        monkeypatch.setattr(tabs, "FELT_MM", felt_mm)
+        told = next(of_tabs(trace))  # type: ignore[arg-type]
+        assert "line 2 has none" in told and f"by a radius of {radius} or more" in told

@@ -23,10 +23,11 @@ def counted(
     version: int = 3,
 ) -> tuple[Counts, Due]:
     """Counts of one axis whose zero is known, and what it tells at row 100."""
-    counts = Counts(1, is_timed=is_timed)
+    counts = Counts(1, 6000.0, is_timed=is_timed)
     counts.zero_cycles[0] = 1000.25
     counts.begin(100.0, 1540.0)
-    counts.tell(0, CheckFrame(1, 7, cycles, speed, version=version, middle_cycles=0.75), error)
+    said = CheckFrame(1, 7, cycles, speed, version=version, middle_cycles=0.75)
+    counts.tell(0, said, error / 6000.0)
     due = counts.due(0, 200)
     assert due is not None
     return counts, due
@@ -82,7 +83,7 @@ def test_a_reference_without_time_tells_no_middle() -> None:
 
 
 def test_what_is_told_is_due_when_its_row_has_come_and_in_order() -> None:
-    counts = Counts(1, is_timed=True)
+    counts = Counts(1, 6000.0, is_timed=True)
     counts.zero_cycles[0] = 0.0
     counts.begin(99.5, 1540.0)
     assert counts.due(0, 0) is None and counts.due(0, 100) is None
@@ -93,7 +94,7 @@ def test_what_is_told_is_due_when_its_row_has_come_and_in_order() -> None:
 
 def test_until_a_zero_is_known_only_a_frame_s_start_that_lies_ahead_gives_one() -> None:
     """A tape that is taken up under way: the frame that has begun before tells nothing."""
-    counts = Counts(1, is_timed=True)
+    counts = Counts(1, 6000.0, is_timed=True)
     counts.begin(100.0, 1540.0)
     counts.begin(2980.0, 4420.0)
     counts.tell(0, CheckFrame(1, 8, 4.0), 0.0)

@@ -22,7 +22,7 @@ def told(random: np.random.Generator, drift_s: float) -> Delay:
     for first in (0, 4):
         numbers = np.arange(first, first + 4)
         delays_s = drift_s * numbers + random.normal(0, ERROR_S, 4)
-        delay.add((ROWS * numbers).tolist(), delays_s.tolist(), ERROR_S)
+        delay.add((ROWS * numbers).tolist(), delays_s.tolist(), [ERROR_S])
     return delay
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.motion.motion import Motion
+from morfax.player.tape.calm_frames import CalmFrames
 from morfax.player.tape.check_reader import read_ahead, read_check
 from morfax.player.tape.delays import DEAD_ZONE_S
 from morfax.player.tape.frame_order import LARGEST_LATE_S, LARGEST_SWING_S
@@ -53,10 +54,15 @@ def test_a_quiet_frame_is_read_as_a_damaged_one_is(
     quiet = reports(blocks, tape)
     read = [0]
 
-    def none(self: QuietFrames, points: Subcarrier, begins: float, number: int) -> None:
+    read_calm = QuietFrames.read
+
+    def none(
+        self: QuietFrames, points: Subcarrier, begins: float, number: int, most: int
+    ) -> tuple[CalmFrames, bool]:
         """Read the gates, and say that the frame is not quiet."""
         read_gates(points.points, points.theta, begins, WORD, self.gates)
         read[0] += 1
+        return read_calm(self, points, begins, number, 0)[0], False
 
     monkeypatch.setattr(QuietFrames, "read", none)
     slow = reports(blocks, tape)

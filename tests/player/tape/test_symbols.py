@@ -11,8 +11,13 @@ from morfax.player.tape.symbols import PARTS, _across
 from morfax.recorder.tape.check_frame import SYMBOLS
 
 PART = SYMBOLS // PARTS
-BITS = np.where(np.random.default_rng(0).random(SYMBOLS) < 0.5, -1, 1).astype(np.int8)
+BITS = np.where(np.random.default_rng(0).random(SYMBOLS) < 0.5, -1.0, 1.0)
 TURNS = np.linspace(-0.4, 0.3, PARTS)  # the phase of each part, in turns
+
+
+def parts(seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Real and imaginary parts."""
+    return seen.real.copy(), seen.imag.copy()
 
 
 def across_and_along(
@@ -21,7 +26,7 @@ def across_and_along(
     """Power across and noise along of symbols of size 3 whose phase swings about that of their part."""
     turned = np.exp(1j * (2 * math.pi * np.repeat(TURNS, PART) + phases_rad))
     seen = 3.0 * (BITS * turned + noise)
-    across, along = _across(seen, BITS, TURNS, PART)
+    across, along = _across(*parts(seen), BITS, TURNS, PART)
     return float(across), float(along)
 
 
@@ -53,6 +58,6 @@ def test_symbols_below_half_of_the_usual_size_are_left_out() -> None:
     phases, size = np.zeros(SYMBOLS), np.zeros(SYMBOLS)
     phases[40:50], size[40:50] = math.pi / 2, -0.8
     turned = np.exp(1j * (2 * math.pi * np.repeat(TURNS, PART) + phases))
-    across, along = _across((1 + size) * BITS * turned, BITS, TURNS, PART)
+    across, along = _across(*parts((1 + size) * BITS * turned), BITS, TURNS, PART)
     assert (across, along) == pytest.approx((0.0, 0.0), abs=1e-12)
-    assert _across(np.zeros(SYMBOLS, complex), BITS, TURNS, PART) == (0.0, 0.0)
+    assert _across(*parts(np.zeros(SYMBOLS, complex)), BITS, TURNS, PART) == (0.0, 0.0)

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink import closed_ways as closed_ways_room
 from morfax.tracer.ink import onward as onward_room
 from morfax.tracer.ink import outlines
 from morfax.tracer.ink.aside import has_arrowhead
 from morfax.tracer.ink.chains import Chain, Junction, Junctions, Link, Side
+from morfax.tracer.ink.closed_ways import closed_ways
 from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.net import FeltLine, Net
 from morfax.tracer.ink.onward import Onward
@@ -179,3 +181,21 @@ def test_how_a_line_goes_on_is_looked_at_once(monkeypatch: pytest.MonkeyPatch) -
     onward = Onward(Junctions(Net(lines), Settings()))
     assert all(onward.goes_on(side) for _ in range(3) for side in sides)
     assert len(asked) == len(sides)
+
+
+def test_areas_are_looked_for_without_lines_aside_and_then_without_the_taken_ones_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    without = list[set[int]]()
+
+    def parts(_: Junctions, left_out: set[int]) -> list[Outline]:
+        without.append(left_out)
+        return []
+
+    monkeypatch.setattr(closed_ways_room, "parts", parts)
+    monkeypatch.setattr(closed_ways_room, "lines_aside", lambda _: {1})
+    monkeypatch.setattr(closed_ways_room, "straight_chains", lambda _: [])
+    monkeypatch.setattr(Search, "way", lambda *_: None)
+    lines = [FeltLine([], [], (0, 1), LINE_MM, 4.0) for _ in range(3)]
+    assert list(closed_ways(Junctions(Net(lines), Settings()), {0}, 0.5)) == []
+    assert without[-2:] == [{1}, {0, 1}]  # before them the silhouette was looked for

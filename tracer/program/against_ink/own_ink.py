@@ -27,19 +27,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array, bounds
+from morfax.motion.arrays import Array
 from morfax.motion.median import median, percentile
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.against_ink.moved import moved
+from morfax.tracer.program.against_ink.moved import MOVED, moved
 from morfax.tracer.program.against_ink.pen_on_ink import PenOnInk, Ways, over_at
 from morfax.tracer.program.against_ink.sheet_parts import margin_px, parts
 from morfax.tracer.program.against_ink.surely_on_ink import may_be_over
-from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.felt_pen import FAR
 
 # Limits chosen by trial on 625 right ways of parts, holes, slots, notches and tongues, none of which comes
@@ -85,19 +86,24 @@ class BesideInk(NamedTuple):
     is_sure: bool
 
 
-Over = tuple[
-    NDArray[np.int64], Array
-]  # stations, by the numbers of a line's places, and what is over
+class _Over(NamedTuple):
+    """What is over on a line: at its stations, by the numbers of its places; and where these are, pixels."""
+
+    station: NDArray[np.int64]
+    over: Array
+    places_px: NDArray[np.float32]
 
 
 class _Known(NamedTuple):
-    """What is known of lines before some were mended: which were not surely on their ink, what was over on
-    each of these by their numbers, and which (n,) have to be judged again.
+    """What is known of lines before some were mended: the way of each that was not, pixels; which were not
+    surely on their ink, and by the number of each of these what was over on it; and where the ways of the
+    others have moved, pixels (n, 2).
     """
 
+    ways_px: list[NDArray[np.float32] | None]
     doubtful: NDArray[np.bool_]
-    over: dict[int, Over]
-    asked: NDArray[np.bool_]
+    over: dict[int, _Over]
+    moved_px: NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,89 +115,111 @@ class OwnInk:
     known: _Known | None = None
 
     def mended(self, lines: Sequence[Line]) -> OwnInk:
-        """The lines with some of them mended: what is known of those that lie far from there still holds."""
-        pairs = zip(self.lines, lines, strict=True)
-        asked = np.array([new is not old for old, new in pairs], bool)
-        places_px, pen = self._ways.places_px, self._pen
-        for k in np.flatnonzero(asked).tolist():
-            off = moved(self.lines[k], lines[k], STEP_WIDTHS)
-            if len(off):
-                low, high = bounds(_pixels(self.drawing, off))
-                is_near = places_px > low - margin_px(pen)
-                is_near &= places_px < high + margin_px(pen)
-                asked[self._ways.line[is_near.all(axis=1)]] = True
-        return OwnInk(self.drawing, lines, _Known(self.doubtful, self._over, asked))
+        """The lines with some of them mended: what is known of places far from there still holds."""
+        pairs = list(zip(self.lines, lines, strict=True))
+        moved_mm = [moved(old, new, MOVED) for old, new in pairs if new is not old]
+        moved_px = _pixels(self.drawing, np.vstack([np.empty((0, 2)), *moved_mm]))
+        ways_px = [
+            None if new is not old else way
+            for (old, new), way in zip(pairs, self._ways_px, strict=True)
+        ]
+        known = _Known(ways_px, self.doubtful, self._over, moved_px)
+        return OwnInk(self.drawing, lines, known)
 
     def beside(self, limits: OverLimits) -> Iterator[BesideInk]:
         """Where lines that closed or ended run beside their ink, by more than some limits; nothing where no
         pen can be told.
         """
-        for k, (station, over) in sorted(self._over.items()):
+        for k, (station, over, places_px) in sorted(self._over.items()):
             half_px, usual = self._ways.half_px[k], percentile(over, MOST)
             least, sure = (
                 max(float(each.of(half_px)), each.of_most * usual) for each in (limits, SURE)
             )
-            first_of_line = int(np.searchsorted(self._ways.line, k))
             for first, last in _stretches(over > least):
                 worst = first + int(np.argmax(over[first:last]))
                 places = 1 + station[last - 1] - station[first]
-                at = first_of_line + station[worst]
-                place_mm = _mm(self.drawing, self._ways.places_px[at])
+                place_mm = _mm(self.drawing, places_px[worst])
                 long_mm = float(places * PLACES_PX * self.drawing.pitch_mm)
                 yield BesideInk(place_mm, long_mm, bool(over[worst] > sure))
 
     @cached_property
     def doubtful(self) -> NDArray[np.bool_]:
-        """Which lines, of those that closed or ended, are not surely on their ink."""
-        noise, known = self.drawing.noise, self.known
+        """Which lines, of those that closed or ended, are not surely on their ink; or were not before they
+        were mended.
+        """
+        noise = self.drawing.noise
         is_told = bool(self.lines) and noise.softness_px > 0 and not self.drawing.grainy
+        doubtful = np.zeros(len(self.lines), bool)
         if not is_told or not self._ways.judged.any():
-            return np.zeros(len(self.lines), bool)
-        asked = np.ones(len(self.lines), bool) if known is None else known.asked
-        doubtful = _doubtful(self.drawing, self._ways, asked, self._pen)
-        return doubtful if known is None else np.where(asked, doubtful, known.doubtful)
+            return doubtful
+        if self.known is not None:
+            doubtful |= self.known.doubtful
+        is_station = _are_stations(self._ways, self._ways.judged & ~doubtful) & self._is_new
+        return doubtful | _doubtful(self.drawing, self._ways, is_station, self._pen)
 
     @cached_property
-    def _over(self) -> dict[int, Over]:
+    def _over(self) -> dict[int, _Over]:
         """What is over on each line that is not surely on its ink, by its number, in the order of its way."""
-        known, asked = self.known, self.doubtful
-        over = dict[int, Over]()
-        if known is not None:
-            over.update(
-                (k, known.over[k]) for k in np.flatnonzero(asked & ~known.asked).tolist()
-            )
-            asked = asked & known.asked
-        if not asked.any():
-            return over
-        found = zip(*_judged(self.drawing, self._ways, asked, self._pen), strict=True)
-        line, station, all_over = (np.concatenate(column) for column in found)
-        for k in np.flatnonzero(asked).tolist():
-            own = np.flatnonzero(line == k)
-            own = own[np.argsort(station[own], kind="stable")]
-            over[k] = station[own] - np.searchsorted(self._ways.line, k), all_over[own]
-        return over
+        known = {} if self.known is None else self.known.over
+        if not self.doubtful.any():
+            return {}
+        ways, is_station = self._ways, _are_stations(self._ways, self.doubtful)
+        is_known = np.zeros(len(self.lines), bool)
+        is_known[list(known)] = True
+        is_asked = is_station & (self._is_new | ~is_known[ways.line])
+        over = np.empty(len(ways.line))
+        for station, some in _judged(self.drawing, ways, is_asked, self._pen):
+            over[station] = some
+        found = dict[int, _Over]()
+        for k in np.flatnonzero(self.doubtful).tolist():
+            first, last = np.searchsorted(ways.line, (k, k + 1)).tolist()
+            station = first + np.flatnonzero(is_station[first:last])
+            old = station[~is_asked[station]]
+            if len(old):
+                nearest = Neighbours(known[k].places_px).nearest(ways.places_px[old])[1]
+                over[old] = known[k].over[nearest]
+            found[k] = _Over(station - first, over[station], ways.places_px[station])
+        return found
+
+    @cached_property
+    def _is_new(self) -> NDArray[np.bool_]:
+        """Which places of the ways are near to where one has moved; all of lines that are new."""
+        places_px = self._ways.places_px
+        if self.known is None:
+            return np.ones(len(places_px), bool)
+        side_px = margin_px(self._pen)
+        every = np.vstack([places_px, self.known.moved_px])
+        column, row = np.maximum(every.T / side_px, 0).astype(np.int32)
+        moved_at = np.zeros((row.max() + 1, column.max() + 1), np.uint8)
+        moved_at[row[len(places_px) :], column[len(places_px) :]] = 1
+        is_near = cv2.dilate(moved_at, np.ones((3, 3), np.uint8))
+        return np.asarray(is_near[row[: len(places_px)], column[: len(places_px)]] > 0)
+
+    @cached_property
+    def _ways_px(self) -> list[NDArray[np.float32]]:
+        """The way of each line, (n, 2) pixels."""
+        known = self.known.ways_px if self.known is not None else [None] * len(self.lines)
+        spacing_mm = PLACES_PX * self.drawing.pitch_mm
+        return [
+            _pixels(self.drawing, evenly(line.places_mm, spacing_mm)) if way is None else way
+            for line, way in zip(self.lines, known, strict=True)
+        ]
 
     @cached_property
     def _ways(self) -> Ways:
         """The ways of the lines."""
-        return _ways(self.drawing, self.lines)
+        counts, pitch_mm = [len(way) for way in self._ways_px], self.drawing.pitch_mm
+        return Ways(
+            np.vstack(self._ways_px),
+            np.repeat(np.arange(len(counts), dtype=np.int32), counts),
+            np.array([0.5 * line.width_mm / pitch_mm for line in self.lines]),
+            np.array([line.ending in JUDGED and not line.on_edge for line in self.lines]),
+        )
 
     @cached_property
     def _pen(self) -> PenOnInk:
         """The pen of most lines."""
         return _pen(self.drawing, self._ways)
-
-
-def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
-    """The ways of lines in pixels of the sheet."""
-    pitch_mm = drawing.pitch_mm
-    ways = [evenly(line.places_mm, PLACES_PX * pitch_mm) for line in lines]
-    return Ways(
-        np.vstack([_pixels(drawing, way) for way in ways]),
-        np.repeat(np.arange(len(ways), dtype=np.int32), [len(way) for way in ways]),
-        np.array([0.5 * line.width_mm / pitch_mm for line in lines]),
-        np.array([line.ending in JUDGED and not line.on_edge for line in lines]),
-    )
 
 
 def _pixels(drawing: Drawing, places_mm: Array) -> NDArray[np.float32]:
@@ -202,11 +230,10 @@ def _pixels(drawing: Drawing, places_mm: Array) -> NDArray[np.float32]:
 
 
 def _doubtful(
-    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], pen: PenOnInk
+    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], pen: PenOnInk
 ) -> NDArray[np.bool_]:
-    """Which of some lines are not surely on their ink: most are, and need not be judged."""
+    """Which lines are not surely on their ink at some stations: most are, and need not be judged."""
     doubtful, least = np.zeros(len(ways.judged), bool), NEARLY.of(ways.half_px)
-    is_station = _are_stations(ways, ways.judged & which)
     for part in parts(drawing, ways, is_station, QUICK_PX, pen):
         asked = ~doubtful[ways.line[part.stations]]
         line, at = ways.line[part.stations[asked]], part.at[asked]
@@ -217,12 +244,11 @@ def _doubtful(
 
 
 def _judged(
-    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], pen: PenOnInk
-) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
-    """The stations of some lines, tile by tile: line, number of the place, and what is over."""
-    for part in parts(drawing, ways, _are_stations(ways, which), TILE_PX, pen):
-        over = over_at(part.seen, part.ways, part.at, part.pen, part.room)
-        yield ways.line[part.stations], part.stations, over
+    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], pen: PenOnInk
+) -> Iterator[tuple[NDArray[np.int64], Array]]:
+    """Some stations, tile by tile: number of the place, and what is over."""
+    for part in parts(drawing, ways, is_station, TILE_PX, pen):
+        yield part.stations, over_at(part.seen, part.ways, part.at, part.pen, part.room)
 
 
 def _are_stations(ways: Ways, which: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.chains import Chain, Junctions
     from morfax.tracer.ink.outlines import Outline
 
-AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
 # of its ink: an outline that is shorter leaves bays or other lines out; by trial
 NEARLY_ALL = 0.97
 # of a stroke that is all of a net's ink: a longer closed outline is what was drawn, and the rest its overlap;
@@ -129,7 +128,7 @@ def round_ring(setup: Setup, line: Line) -> Line | None:
     if line.length_mm < WORKS_MM and line.fault is not None and lost.by_its_cell(line.fault):
         return None
     patch = sheet.patch_at(np.asarray(line.start_mm))
-    if sheet.are_solid[patch] or _loops(sheet)[patch] != 1:
+    if sheet.are_solid[patch] or sheet.loops()[patch] != 1:
         return None
     closed = _closed(setup, patch)
     if closed is None or closed[0].length_mm < CLOSES * line.length_mm:
@@ -209,19 +208,13 @@ def _has_reference(setup: Setup) -> bool:
 
 
 def are_nets(sheet: Sheet) -> NDArray[np.bool_]:
-    """Which patches go round two areas or more."""
-    return np.asarray((_loops(sheet) > 1) & ~sheet.are_solid)
-
-
-def _loops(sheet: Sheet) -> NDArray[np.int64]:
-    """How many areas each patch goes round."""
-    least_px = (AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2
-    return sheet.patches.enclosure.loops(least_px)
+    """Which patches go round two areas or more, and are no filled shapes full of specks."""
+    return np.asarray((sheet.loops() > 1) & ~sheet.are_solid & ~sheet.are_speckled())
 
 
 def goes_round(sheet: Sheet, patch: int, areas: int) -> bool:
     """Whether a patch goes round so many areas, and is no filled shape."""
-    return not sheet.are_solid[patch] and _loops(sheet)[patch] == areas
+    return not sheet.are_solid[patch] and sheet.loops()[patch] == areas
 
 
 def may_solve(setup: Setup) -> bool:
