@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array, bounds
-from morfax.motion.polyline import broad_mm, nearest_mm
+from morfax.motion.polyline import broad_mm, evenly, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.bars import bar_at
@@ -211,7 +211,8 @@ class _Bays(WayInk):
         rule = self.explained(seen.ink, rules)
         gain = self._gain(seen, rule, suspect) if rule is not None else None
         if rule is not None and gain is not None:
-            return self.as_bay(seen.first, seen.last, rule, gain)
+            laid = self._is_laid(seen.own, rule)
+            return None if laid else self.as_bay(seen.first, seen.last, rule, gain)
         if not suspect.is_beside_itself and not len(suspect.beyond_mm):
             return None
         bay = self._rim_bay(seen, suspect)
@@ -219,6 +220,17 @@ class _Bays(WayInk):
         if bay is None:
             longer = self._seen(suspect, round(LEGS[1] / STEP_WIDTHS))
         return bay if longer is None else self._rim_bay(longer, suspect)
+
+    def _is_laid(self, own: Array, rule: Rule) -> bool:
+        """Whether a stretch that was looked at before runs within half a step of a rule: it was laid along
+        that, and would be again and again.
+        """
+        if self.news is None:
+            return False
+        fine_mm = 0.1 * self.step_mm
+        way, ran = evenly(rule.way, fine_mm), evenly(own, fine_mm)
+        off_mm = max(nearest_mm(ran, way).max(), nearest_mm(way, ran).max())
+        return bool(off_mm < 0.5 * self.step_mm)
 
     def _seen(self, suspect: Suspect, leg: int) -> BayInk | None:
         """The stretch of the way that may be a bay, with legs, and the ink about it."""

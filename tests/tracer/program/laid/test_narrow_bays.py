@@ -21,7 +21,7 @@ from morfax.tracer.program.laid.line_parts import REACH
 from morfax.tracer.program.laid.way_ink import BayInk
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import followed, trace
+from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
 from morfax.tracer.tangles import folding_rule
@@ -123,7 +123,7 @@ def test_the_same_rules_are_fitted_to_the_same_ink_once(
 
     monkeypatch.setattr(folding_rule, "explained", counted)
     setup = Setup(inked(with_bay(1.1 * WIDTH_MM, DEEP_MM), width_mm=WIDTH_MM, seed=1).sheet)
-    line = followed(setup, None)
+    line = run_along(polyline((4, 4), (34, 4), (34, 20), (4, 20), (4, 4)))  # past the bay
     (mended,), _ = narrow_bays.explained(setup, [line])
     first = len(fitted)
     assert first and mended is not line
@@ -131,7 +131,7 @@ def test_the_same_rules_are_fitted_to_the_same_ink_once(
     assert len(fitted) == first and np.array_equal(again.xy_mm, mended.xy_mm)
     # of other ink the rules are others
     other = Setup(inked(with_bay(1.1 * WIDTH_MM, 2.5), width_mm=WIDTH_MM, seed=1).sheet)
-    narrow_bays.explained(replace(other, rules=setup.rules), [followed(other, None)])
+    narrow_bays.explained(replace(other, rules=setup.rules), [line])
     assert len(fitted) > first
 
 

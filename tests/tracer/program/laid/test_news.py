@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 import shapely
 
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.laid import narrow_bays
 from morfax.tracer.program.laid.bay_run import Bay
+from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.news import News
 from morfax.tracer.program.laid.way_ink import Relaid
 from morfax.tracer.program.setup import Setup
@@ -21,6 +23,8 @@ PLATE = np.array(shapely.box(4, 4, 24, 20).exterior.coords)
 BAY = shapely.box(14.0, 17.0, 14.0 + 1.1 * WIDTH_MM, 21.0)
 NOTCHED = np.array(shapely.box(4, 4, 24, 20).difference(BAY).exterior.coords)
 FAR = np.array(shapely.box(60, 4, 80, 20).exterior.coords)
+
+NOTHING = News(np.empty((0, 2)), np.empty((0, 2)))
 
 
 def test_a_line_far_from_a_mended_bay_is_looked_at_once(
@@ -82,3 +86,25 @@ def test_a_stretch_far_from_what_was_laid_anew_is_asked_once(
     narrow_bays.explained(setup, [run_along(np.array(long.exterior.coords))])
     assert len(rounds) > 1
     assert {number for number, x_mm in asked if x_mm > 40} == {1}
+
+
+@pytest.mark.parametrize(("news", "is_laid"), [(None, False), (NOTHING, True)])
+def test_a_bay_that_was_laid_is_not_laid_again(
+    news: News | None, is_laid: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A rule that explains the ink a little better than the head along that very rule: on a coast three bays
+    were laid six times.
+    """
+    line = run_along(NOTCHED)
+    bays = narrow_bays._Bays(
+        Setup(inked(NOTCHED, seed=1).sheet), line, BoxedLines.of([line]), (), news
+    )
+    at = int(np.argmin(np.hypot(*(bays.way - (14.0, 18.5)).T)))
+    monkeypatch.setattr(narrow_bays._Bays, "_gain", lambda *_: 1.0)
+    monkeypatch.setattr(
+        narrow_bays._Bays,
+        "explained",
+        lambda it, *_: LaidWay((it.way[at - 25 : at + 26],), 0.5 * WIDTH_MM),
+    )
+    found = bays._bay(narrow_bays.Suspect(at - 10, at + 10, np.empty((0, 2)), True))
+    assert (found is None) == is_laid
