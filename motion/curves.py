@@ -26,10 +26,17 @@ LEAST_BEND_PER_MM = 1e-6  # so that no bend is: a radius of a kilometre is strai
 def hermite(start: Array, heading: float, end: Array, end_heading: float) -> Array:
     """The cubic from one place and heading to another, (n, 2) mm."""
     chord = float(np.hypot(*(end - start)))
-    ends = float(start[0]), float(start[1]), float(end[0]), float(end[1])
     leaving = chord * math.cos(heading), chord * math.sin(heading)
     arriving = chord * math.cos(end_heading), chord * math.sin(end_heading)
-    out = np.empty((max(2, math.ceil(chord / APART_MM) + 1), 2))
+    return cubic(start, leaving, end, arriving, max(2, math.ceil(chord / APART_MM) + 1))
+
+
+def cubic(
+    start: Array, leaving: Sequence[float], end: Array, arriving: Sequence[float], count: int
+) -> Array:
+    """So many places of the cubic from one place to another, by its slopes there in mm, (n, 2) mm."""
+    ends = float(start[0]), float(start[1]), float(end[0]), float(end[1])
+    out = np.empty((count, 2))
     _cubic(ends, (*leaving, *arriving), out)
     return out
 

@@ -21,6 +21,7 @@ import mmap
 import tempfile
 import weakref
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,13 @@ IN_MEMORY_BYTES = 32_000_000
 BLOCK_ROWS = 240_000  # that are looked at together: 4 MB of positions, 40 s; chosen
 
 
+@dataclass(slots=True)
+class _Part:
+    """Rows that copies share: when one of them puts all its rows together, these are a part of that."""
+
+    rows: Array
+
+
 class LongArray:
     """Rows of float64 that grow. What is in its file is never changed, so that copies share it."""
 
@@ -40,7 +48,7 @@ class LongArray:
         self._columns = columns
         # rows in files (the file, the first byte there, how many rows), and the newest, in memory
         self._filed = list[tuple[_File, int, int]]()
-        self._newest = list[Array]()
+        self._newest = list[_Part]()
         self._newest_rows = 0
 
     def __len__(self) -> int:
@@ -55,13 +63,13 @@ class LongArray:
     @property
     def last(self) -> Array:
         """The last row."""
-        return self._newest[-1][-1] if self._newest else self.since(len(self) - 1)[0]
+        return self._newest[-1].rows[-1] if self._newest else self.since(len(self) - 1)[0]
 
     def add(self, rows: Array) -> None:
         """Add rows (n, columns), which are copied; raises FileFault where there is no room for a file."""
         if not len(rows):
             return
-        self._newest.append(np.array(rows, float))
+        self._newest.append(_Part(np.array(rows, float)))
         self._newest_rows += len(rows)
         if 8 * self._columns * self._newest_rows > IN_MEMORY_BYTES:
             self._to_file()
@@ -73,13 +81,13 @@ class LongArray:
             if over > 0:
                 kept.append((file, first, min(rows, over)))
             over -= rows
-        newest = list[Array]()
+        newest = list[_Part]()
         for part in self._newest:
             if over > 0:
-                newest.append(part[:over])
-            over -= len(part)
+                newest.append(part if over >= len(part.rows) else _Part(part.rows[:over]))
+            over -= len(part.rows)
         self._filed, self._newest = kept, newest
-        self._newest_rows = sum(map(len, newest))
+        self._newest_rows = sum(len(part.rows) for part in newest)
 
     def since(self, count: int) -> Array:
         """The rows from one on, (n, columns)."""
@@ -87,8 +95,8 @@ class LongArray:
         parts = list[Array]()
         for part in reversed(self._newest):
             if missing > 0:
-                parts.append(part[-missing:])
-            missing -= len(part)
+                parts.append(part.rows[-missing:])
+            missing -= len(part.rows)
         if missing > 0:
             return self.whole()[count:]
         return np.vstack(parts[::-1]) if parts else np.empty((0, self._columns))
@@ -112,17 +120,21 @@ class LongArray:
         return file.mapped(first, rows, self._columns)
 
     def _in_one(self) -> Array:
-        """The newest rows as one array, which is put together once; it is not to be changed."""
+        """The newest rows as one array, put together once, for copies too; it is not to be changed."""
         if not self._newest:
             return np.empty((0, self._columns))
         if len(self._newest) > 1:
-            self._newest = [np.vstack(self._newest)]
-        return self._newest[0]
+            together = np.vstack([part.rows for part in self._newest])
+            ends = np.cumsum([len(part.rows) for part in self._newest])
+            for part, rows in zip(self._newest, np.split(together, ends[:-1]), strict=True):
+                part.rows = rows
+            self._newest = [_Part(together)]
+        return self._newest[0].rows
 
     def _to_file(self) -> None:
         """Put the newest rows into the file, behind what is there."""
         file = self._filed[-1][0] if self._filed else _File()
-        at, rows = file.append(self._newest), self._newest_rows
+        at, rows = file.append([part.rows for part in self._newest]), self._newest_rows
         self._newest, self._newest_rows = [], 0
         if self._filed:
             _, first, before = self._filed[-1]
@@ -145,7 +157,7 @@ class LongArray:
         return {
             "_columns": self._columns,
             "_filed": [],
-            "_newest": [whole],
+            "_newest": [_Part(whole)],
             "_newest_rows": len(whole),
         }
 

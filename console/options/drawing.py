@@ -106,9 +106,9 @@ _DRAWING = (
         default="auto",
         show_default=True,
         help="Leave out the printed lines of squared (also millimetre) or ruled paper, even where they are "
-        "as dark as the drawing. auto: where they run over the whole sheet, or are paler squares with a "
-        "margin; squared, ruled: wherever they run, and refuse a sheet without them; plain: leave nothing "
-        "out.",
+        "as dark as the drawing. auto: where they run over the whole sheet, or are paler or many squares "
+        "with a margin; squared, ruled: wherever they run, and refuse a sheet without them; plain: leave "
+        "nothing out.",
     ),
     option(
         "Drawing",

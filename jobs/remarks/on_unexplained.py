@@ -60,6 +60,13 @@ SAID: dict[Kind, tuple[tuple[str, str], str]] = {
         "--picture; a notch or a tongue that is narrower than two lines is followed if it is drawn with a "
         "finer pen",
     ),
+    # a closed way that crosses itself where all is ink
+    "crossed": (
+        ("place", "places"),
+        "the closed line crosses itself within its ink at {many}, the longest {mm:.1f} mm round at {at}: the "
+        "ink of spikes that are narrower than two lines tells little of them; look there in --picture, and "
+        "draw it with a finer pen",
+    ),
     # strokes within ink that is as broad as two lines
     "broad": (
         ("piece of ink is", "pieces of ink are"),

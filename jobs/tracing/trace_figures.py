@@ -20,6 +20,7 @@ UNEXPLAINED: dict[Kind, str] = {
     "tip": "tip cut short",
     "bare": "way without ink",
     "beside": "way beside its ink",
+    "crossed": "way that crosses itself",
     "broad": "strokes within ink as broad as two lines",
     "off": "strokes off their ink",
     "pale": "pixels too large to tell",

@@ -12,6 +12,7 @@ from PIL import Image
 
 from morfax.motion.contour import distance
 from morfax.motion.pathfile import read_path
+from morfax.motion.units import MM_PER_INCH
 from tests.console.conftest import SAMPLES, Morfax
 from tests.tracer.drawing.filled import CIRCLE, filled
 from tests.tracer.drawing.test_shapes import STEPPED
@@ -136,6 +137,29 @@ def test_an_outline_that_hangs_together_with_a_filled_bar_is_lost_and_not_left_o
     lost = morfax("trace", "bar.png", "-o", "bar.csv", "--lines", "contours", "--json")
     assert lost.exit_code == 4 and "--lines all --edge" in lost.fault
     assert [row["ending"] for row in lost.figures["lines"]].count("closed") == 1
+
+
+SOFTEN = "soften the picture by 2 pixels, and --edge"
+
+
+@pytest.mark.parametrize(
+    ("across_mm", "white", "advice"),
+    [(36, 0.02, "--edge"), (36, 0.3, SOFTEN), (14, 0.15, SOFTEN)],
+)
+def test_a_filled_shape_full_of_white_pixels_is_told_how_its_edge_is_followed(
+    morfax: Morfax, here: Path, across_mm: int, white: float, advice: str
+) -> None:
+    """Its specks are taken for no net, which took minutes, and it is no line of chalk."""
+    random = np.random.default_rng(1)
+    grey = np.full((620, 620), 235, np.uint8)
+    cv2.circle(grey, (310, 310), round(across_mm / 2 * 300 / MM_PER_INCH), 40, -1, cv2.LINE_AA)
+    grey[(grey < 140) & (random.random(grey.shape) < white)] = 235
+    Image.fromarray(grey).save("noisy.png", dpi=(300, 300))
+    told = morfax("trace", "noisy.png", "-o", "noisy.csv")
+    assert told.exit_code == 4 and "dark area" in told.fault and advice in told.fault
+    assert "chalk" not in told.err
+    Image.fromarray(cv2.GaussianBlur(grey, (0, 0), 2.0)).save("soft.png", dpi=(300, 300))
+    assert morfax("trace", "soft.png", "-o", "soft.csv", "--edge").exit_code == 0
 
 
 def test_a_dark_area_up_to_the_border_is_not_sent_to_edge(morfax: Morfax, here: Path) -> None:

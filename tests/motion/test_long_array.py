@@ -72,6 +72,20 @@ def test_rows_in_memory_are_put_together_once() -> None:
     assert len(kept.whole()) == 6 and len(whole) == 5
 
 
+def test_copies_share_the_rows_that_one_of_them_puts_together() -> None:
+    """The head is copied before each junction: the rows of its way were kept twice, in pieces and whole."""
+    array = LongArray()
+    for part in np.split(ROWS[:60], 6):
+        array.add(part)
+    copied = copy.deepcopy(array)
+    array.add(ROWS[60:70])
+    whole = array.whole()
+    assert np.shares_memory(copied._newest[-1].rows, whole)
+    assert np.array_equal(copied.whole(), ROWS[:60])
+    copied.add(ROWS[:5])
+    assert np.array_equal(whole, ROWS[:70])
+
+
 @settings(max_examples=30)
 @given(first=st.integers(0, 2000), then=st.integers(0, 300), other=st.integers(0, 2000))
 def test_copies_go_on_by_themselves_also_when_rows_are_cut(

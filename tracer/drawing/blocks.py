@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
-from morfax.tracer.drawing.components import Numbers
+from morfax.tracer.drawing.components import Mask, Numbers
 from morfax.tracer.effort import FEW_PX
 
 BLOCK_PX = 16  # of a sheet of darkness; by trial
@@ -111,7 +111,7 @@ def runs_behind_spot(
     return row, begin, end
 
 
-def runs_in(darkness: Levels, level: float) -> Runs:
+def runs_in(darkness: Levels | Mask, level: float) -> Runs:
     """Row, begin and end of the runs of a picture that are darker than a level."""
     row, begin, end = _runs_in(np.ascontiguousarray(darkness), np.float32(level))
     return row, begin, end

@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
-from morfax.tracer.drawing.components import Mask, Numbers, painted, runs_at, runs_of
+from morfax.tracer.drawing.blocks import runs_in
+from morfax.tracer.drawing.components import INK, Mask, Numbers, painted, runs_at
 from morfax.tracer.drawing.thinning import Indices
 
 MOST_LOOKS_EACH = 40  # to a pixel of ink; by trial on sheets with lines and with filled squares
@@ -36,12 +37,12 @@ def depth_px(ink: Mask) -> NDArray[np.float32]:
 
 def depth_of(ink: Mask) -> NDArray[np.float32]:
     """The same of the pixels of ink alone, by rows."""
-    return depth_along(*runs_of(ink, 0), ink.shape)
+    return depth_along(*runs_in(ink, INK), ink.shape)
 
 
 def depth_at(ink: Mask, rows: Indices, columns: Indices) -> NDArray[np.float32]:
     """The same of some pixels of ink."""
-    row, begin, end = runs_of(ink, 0)
+    row, begin, end = runs_in(ink, INK)
     depth = depth_along(row, begin, end, ink.shape)
     first = np.cumsum(end - begin) - (end - begin)
     run = runs_at(row, begin, rows, columns)

@@ -22,7 +22,6 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.faults import MotionFault
@@ -208,26 +207,29 @@ def _edges(
     count = int(np.ceil(reach_mm / step))
     across = np.arange(-count, count + 1, dtype=float) * step
     seen = darkness_across(drawing, points, headings, across)
+    # 1. the darkest place near to the path, of two as dark the nearer one, and half of its darkness
     near = np.abs(across) <= 0.5 * reach_mm
-    peak_at = np.argmax(np.where(near, seen - 1e-3 * np.abs(across), -1.0), axis=1)
-    level = 0.5 * np.take_along_axis(seen, peak_at[:, None], 1)
+    peak_at = np.argmax(np.where(near, seen - 1e-3 * np.abs(across), -1.0), axis=1)[:, None]
+    level = 0.5 * np.take_along_axis(seen, peak_at, 1)
+    # 2. the nearest lighter places on either side
+    last, index = len(across) - 1, np.arange(len(across))
     light = seen < level
-    index = np.arange(len(across))
+    right = np.where(light & (index < peak_at), index, -1).max(axis=1)
+    left = np.where(light & (index > peak_at), index, last + 1).min(axis=1)
+    ok = (right >= 0) & (left <= last) & (level[:, 0] > PAPER)
+    right, left = np.where(ok, right, 0), np.where(ok, left, last)
+    # 3. where it is as dark, between them and the next ones
     rows = np.arange(len(points))
-    right = np.where(light & (index < peak_at[:, None]), index, -1).max(axis=1)
-    left = np.where(light & (index > peak_at[:, None]), index, len(across)).min(axis=1)
-    ok = (right >= 0) & (left < len(across)) & (level[:, 0] > PAPER)
-    right, left = np.where(ok, right, 0), np.where(ok, left, len(across) - 1)
-
-    def crossing(outside: NDArray[np.intp], inside: NDArray[np.intp]) -> Array:
+    edges = list[Array]()
+    for outside, inside in (
+        (right, np.minimum(right + 1, last)),
+        (left, np.maximum(left - 1, 0)),
+    ):
         a, b = seen[rows, outside], seen[rows, inside]
         share = (level[:, 0] - a) / np.where(np.abs(b - a) > NOT_ZERO, b - a, 1.0)
         found = across[outside] + share * (across[inside] - across[outside])
-        return np.asarray(np.where(ok, found, np.nan), float)
-
-    return crossing(right, np.minimum(right + 1, len(across) - 1)), crossing(
-        left, np.maximum(left - 1, 0)
-    )
+        edges.append(np.asarray(np.where(ok, found, np.nan), float))
+    return edges[0], edges[1]
 
 
 def _across(drawing: Drawing, points: Array, headings: Array, width_mm: float) -> Array:

@@ -239,7 +239,7 @@ class Drawing:
         cleared, told = _cleared(darkness, pitch_mm, reading)
         darkness, paper_noise = cleared.darkness, paper_noise / cleared.ink
         lines, pale_mm = within(darkness, paper_noise), 0.0
-        times = speckled.times_larger(darkness, lines)
+        times = speckled.times_larger(darkness, lines, pitch_mm)
         if times > 1:
             notes = (*notes, speckled.note(times, pitch_mm))
             larger = speckled.on_larger_pixels(np.asarray(grey), times)

@@ -11,7 +11,7 @@ comes up to a printed line on both sides, in one direction, is drawn on across i
     fill = largest, over directions, of the smaller of the darknesses on both sides of the printed line
 
 Lines that run from edge to edge of the sheet are printed: what is drawn has paper about it. So are squares
-with a margin that are paler than what is drawn.
+with a margin that are paler than what is drawn, or more than anybody draws.
 
 Source: our own. Questions: a stroke along a printed line that is as dark, nearer than a line's width, is
 taken off with it over that length; the head goes over such gaps as it does over others.
@@ -32,14 +32,13 @@ from morfax.motion.plane import left_of
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.contrast import DARKER
-from morfax.tracer.drawing.printed_lines import (
+from morfax.tracer.drawing.even_lines import (
     FEWEST_LINES,
     INKED,
     LARGEST_PERIOD_MM,
     LEAST_PERIOD_MM,
-    Family,
-    families,
 )
+from morfax.tracer.drawing.printed_lines import Family, families
 from morfax.tracer.drawing.tiles import Kept, Tiles
 from morfax.tracer.effort import FEW_PX
 
@@ -50,6 +49,7 @@ PaperKind = Literal["auto", "plain", "squared", "ruled"]
 SEARCHED_PX = 2 * FEW_PX  # pixels of the picture on which printed lines are looked for
 # of the darkness of what is drawn: printed lines that are paler are no part of that
 PALER = 0.75
+BOARD = 25  # lines of a drawn board or crossword, each way, at the most
 DARKEST = 95.0  # percent of ink is paler than its darkest
 EXCESS = 0.35  # of ink's darkness: noise is no ink on a printed line
 # of strokes, from square to the printed line
@@ -89,7 +89,8 @@ def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> Cleared:
     printed, ink = _levels(small, [family for of in found for family in of])
     if paper == "auto":
         whole = [of for of in found if of[0].is_whole]
-        if not whole and (kind == "ruled" or printed > PALER * ink):
+        is_drawn = printed > PALER * ink and min(of[-1].lines for of in found) <= BOARD
+        if not whole and (kind == "ruled" or is_drawn):
             note = (
                 f"straight lines run over most of the sheet, {apart} mm apart; if the paper is {kind},"
                 f" give --paper {kind}, and they are left out"

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from morfax.tracer.drawing.coarse import FEWEST_PX
 from morfax.tracer.drawing.components import INK, SOFTENED_PX, Mask
 from morfax.tracer.drawing.noise import Within, within
+from morfax.tracer.drawing.paper import WIDEST_STROKE_MM
 from morfax.tracer.effort import MANY
 
 Darkness = NDArray[np.float32]
@@ -42,8 +43,10 @@ FILLED = 0.65
 BEYOND = 0.02  # of the scan's ink may lie farther out by a pixel: more are lines that are lost
 
 
-def times_larger(darkness: Any, lines: Within) -> int:
-    """How many times larger the pixels of a sheet are to be whose lines look so; 1: as they are."""
+def times_larger(darkness: Any, lines: Within, pitch_mm: float) -> int:
+    """How many times larger the pixels of a sheet are to be whose lines look so; 1: as they are, also where
+    what shows on larger ones is broader than any line.
+    """
     if lines.single > FEW or not isinstance(darkness, np.ndarray):
         return 1
     ink = _ink(darkness)
@@ -55,7 +58,9 @@ def times_larger(darkness: Any, lines: Within) -> int:
         larger = on_larger_pixels(darkness, times)
         seen = _ink(larger)
         if _specks(seen) < LEFT * specks and _covers(seen, ink, times):
-            widths_px[times] = within(larger).width_px
+            width_px = within(larger).width_px
+            if width_px * times * pitch_mm <= WIDEST_STROKE_MM:
+                widths_px[times] = width_px
     # the largest pixels leave least of the grain, if the line has enough of them
     enough = [times for times, width_px in widths_px.items() if width_px > ENOUGH_PX]
     least = [times for times, width_px in widths_px.items() if width_px > FEWEST_PX]

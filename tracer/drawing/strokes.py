@@ -41,6 +41,8 @@ TILE_PX = 2048  # the places of a line come tile by tile, so that its size decid
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial
 ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
+# areas of paper less than so many widths across are flaws of the ink that goes round them; by trial
+FLAW_WIDTHS = 1.0
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 
 
@@ -165,6 +167,18 @@ class Sheet:
     def patch_at(self, place_mm: Array) -> int:
         """The number of the patch whose ink is nearest to a place."""
         return self._nearest_ink((float(place_mm[0]), float(place_mm[1])))[2]
+
+    def loops(self, widths: float = FLAW_WIDTHS) -> NDArray[np.int64]:
+        """How many areas of paper that are so many widths across each patch goes round."""
+        least_px = (widths * self.widths_mm / self.drawing.pitch_mm) ** 2
+        return self.patches.enclosure.loops(least_px)
+
+    def are_speckled(self) -> NDArray[np.bool_]:
+        """Which patches are dark areas full of specks of paper, and no lines: most of their holes are flaws,
+        and most others less than twice as large.
+        """
+        every, areas, broad = (self.loops(times * FLAW_WIDTHS) for times in (0, 1, 2))
+        return np.asarray((every > 2 * areas) & (areas > 2 * broad))
 
     def _long_enough(self) -> NDArray[np.bool_]:
         """Which patches are long enough to be lines."""

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.compiled import njit
 from morfax.motion.moments import NO_PLACES, parabola_of, with_place
+from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.components import INK
 
 Darkness = NDArray[np.float32]
@@ -50,7 +51,20 @@ PASSED = 2  # marks ink whose lower side a chain has come by
 
 
 def with_rims(darkness: Darkness) -> Darkness:
-    """The darkness with its rims laid through the steps of the pixels."""
+    """The darkness with its rims laid through the steps of the pixels, in its place. Paper is only written
+    where it is lighter than that: a sheet takes no memory where nothing is drawn.
+    """
+    row, begin, end = runs_in(darkness, INK)
+    if len(row):
+        # and a pixel of paper about all ink, into which a rim may move
+        rows = slice(max(int(row[0]) - 1, 0), int(row[-1]) + 2)
+        _lay_rims(darkness[rows, max(int(begin.min()) - 1, 0) : int(end.max()) + 1])
+    _no_lighter(darkness)
+    return darkness
+
+
+def _lay_rims(darkness: Darkness) -> None:
+    """Lay the rims of a part of a sheet, beyond which there is paper."""
     ink = np.pad(darkness > INK, 1).astype(np.uint8)
     places, begins = _chains(ink, _sides(ink))
     laid = np.empty_like(places)
@@ -60,7 +74,16 @@ def with_rims(darkness: Darkness) -> Darkness:
     # a pixel that no rim comes by stays as it is
     covered += darkness
     covered -= ink[1:-1, 1:-1] & 1
-    return np.clip(covered, 0.0, None, out=covered)
+    darkness[:] = covered
+
+
+@njit(cache=True)
+def _no_lighter(darkness):  # type: ignore[no-untyped-def]
+    """Make paper what is lighter than paper."""
+    for row in range(len(darkness)):
+        for column in range(darkness.shape[1]):
+            if darkness[row, column] < 0.0:
+                darkness[row, column] = 0.0
 
 
 def _sides(ink: NDArray[np.uint8]) -> int:

@@ -24,6 +24,7 @@ from morfax.motion.long_array import one_in
 from morfax.motion.polyline import evenly
 from morfax.motion.usual import MOTION_RATE_HZ, THINNED
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.speckled import ENOUGH_PX
 from morfax.tracer.following import knots
 from morfax.tracer.following.branches import Branches
 from morfax.tracer.following.direction import Direction, goes, turned_about, turned_to
@@ -43,7 +44,6 @@ SHORTER = 0.95  # the other way round is the line if as short: straight on has l
 DOUBTS = 8  # doubts of a run that are looked into
 TURNS = 12  # junctions at which another turn is tried
 TRIED_MM = 6000.0  # travel in all that is spent on other turns
-FINE_PX = 4.0  # of the scan: a finer line is run by stations, too
 TWICE = 0.1  # of a run: crossing lines and legs that end in one tip run together for less
 OVERRUN_MM = 3.0  # a stub as short, straight on from a closed line, is where the pen set out
 LONGEST = 4.0  # times all the ink, and ...
@@ -152,7 +152,7 @@ class Attempts:
         um decide what is a leg of a junction.
         """
         run, view = self._all_ways(stance), stance.view
-        is_fine = view.width_mm < FINE_PX * view.parted * view.pitch_mm
+        is_fine = view.width_mm < ENOUGH_PX * view.parted * view.pitch_mm
         if run.ending == "closed" or not (run.went_slowly and is_fine):
             return run
         other = replace(self, by_stations=True)._all_ways(stance)

@@ -25,7 +25,7 @@ from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing import photocell
-from morfax.tracer.sensing.leg import FACING, Leg, centre_at, turn
+from morfax.tracer.sensing.leg import ABOUT_LEGS, FACING, Leg, centre_at, turn
 from morfax.tracer.sensing.parabola import bend_at
 from morfax.tracer.sensing.photocell import LEVEL, Cells, darkness_at, ring
 from morfax.tracer.sensing.ray import edges
@@ -47,7 +47,6 @@ FAINTEST = 0.2  # darkness: fainter ink is taken for this dark
 RING_WIDTHS, RING_PX = 0.9, 4.5  # radius of the ring of cells about a place: the larger
 NARROWEST, WIDEST = 0.4, 2.5  # times the line's width: a line of another width is another line
 FEWEST_STATIONS = 6  # felt to either side
-FELT = 1.5  # leg's lengths are felt to either side
 CENTRED = 0.6  # of a leg's length to either side makes the leg about the place
 BENT = 0.8  # rad in a leg's length: a line that bends by more is no parabola over that length
 
@@ -170,8 +169,8 @@ def _both_ways(view: View, place: Array, heading: float) -> tuple[Leg, float] | 
         if not math.isfinite(width_mm) or not NARROWEST < width_mm / view.width_mm < WIDEST:
             return None
         view = replace(view, width_mm=width_mm)
-    ahead = view.feel(place, heading, FELT * view.leg_mm)
-    behind = view.feel(place, heading + math.pi, FELT * view.leg_mm)
+    ahead = view.feel(place, heading, ABOUT_LEGS * view.leg_mm)
+    behind = view.feel(place, heading + math.pi, ABOUT_LEGS * view.leg_mm)
     shorter = min(len(ahead), len(behind))
     if shorter < FEWEST_STATIONS:
         return None
@@ -214,7 +213,7 @@ def _felt_about(cells, place, sizes_mm):  # type: ignore[no-untyped-def]
     if not NARROWEST < width_mm / usual_mm < WIDEST:
         return 0.0, 0.0
     own_mm = leg_mm(width_mm, pitch_mm)
-    along_mm = step_mm, FELT * own_mm
+    along_mm = step_mm, ABOUT_LEGS * own_mm
     ahead = felt(cells, (place[0], place[1], heading), width_mm, along_mm)
     behind = felt(cells, (place[0], place[1], heading + math.pi), width_mm, along_mm)
     shorter = min(len(ahead), len(behind))

@@ -193,7 +193,8 @@ def _nowhere_clean(
 ) -> LineFault:
     """The fault of a line on which the head can nowhere be put down."""
     drawing, why, edge = sheet.drawing, "", ""
-    if is_filled(drawing, sheet.patches, stroke.patch):
+    is_speckled = sheet.are_speckled()[stroke.patch]
+    if is_speckled or is_filled(drawing, sheet.patches, stroke.patch):
         return a_dark_area(sheet, stroke)
     gap = narrow_strip_of(drawing, stroke.middles_mm, width_mm)
     if gap is not None:
@@ -216,9 +217,14 @@ def a_dark_area(sheet: Sheet, stroke: Stroke) -> LineFault:
     top, bottom, left, right = sheet.patches.boxes[stroke.patch].tolist()
     rows, columns = sheet.drawing.darkness.shape
     is_whole = top > 0 and left > 0 and bottom < rows and right < columns
+    shape = (
+        "it is full of specks of paper: soften the picture by 2 pixels, and --edge follows the outline of a "
+        "filled shape; or give "
+        if sheet.are_speckled()[stroke.patch]
+        else "--lines all --edge follows the outlines of filled shapes and the lines beside them; or give "
+    )
     use = (
-        "--lines all --edge follows the outlines of filled shapes and the lines beside them; or give "
-        "--start X,Y at a line"
+        f"{shape}--start X,Y at a line"
         if is_whole
         else "it reaches the border of the picture: scan the sheet with paper all round, or cut a dark "
         "border off; or give --start X,Y at a line"

@@ -29,7 +29,6 @@ from morfax.tracer.limits import AHEAD_RAD, NEAR, PIECE_MM
 
 # Chosen by trial on the test drawings.
 STEP_MM = 0.03  # between the places that are compared
-FRESH_MM = PIECE_MM  # the newest stretch of a way does not count as followed before
 ON_IT = 0.05  # of the line's width: two ways nearer than this are the same line, as felt twice
 AT_ALL = 1.0  # of the line's width: a run that stays further away has not come back
 ALIKE = math.cos(AHEAD_RAD)  # cosine between headings that are about one
@@ -43,7 +42,8 @@ def loop_in(positions: Array, width_mm: float) -> tuple[int, int] | None:
         return None
     places = positions[index]
     m = len(places) - 1
-    old = places[: max(0, m - round(FRESH_MM / STEP_MM))]
+    # the newest piece does not count as followed before
+    old = places[: max(0, m - round(PIECE_MM / STEP_MM))]
     if not len(old):
         return None
     away = np.hypot(*(old - positions[-1]).T)
@@ -93,7 +93,7 @@ def comes_again(places: Array, step_mm: float, width_mm: float) -> bool:
     """Whether the newest stretch of a trail (n, 2), a place every `step_mm`, runs along an earlier one in the
     same sense.
     """
-    fresh = round(FRESH_MM / step_mm)
+    fresh = round(PIECE_MM / step_mm)
     old, newest = places[: -2 * fresh], places[-fresh:]
     if len(old) < fresh:
         return False

@@ -13,7 +13,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import heading_between
 from morfax.tracer.head import loop
-from morfax.tracer.limits import NEAR
+from morfax.tracer.limits import NEAR, PIECE_MM
 from morfax.tracer.sensing.leg import Leg
 
 # Chosen by trial on the test drawings.
@@ -54,6 +54,15 @@ class Trail:
         # lowest x, y and highest x, y of each full box
         self._boxes = np.empty((ROOM // BOXED, 4))
         self._boxed = 0
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Trail:
+        """A trail that goes on by itself. The places so far, which are never changed, are shared: it has no
+        room for more, and makes its own.
+        """
+        copied = Trail(self._places[0], self.step_mm)
+        copied._places, copied._count = self._places[: self._count], self._count
+        copied._boxes, copied._boxed = self._boxes.copy(), self._boxed
+        return copied
 
     def add(self, positions: Array) -> None:
         """Remember positions (n, 2) in the order of travel."""
@@ -130,7 +139,7 @@ class Trail:
     def holds(self, leg: Leg, width_mm: float) -> bool:
         """Whether the beginning of a leg has been followed already, in either sense."""
         # 1. the places of the trail about the leg's first third
-        before = max(0, self._count - round(loop.FRESH_MM / self.step_mm))
+        before = max(0, self._count - round(PIECE_MM / self.step_mm))
         first = leg.seen[: max(3, len(leg.seen) // 3), :2]
         low, high = first.min(axis=0) - width_mm, first.max(axis=0) + width_mm
         old = self._within(low, high, before)
@@ -183,7 +192,7 @@ def is_near_itself(marks, width_mm):  # type: ignore[no-untyped-def]
     """Whether an earlier place of the trail is near to the newest: it may run along itself."""
     places, boxes, beside_mm = marks.places, marks.boxes, 2 * NEAR * width_mm
     x, y = places[marks.marked[0] - 1, 0], places[marks.marked[0] - 1, 1]
-    end = marks.marked[0] - 2 * round(loop.FRESH_MM / marks.step_mm)
+    end = marks.marked[0] - 2 * round(PIECE_MM / marks.step_mm)
     k = 0
     while k < end:
         box = k // BOXED

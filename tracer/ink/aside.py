@@ -161,25 +161,24 @@ def _beside_families(
     long_mm = np.maximum(np.hypot(chords[:, 0], chords[:, 1]), NOT_ZERO)
     straight = long_mm + widths_mm > STRAIGHT * np.array([length_mm(way) for way in ways])
     for family in families:
-        heading = direction(family.heading_rad)
-        cross_mm = np.abs(chords[:, 0] * heading[1] - chords[:, 1] * heading[0])
-        like = np.flatnonzero(
-            straight & (cross_mm < math.sin(ALIKE) * long_mm + 0.5 * widths_mm)
-        )
+        # 1. strokes along its heading, and which of them lie beside each other, as far apart as its own
+        ahead = direction(family.heading_rad)
+        right = np.array([ahead[1], -ahead[0]])
+        turns_mm = math.sin(ALIKE) * long_mm + 0.5 * widths_mm
+        like = np.flatnonzero(straight & (np.abs(chords @ right) < turns_mm))
         away = middles[like][:, None] - middles[like][None]
-        aside_mm = away[..., 0] * heading[1] - away[..., 1] * heading[0]
-        is_next = 0.5 * (long_mm[like][:, None] + long_mm[like][None]) > np.abs(away @ heading)
+        aside_mm, along_mm = away @ right, np.abs(away @ ahead)
+        is_next = 0.5 * (long_mm[like][:, None] + long_mm[like][None]) > along_mm
         is_next &= np.abs(np.abs(aside_mm) / family.apart_mm - 1) < EVEN
-        # 1. those beside the family, and those beside them
+        # 2. those beside the family, and those beside them
         found, count = np.isin(like, family.strokes), 0
         while found.sum() > count:
             count = int(found.sum())
             found |= (is_next & found[None]).any(axis=1)
-        # 2. between two of them
-        left, right = (
-            (is_next & found[None] & side).any(axis=1) for side in (aside_mm > 0, aside_mm < 0)
-        )
-        within.update(like[found & left & right].tolist())
+        # 3. between two of them
+        sides = (aside_mm > 0, aside_mm < 0)
+        one, other = ((is_next & found[None] & side).any(axis=1) for side in sides)
+        within.update(like[found & one & other].tolist())
         beside.update(like[found].tolist())
     return within, beside
 

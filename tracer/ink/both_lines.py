@@ -15,8 +15,8 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.drawing.thinning import Indices
-from morfax.tracer.ink.felt import FEWEST_STATIONS, Ends
-from morfax.tracer.ink.run import Run, smooth
+from morfax.tracer.ink.felt import Ends, between_rims
+from morfax.tracer.ink.run import LEAST_PLACES, Run, smooth
 
 # All limits below were chosen by trial on drawings of nets and on line art.
 # of its way: ink of two lines that becomes wider by more has come to others that cross it
@@ -36,13 +36,15 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     """The two lines of a width whose ink runs together along some stations: half a width within its rims;
     `ends` says where their ink ends.
 
-    None where the ink swells on the way. Where the ink is as narrow as one line they touch, or change sides:
+    None where the ink swells on the way. Half a width before a junction begins the ink of what meets there:
+    they end before it if a leg of them is left. Where the ink is as narrow as one line they touch, or change
+    sides:
 
         width │ ╲  ╱  crosses: it comes and goes at a slope     ╲_  _╱  touches: the slope fades
               │  ╲╱                                               ╲╱
     """
     known = np.flatnonzero(np.isfinite(stations.widths_mm))
-    if len(known) < FEWEST_STATIONS:
+    if len(known) < LEAST_PLACES:
         return []
     at = np.arange(len(stations))
     widths = np.interp(at, known, stations.widths_mm[known])
@@ -53,7 +55,15 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     stations, widths = stations.part(*part_of), widths[slice(*part_of)]
     near, far = (round(share * width_mm / stations.view.step_mm) for share in CROSSED)
     part = _told_apart(0.5 * (widths / width_mm - 1), ends, near, far)
-    return within_rims(stations.part(part.start, part.stop), widths[part], width_mm)
+    within = slice(
+        max(part.start, 0 if ends[0] else reach),
+        min(part.stop, len(widths) - (0 if ends[1] else reach)),
+    )
+    if (within.stop - within.start) * stations.view.step_mm > stations.view.leg_mm:
+        part = within
+    return within_rims(
+        between_rims(stations.part(part.start, part.stop)), widths[part], width_mm
+    )
 
 
 def within_rims(part: Run, widths: Array, width_mm: float) -> list[Run]:
@@ -80,7 +90,7 @@ def _told_apart(aside: Array, ends: Ends, near: int, far: int) -> slice:
     before = [part[-1] + 1 for part in parts if part[0] < far and not ends[0]]
     behind = [part[0] for part in parts if part[-1] + far >= count and not ends[1]]
     begin, end = int(max(before, default=0)), int(min(behind, default=count))
-    return slice(begin, end) if end - begin > FEWEST_STATIONS else slice(0, count)
+    return slice(begin, end) if end - begin > LEAST_PLACES else slice(0, count)
 
 
 def _sides(aside: Array, width_mm: float, step_mm: float) -> Array:
@@ -114,7 +124,7 @@ def _without_flares(
         return first, last
     steps = widths[first + reach : last] - widths[first : last - reach]
     quiet = np.flatnonzero(np.abs(steps) < most_mm)
-    if len(quiet) < FEWEST_STATIONS:
+    if len(quiet) < LEAST_PLACES:
         return first, last
     # a flare is still for a moment where it is broadest
     parts = np.split(quiet, np.flatnonzero(np.diff(quiet) > reach) + 1)

@@ -29,7 +29,12 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.ink.crossing_on_ink import WaysOn, is_explained, told_by_ink
+from morfax.tracer.ink.crossing_on_ink import (
+    WaysOn,
+    is_explained,
+    is_one_with_a_tip,
+    told_by_ink,
+)
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
@@ -101,7 +106,8 @@ class Crossing:
         if self.drawn is not None:
             return self.drawn
         if len(self.legs) == 2:
-            return WaysOn(() if self._tips else ((0, 1),), {})
+            are_two = self._tips and not is_one_with_a_tip(self, (0, 1))
+            return WaysOn(() if are_two else ((0, 1),), {})
         if vertices := self._vertices:
             return WaysOn(tuple(sorted(vertices)), vertices)
         return told_by_ink(self, WaysOn(tuple(self._by_turnings), {}))
@@ -213,10 +219,8 @@ class Crossing:
     @cached_property
     def ends_mm(self) -> dict[int, float]:
         """How far beyond their clean ends legs without a partner end that come onto others, mm."""
-        if self._tips:
-            return self._tips
         if not self.pairs:
-            return {}
+            return self._tips
         paired = {leg for pair in self.pairs for leg in pair}
         alone = [k for k in range(len(self.legs)) if k not in paired]
         loose = [Loose(self.views[k], self.legs[k], self.near[k]) for k in alone]

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.crossing import Crossing
 
 # All limits below were chosen by trial on crowded sheets of lines, circles and rectangles.
-OFF = 0.08  # widths², in a box as wide as a line: of right crossings hardly any comes above
+OFF = 0.08  # widths², in a box as wide as a line: of crossings that are right to 0.1 mm none comes above
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
 REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
 TRIED = 5  # pairings
@@ -107,6 +107,19 @@ def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     return told
 
 
+def is_one_with_a_tip(crossing: Crossing, pair: Pair) -> bool:
+    """Whether two legs that come in side by side explain their ink as one line with a corner, and not as two
+    that end there.
+    """
+    ends = crossing.as_drawn(WaysOn((), {}))
+    one = crossing.as_drawn(WaysOn((pair,), {}))
+    ink = _Ink.about(crossing, one.ways_mm)
+    if ink.is_empty or AsDrawn(ends, ink).off < OFF:
+        return False
+    cornered = _cornered(crossing, (pair,), ink)
+    return cornered is not None and AsDrawn(crossing.as_drawn(cornered), ink).off < OFF
+
+
 def is_explained(crossing: Crossing) -> bool:
     """Whether a pen along the ways of a crossing leaves its ink."""
     ink = _Ink.about(crossing, crossing.ways_mm)
@@ -126,18 +139,25 @@ def _others(crossing: Crossing, told: WaysOn, ink: _Ink) -> Iterator[WaysOn]:
     legs, view = crossing.legs, crossing.views[0]
     costs = turnings(legs, crossing.width_mm, view)
     for pairs in dict.fromkeys([told.pairs, *likeliest(costs, TRIED)]):
-        corners = dict[Pair, Array]()
-        for a, b in pairs:
-            corner = Corner.of(legs[a], legs[b].turned_round())
-            if corner is not None and corner.deflection_rad > SMOOTHLY:
-                corners[a, b] = corner.vertex_mm[None]
-        drawn = WaysOn(pairs, corners)
-        if corners:
-            drawn = ink.settled(crossing, drawn)
-            ways = [crossing.as_drawn(drawn).way(pair) for pair in corners]
-            if not all(on_ink(view, [way]) for way in ways):
-                continue
-        yield drawn
+        if (drawn := _cornered(crossing, pairs, ink)) is not None:
+            yield drawn
+
+
+def _cornered(crossing: Crossing, pairs: tuple[Pair, ...], ink: _Ink) -> WaysOn | None:
+    """Ways to go on with a corner wherever two legs turn, where it explains the ink best; None if it leads
+    over paper.
+    """
+    legs, corners = crossing.legs, dict[Pair, Array]()
+    for a, b in pairs:
+        corner = Corner.of(legs[a], legs[b].turned_round())
+        if corner is not None and corner.deflection_rad > SMOOTHLY:
+            corners[a, b] = corner.vertex_mm[None]
+    drawn = WaysOn(pairs, corners)
+    if not corners:
+        return drawn
+    drawn = ink.settled(crossing, drawn)
+    ways = [crossing.as_drawn(drawn).way(pair) for pair in corners]
+    return drawn if all(on_ink(crossing.views[0], [way]) for way in ways) else None
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,6 @@ Flags = NDArray[np.bool_]
 REACH = 1.0  # widths, with `REACH_PX`, within which the edges are looked for
 GUIDED_WIDTHS = 0.75  # to either side of a place: what its heading is taken over
 ROUGHER = 2.5  # standard deviations of a rough line's own width: so far a station may differ
-FEWEST_STATIONS = LEAST_PLACES  # of a clean run
 MARGIN = 2  # stations at the ends of a run that may have felt what ends it
 MEANT = 2.0  # lengths of a leg: a longer line's own width counts, and not its neighbours'
 # a part at an end of the ink that is as long is line, however it tapers, if so much of it has two edges
@@ -110,7 +109,7 @@ class Felt(NamedTuple):
                 )
                 if (b - a) * view.step_mm > TAPERED_WIDTHS * width_mm and _is_felt(part):
                     parts.append((a, b, own))
-            elif last - first > FEWEST_STATIONS and is_steady(part, width_mm):
+            elif last - first > LEAST_PLACES and is_steady(part, width_mm):
                 clean = judged(replace(part, view=own), width_mm).clean
                 parts += [(first + a, first + b, own) for a, b in _runs_of(clean, own)]
         return sorted(parts, key=lambda part: part[0])
@@ -136,6 +135,23 @@ def feel_along(view: View, guide_mm: Array) -> Run:
     return Run(places, headings, np.zeros(len(places)), widths, view)
 
 
+def between_rims(run: Run) -> Run:
+    """A run whose places lie in the middle between the rims of its ink where that has two, and whose headings
+    are those of the way through them: on broad ink `feel_along` keeps them to the guide. Stations that leap
+    onto other ink lie between the others.
+    """
+    view, leaps = run.view, _leaps(run, run.view.width_mm)
+    reach_mm = REACH * view.width_mm + REACH_PX * view.pitch_mm
+    found = _felt_across(view.cells, run.places_mm, run.headings_rad, reach_mm)
+    aside = np.nan_to_num(0.5 * (found[:, 0] + found[:, 1]))
+    places = run.places_mm + aside[:, None] * left_of_headings(run.headings_rad)
+    known = np.flatnonzero(~(np.r_[False, leaps] & np.r_[leaps, False]))
+    at = np.arange(len(run))
+    places = np.column_stack([np.interp(at, known, column[known]) for column in places.T])
+    reach = max(2, round(GUIDED_WIDTHS * view.width_mm / view.step_mm))
+    return replace(run, places_mm=places, headings_rad=_headings(places, reach))
+
+
 def judged(stations: Run, width_mm: float, *, is_smooth: bool = False) -> Felt:
     """Which stations are those of clean line, if a line is as wide as this; smooth ones all along."""
     view, widths = stations.view, stations.widths_mm
@@ -148,10 +164,14 @@ def judged(stations: Run, width_mm: float, *, is_smooth: bool = False) -> Felt:
         if abs(usual_mm - width_mm) < within_mm:
             within_mm = max(within_mm, ROUGHER * spread_mm)
     clean = known & (off < within_mm)
-    steps = np.hypot(*np.diff(stations.places_mm, axis=0).T)
-    leaps = np.abs(steps - view.step_mm) > LEAP * width_mm + LEAP_PX * view.pitch_mm
-    clean[1:] &= ~leaps
+    clean[1:] &= ~_leaps(stations, width_mm)
     return Felt(stations, clean)
+
+
+def _leaps(stations: Run, width_mm: float) -> Flags:
+    """Which steps between stations lead onto other ink than that of their line."""
+    view, steps = stations.view, np.hypot(*np.diff(stations.places_mm, axis=0).T)
+    return np.asarray(np.abs(steps - view.step_mm) > LEAP * width_mm + LEAP_PX * view.pitch_mm)
 
 
 def _is_felt(run: Run) -> bool:
@@ -204,7 +224,7 @@ def _runs_of(clean: Flags, view: View) -> list[tuple[int, int]]:
 
 def _is_long_enough(stations: int, view: View) -> bool:
     """Whether so many stations are a run, and no chance."""
-    return stations >= max(FEWEST_STATIONS, LEAST_WIDTHS * view.width_mm / view.step_mm)
+    return stations >= max(LEAST_PLACES, LEAST_WIDTHS * view.width_mm / view.step_mm)
 
 
 def _corners(places: Array) -> list[int]:

@@ -29,7 +29,6 @@ from morfax.tracer.ink.left_out import InkLeft
 
 # In widths of the lines of a patch, by trial on 11 sheets with known truth: each piece was one of a true line
 # that no stroke ran along.
-REACH = 0.5 * COVERS  # from all strokes: half a width is the pen's, and a tenth the scan's blur
 # of missed line, by its ink; a corner of 30 degrees that comes to a point has a third
 LEAST = 0.8
 BROAD = 0.5  # of a piece: so much lies as far on the stroke's other side as well
@@ -91,7 +90,8 @@ def _far(sheet: Sheet, left: InkLeft, run: Array, widths_mm: Array) -> _Far:
         places = sheet.places_mm(rows, columns)
         width_mm = np.repeat(widths_mm[patches.patch[some]], counts)
         away_mm, nearest = near.nearest(places)
-        at = np.flatnonzero((away_mm > REACH * width_mm) & left.packed_ink.at(rows, columns))
+        is_far = away_mm > 0.5 * COVERS * width_mm  # half of it lies on either side of a stroke
+        at = np.flatnonzero(is_far & left.packed_ink.at(rows, columns))
         at = at[~_at_rim(left, rows[at], columns[at])]
         found.append(_Far(rows[at], columns[at], places[at], run[nearest[at]], width_mm[at]))
     return _Far(*(np.concatenate(column) for column in zip(*found, strict=True)))

@@ -21,10 +21,10 @@ from morfax.motion.neighbours import pairs_within
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.both_lines import strands
 from morfax.tracer.ink.doubled import LEAST_WIDTHS, SWELLS, spread
-from morfax.tracer.ink.felt import FEWEST_STATIONS, Parted, whole
+from morfax.tracer.ink.felt import Parted, whole
 from morfax.tracer.ink.felt_lines import FeltLine, end_leg
 from morfax.tracer.ink.graph import RING
-from morfax.tracer.ink.run import Run
+from morfax.tracer.ink.run import LEAST_PLACES, Run
 from morfax.tracer.ink.stretches import FeltSheet, with_width
 from morfax.tracer.sensing.leg import FACING, Leg, turn
 from morfax.tracer.sensing.probe import end_of
@@ -187,7 +187,7 @@ def _all_felt(sheet: FeltSheet, number: int, meeting: list[int]) -> Run:
     felt = sheet.felt[number]
     off = round(MET_WIDTHS * sheet.measured[number].width_mm / felt.view.step_mm)
     first, last = (off if count > 1 else 0 for count in meeting)
-    if len(felt) - first - last < FEWEST_STATIONS:
+    if len(felt) - first - last < LEAST_PLACES:
         first = last = 0
     return whole(sheet.taken(number).stations.part(first, len(felt) - last))
 

@@ -24,6 +24,7 @@ from enum import Enum, auto
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.tracer.ink.straight_on import AS_BROAD
 from morfax.tracer.ink.swelling import Swelling
 from morfax.tracer.limits import CLEAR_WIDTHS, WIDER
 
@@ -40,8 +41,7 @@ UP = 0.2, 0.4, 0.8
 STRAIGHT, LEVELS_OFF = 0.62, (0.3, 0.56)
 # widths to either side of a step, from `CLEAR_WIDTHS` on: it is averaged over two
 FURTHER = 3.5
-# of the thinnest width: so near to it is one line; so much broader are two
-ONE, STEP = 0.06, 0.2
+STEP = 0.2  # of the thinnest width: ink that is broader by so much is two lines'
 LEVEL = 0.3  # of the step, by which the ink beyond it may differ
 END = 1, 3  # thinnest widths: where the ink of an end is felt
 LEAST = 6  # thinnest widths: a shorter stretch tells nothing of its ends
@@ -163,7 +163,7 @@ def _steps(averaged: Array, thin_mm: float, step_mm: float) -> list[int]:
     is_step = np.zeros(len(at), bool)
     for way in (1, -1):
         beside, beyond = rises[at + way * near], rises[at + way * far]
-        is_one = np.maximum(abs(rises[at - way * near]), abs(rises[at - way * far])) < ONE
+        is_one = np.maximum(abs(rises[at - way * near]), abs(rises[at - way * far])) < AS_BROAD
         is_step |= is_one & (beside > STEP) & (np.abs(beyond - beside) < LEVEL * beside)
     return at[np.flatnonzero(np.diff(np.r_[False, is_step].astype(int)) > 0)].tolist()
 

@@ -33,7 +33,7 @@ from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, TURNS_BACK, Leg, leg_of, turn
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.ray import Ray, end_of_ink
-from morfax.tracer.sensing.scout import onward
+from morfax.tracer.sensing.scout import CLEAN, onward
 from morfax.tracer.sensing.view import View
 
 # Chosen by trial on the test drawings.
@@ -48,8 +48,7 @@ FEWEST_BACK = 6  # stations that make a way to a tip, or back from it
 # of the way clear of a vertex: a line that passes is seen there
 PASSED = np.array([0.4, 0.6, 0.8, 1.0])
 CLEAR_ACROSS, LEAST_SINE = 1.2, 0.1  # that way: beyond the other leg's ink
-# of the width: by so much a line that passes may be wider, and off the leg's line
-LIKE, CENTRED = 0.2, 0.8
+CENTRED = 0.8  # of the width: by so much a line that passes may be off the leg's line
 BEFORE, BEYOND = 0.5, 1.0  # widths that a vertex may move towards the legs, and away from them
 
 NEAR_EDGE = 0.2  # of the width from the middle: the edge that is followed is further out
@@ -131,7 +130,7 @@ def _passes(view: View, leg: Leg, vertex_mm: float, turned: float) -> bool:
     place = leg.at(vertex_mm + clear_mm)
     heading = leg.heading_at(vertex_mm + clear_mm)
     right, left = view.edges(place, heading, 2 * view.width_mm)
-    like = abs(left - right - leg.width_mm) < LIKE * leg.width_mm
+    like = abs(left - right - leg.width_mm) < CLEAN * leg.width_mm
     return like and abs(left + right) < CENTRED * leg.width_mm
 
 

@@ -20,12 +20,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.plane import heading_of
 from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.junctions.line_ahead import straight_on
-from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.sensing.leg import ABOUT_LEGS, leg_of
 from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.probe import END_WIDTHS
 from morfax.tracer.sensing.view import View
-
-FELT_LEGS = 1.5  # of a leg's length, before the end
 
 
 class Break(NamedTuple):
@@ -46,7 +44,7 @@ def breaks(view: View, way_mm: Array, at_start: bool) -> tuple[Break, ...]:
 
 def _gap_mm(view: View, way_mm: Array) -> float | None:
     """The gap that must be allowed to go on straight from the end of a way; None if no ink goes on there."""
-    felt_mm = FELT_LEGS * view.leg_mm
+    felt_mm = ABOUT_LEGS * view.leg_mm
     place = _last_beyond(way_mm, felt_mm)
     if place is None:
         return None

@@ -21,8 +21,8 @@ BESIDE_MM, BESIDE_WIDTHS = 3.5, 7.0
 FARTHEST_MM = 1.5  # from the line's edge to a tick beside it
 SLANT = math.tan(AHEAD_RAD)  # from square to the line, at most
 BENT_MM = 0.1  # root mean square distance from a straight line, at most
-# width, of the line's: of a tick, and of ink that is looked at, for a line that crosses may show half
-LIKE, SEEN = (0.5, 1.6), (0.3, 2.0)
+# width, of the line's, of ink that is looked at: a line that crosses may show half
+SEEN = (0.3, 2.0)
 INK = (0.65, 1.4)  # darkness, of the line's: one pen draws both
 # widths from the line's middle: nearer, the ink of tick and line runs together
 CLEAR_OF_LINE = 0.9

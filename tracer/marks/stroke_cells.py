@@ -16,13 +16,13 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.tracer.limits import CLEAR_WIDTHS
+from morfax.tracer.sensing.gauge import WIDEST
 from morfax.tracer.sensing.photocell import STEP_PX
 from morfax.tracer.sensing.ray import Ray, end_of_ink, seen_on
 from morfax.tracer.sensing.scout import SPECK_MM, SPECK_PX
 
 ACROSS = 1.2  # widths, along the path from a stroke's middle: its edges are nearer
-# widths: a dash is no wider, and its middle no further from the stroke's own line
-WIDE, STRAY = 1.6, 0.25
+STRAY = 0.25  # widths: the middle of a dash is no further from the stroke's own line
 # of paper on a stroke, at most as long as a speck
 SPECK_WIDTHS = 0.6
 NEAREST = 0.4  # widths from the path: the line's own ink is not felt
@@ -80,7 +80,7 @@ def goes_on(cells, base, middles, beyond_mm, width_mm):  # type: ignore[no-untyp
         there = u + slant * k * step
         right, left = _across(cells, base, there, v + k * step, ACROSS * width_mm)
         stray = abs(0.5 * (left + right) - there)
-        like = left - right < WIDE * width_mm and stray < STRAY * width_mm
+        like = left - right < WIDEST * width_mm and stray < STRAY * width_mm
         run = run + step if like else 0.0
         if run > CLEAR_WIDTHS * width_mm:
             return True

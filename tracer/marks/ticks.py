@@ -32,6 +32,7 @@ from morfax.tracer.marks.stroke_cells import (
     soiled_beside,
     stroke_at,
 )
+from morfax.tracer.sensing.gauge import NARROWEST, WIDEST
 from morfax.tracer.sensing.parabola import OUTLIERS
 from morfax.tracer.sensing.photocell import LEVEL
 from morfax.tracer.sensing.probe import is_tip
@@ -121,7 +122,7 @@ class SideStroke:
     def is_like(self) -> bool:
         """Whether the line's pen drew it: as wide and as dark as the line."""
         darkness = darkness_of(self.view.cells, self.base, self.clear) * LEVEL / self.view.level
-        is_wide = sizes.LIKE[0] < self.wide < sizes.LIKE[1]
+        is_wide = NARROWEST < self.wide < WIDEST
         return bool(is_wide and sizes.INK[0] < darkness < sizes.INK[1])
 
     @cached_property

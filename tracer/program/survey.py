@@ -39,7 +39,6 @@ from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.selection import Contour
-from morfax.tracer.program.nets.net_outline import AREA_WIDTHS
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import followed_from_an_end
 from morfax.tracer.sensing.view import View
@@ -133,7 +132,7 @@ def survey(setup: Setup) -> Survey:
         entries[patch] = Entry(line.number, "dot" if line.is_dot else "closed", *size, patch)
     # 3. what lies inside which, and what stands in rows
     enclosure = sheet.patches.enclosure
-    loops = enclosure.loops((AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2)
+    loops = sheet.loops()
     for patch, entry in entries.items():
         entries[patch] = replace(
             entry,

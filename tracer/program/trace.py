@@ -54,17 +54,23 @@ def trace(
     """
     operator = operator or Operator()
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
-    found = OfNet(setup) if start_mm is not None else of_net(setup)
-    line = _along_net(found) or followed(found.setup, start_mm)
-    line = SmallLoops(found.setup.sheet, setup.settings).mended(line)
-    if start_mm is None:
-        line = max(touching(found.setup, [line]), key=lambda each: each.length_mm)
+    line = _way_round(setup, start_mm)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
     lines, unread = with_marks_read([line], operator)
-    # the way along the line is told, and has come to its end
+    # the way along the line is told, and has come to its end; the head's runs so far are given up
     setup = replace(setup, progress=None)
     lines, left = explained(setup, bent(setup, lines))
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=left)
+
+
+def _way_round(setup: Setup, start_mm: tuple[float, float] | None) -> Line:
+    """The line at a place, or the longest, as the head ran along it, small loops and touches laid anew."""
+    found = OfNet(setup) if start_mm is not None else of_net(setup)
+    line = _along_net(found) or followed(found.setup, start_mm)
+    line = SmallLoops(found.setup.sheet, setup.settings).mended(line)
+    if start_mm is not None:
+        return line
+    return max(touching(found.setup, [line]), key=lambda each: each.length_mm)
 
 
 def _along_net(found: OfNet) -> Line | None:

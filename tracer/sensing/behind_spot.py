@@ -24,7 +24,6 @@ HALO_SPREADS = 5.0  # standard deviations of a spot that OpenCV looks at, and on
 # from what is drawn: no cell that is held against a level looks further; by trial
 ABOUT_MM = 4.0
 TILE_BLOCKS = 16  # blocks of a sheet to the side of a tile that is seen behind a spot at a time
-MOSTLY = 0.6  # of the tiles: the whole sheet at once takes less
 
 # rows above a part of a sheet, columns to the left of it, rows below, columns to the right
 Beyond = tuple[int, int, int, int]
@@ -51,8 +50,6 @@ def near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
         inked, np.ones((about, about), np.uint8)
     )
     near = padded.reshape(tiles[0], TILE_BLOCKS, tiles[1], TILE_BLOCKS).any(axis=(1, 3))
-    if near.mean() > MOSTLY:
-        return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
     # 2. each stretch behind the spot
     seen, side = _bare(darkness.shape), TILE_BLOCKS * BLOCK_PX
     edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)

@@ -32,6 +32,7 @@ TURNS_BACK = BACK_RAD
 FACING = math.radians(35)
 FARTHEST_MM = 10.0  # legs that meet further away do not meet
 FEWEST_STATIONS, LEAST_WIDTHS = FEWEST, 0.8  # of clean line make a leg; by trial
+ABOUT_LEGS = 1.5  # lengths of a leg: so much is felt of a line to show a leg in the midst of it
 
 # how far two legs meet beyond the one's clean end and before the other's, mm
 Meeting = tuple[float, float]

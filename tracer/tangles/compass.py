@@ -34,7 +34,7 @@ from morfax.tracer.tangles.seen_ink import PRICE, STEPS, SeenInk, best_of
 
 SHARP = (3, 4, 5, 6)  # corners of the polygons that are tried
 ROUNDED = (1, 2, 3, 4)  # points of the cores that are tried
-CORE, ROUNDING = 0.6, 0.4  # of half a shape, as a rounded polygon begins
+CORE = 0.6  # of half a shape, as a rounded polygon begins; the rest is its rounding
 # for each width of the way's length: what a core leaves to begin with, at most; of 58 that settled on the ink
 # of a loop the worst left 0.21
 BEGIN = 0.3
@@ -155,7 +155,7 @@ def _starts(ink: SeenInk) -> Iterator[Core]:
         polygon = _within(_reduced(hull, points), ink.half_mm)
         yield Core(middle + polygon, 0.0, ink.half_mm)
         if points in ROUNDED:
-            radius_mm = ROUNDING * float(np.hypot(*polygon.T).min())
+            radius_mm = (1 - CORE) * float(np.hypot(*polygon.T).min())
             yield Core(middle + CORE * polygon, radius_mm, ink.half_mm)
 
 

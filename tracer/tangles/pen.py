@@ -168,11 +168,33 @@ def away_from(places: Array, way: Array) -> Array:
     return distance
 
 
-def are_within(places: Array, way: Array, reach_mm: float) -> NDArray[np.bool_]:
-    """Whether places (n, 2) are nearer to a way (m, 2) than a reach, mm; one far off meets no piece of it."""
-    distance = np.full(len(places), reach_mm)
-    _away_by_boxes(places, np.ascontiguousarray(np.hstack([way[:-1], way[1:]]).T), distance)
-    return np.asarray(distance < reach_mm)
+@njit(cache=True)
+def boxes_of(lines):  # type: ignore[no-untyped-def]
+    """The boxes about pieces of lines (4, k), so many in each: least x and y, greatest x and y, (n, 4)."""
+    count = lines.shape[1]
+    boxes = np.empty(((count + BOXED - 1) // BOXED, 4))
+    for b in range(len(boxes)):
+        low_x = low_y = NOWHERE_MM
+        high_x = high_y = -NOWHERE_MM
+        for i in range(b * BOXED, min((b + 1) * BOXED, count)):
+            low_x, high_x = (
+                min(low_x, lines[0, i], lines[2, i]),
+                max(high_x, lines[0, i], lines[2, i]),
+            )
+            low_y, high_y = (
+                min(low_y, lines[1, i], lines[3, i]),
+                max(high_y, lines[1, i], lines[3, i]),
+            )
+        boxes[b, 0], boxes[b, 1], boxes[b, 2], boxes[b, 3] = low_x, low_y, high_x, high_y
+    return boxes
+
+
+@njit(cache=True)
+def to_box2(boxes, b, x, y):  # type: ignore[no-untyped-def]
+    """The square of the distance of a place from a box."""
+    dx = max(boxes[b, 0] - x, x - boxes[b, 2], 0.0)
+    dy = max(boxes[b, 1] - y, y - boxes[b, 3], 0.0)
+    return dx * dx + dy * dy
 
 
 @njit(cache=True, fastmath=True)
@@ -182,25 +204,15 @@ def _away_by_boxes(places, lines, out):  # type: ignore[no-untyped-def]
     x0, y0 = lines[0], lines[1]
     vx, vy = lines[2] - x0, lines[3] - y0
     per = 1.0 / (vx * vx + vy * vy + NOTHING_MM2)
-    # 1. boxes of so many pieces each
-    boxes = np.empty(((count + BOXED - 1) // BOXED, 4))
-    for b in range(len(boxes)):
-        low_x = low_y = NOWHERE_MM
-        high_x = high_y = -NOWHERE_MM
-        for i in range(b * BOXED, min((b + 1) * BOXED, count)):
-            low_x, high_x = min(low_x, x0[i], lines[2, i]), max(high_x, x0[i], lines[2, i])
-            low_y, high_y = min(low_y, y0[i], lines[3, i]), max(high_y, y0[i], lines[3, i])
-        boxes[b, 0], boxes[b, 1], boxes[b, 2], boxes[b, 3] = low_x, low_y, high_x, high_y
-    # 2. the box in which the place before was nearest comes first
+    boxes = boxes_of(lines)
+    # the box in which the place before was nearest comes first
     newest = 0
     for k in range(len(places)):
         best = out[k] * out[k]
         x, y = places[k, 0], places[k, 1]
         for n in range(-1, len(boxes)):
             b = newest if n < 0 else n
-            dx = max(boxes[b, 0] - x, x - boxes[b, 2], 0.0)
-            dy = max(boxes[b, 1] - y, y - boxes[b, 3], 0.0)
-            if dx * dx + dy * dy >= best:
+            if to_box2(boxes, b, x, y) >= best:
                 continue
             before = best
             for i in range(b * BOXED, min((b + 1) * BOXED, count)):

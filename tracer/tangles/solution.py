@@ -30,6 +30,7 @@ from morfax.tracer.tangles.likeness import Patch, Pen
 from morfax.tracer.tangles.redrawing import CLEAR, NONE, VERTEX, Redrawing
 from morfax.tracer.tangles.sketch import Sketch, redrawings
 from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretches_over
+from morfax.tracer.tangles.uncrossed import uncrossed
 
 # Misfits, unless said otherwise; chosen by trial on the test drawings.
 # a way between two legs far apart may leave this, if it is better than the plan by such a share
@@ -89,7 +90,7 @@ def unravelled(sketch: Sketch, approach: Approach) -> Solution:
         return Solution(plan)
     # 3. one of them, and those that would do as well
     leg, straight = _taken(sketch, best, approach)
-    way, others = best[leg], _others(sketch, best, leg)
+    way, others = uncrossed(sketch, best[leg], SLACK), _others(sketch, best, leg)
     # 4. the plan, if it explains the ink as well
     direct = approach.over(NONE, legs[leg])
     if any(_is_rough(sketch, way, line) for line in (plan, direct)):

@@ -176,6 +176,13 @@ def _cubics(weights_mm: Array, places_mm: Array, clamped: tuple[bool, bool]) -> 
 
 def wrong_along(ink: SeenInk, way: Array, sharp: NDArray[np.bool_]) -> Array:
     """What a pen along a way (m, 2) mm, with some corners, draws too dark at places of an ink, (n,)."""
+    return wrong_and_where(ink, way, sharp)[0]
+
+
+def wrong_and_where(
+    ink: SeenInk, way: Array, sharp: NDArray[np.bool_]
+) -> tuple[Array, NDArray[np.int64]]:
+    """The same, and the number of the place of the way that each is nearest to."""
     out, near = np.empty(len(ink.places_mm)), np.empty((len(ink.places_mm), 3))
     moved_way.wrong(ink.for_kernel(), np.ascontiguousarray(way), sharp, near, out)
-    return out
+    return out, np.round(near[:, 1] + near[:, 2]).astype(int)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import cv2
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from morfax.tracer.drawing.depth import (
     _along_runs,
     depth_along,
     depth_at,
+    depth_of,
     depth_px,
 )
 
@@ -24,6 +27,18 @@ def test_lines_on_much_paper_are_as_deep_as_the_whole_sheet_says(width_px: int) 
     ink[250:, 5] = 1
     exact = cv2.distanceTransform(ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     assert np.array_equal(depth_px(ink), exact)
+
+
+def test_paper_takes_no_memory() -> None:
+    """The runs of a page were found on three copies of it, where its memory was the most."""
+    ink = np.zeros((2000, 1500), np.uint8)
+    ink[::100] = 1
+    depth_of(ink)  # its kernels
+    tracemalloc.start()
+    depth_of(ink)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 0.5 * ink.size
 
 
 def test_a_filled_shape_is_deep_and_paper_is_not() -> None:

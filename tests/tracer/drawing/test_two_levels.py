@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from morfax.tracer.drawing import two_levels
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.two_levels import with_rims
 
@@ -103,3 +104,25 @@ def test_what_is_neither_stays_as_it_is() -> None:
     assert (laid[40:43] == hard[40:43]).all()
     # a corner is a little round
     assert laid[20:24, 7:-7] == pytest.approx(1.0, abs=0.01)
+
+
+def test_rims_are_laid_about_the_ink_alone_and_lighter_paper_is_paper(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of 25 Mpx of paper about a ring all were gone through eight times, and written."""
+    asked = list[tuple[int, ...]]()
+    lay = two_levels._lay_rims
+    monkeypatch.setattr(
+        two_levels, "_lay_rims", lambda part: asked.append(part.shape) or lay(part)
+    )
+    small = (shares(ring(60.0)) > INK).astype(np.float32)
+    large = np.zeros((3 * SIDE_PX, 5 * SIDE_PX), np.float32)
+    part = np.s_[SIDE_PX : 2 * SIDE_PX, 2 * SIDE_PX : 3 * SIDE_PX]
+    large[part] = small
+    large[0, 0] = -0.01
+    laid = with_rims(large)
+    assert laid is large and laid[0, 0] == 0.0
+    assert np.array_equal(laid[part], with_rims(small))
+    across_px = round(2 * (60.0 + 2.3)) + 2
+    assert asked[0] == asked[1] == pytest.approx((across_px, across_px), abs=1)
+    assert laid.sum() == pytest.approx(small.sum(), rel=1e-6)

@@ -12,12 +12,13 @@ from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.beside import Shared, lines_beside
+from morfax.tracer.ink.beside import Shared, _own, lines_beside
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.program.trace_lines import trace_lines
+from morfax.tracer.sensing.view import STEP_WIDTHS
 from tests.tracer.drawing.test_grain import opened
 from tests.tracer.inked import WIDTH_MM, Points, arc, inked, polyline, together
 
@@ -125,3 +126,11 @@ def test_a_burr_near_the_end_of_a_line_is_no_step() -> None:
 def test_the_lines_of_a_shared_part_are_by_themselves_off_its_steps_outward() -> None:
     part = Shared(10.4, 20.6, mock.Mock(spec=Run), 1, -1)
     assert part.cuts(0) == (10, 21) and part.cuts(3) == (7, 24)
+
+
+def test_a_line_shows_where_it_leads_within_three_widths_before_a_step() -> None:
+    """Nearer the step is seen already; further off it may have come from elsewhere."""
+    step_mm = STEP_WIDTHS * WIDTH_MM
+    nearest, farthest = _own(1000, WIDTH_MM, step_mm)
+    assert 0.5 < nearest * STEP_WIDTHS < 1 and 2 < farthest * STEP_WIDTHS < 3
+    assert _own(12, WIDTH_MM, step_mm) == (nearest, 12)  # all of a short one

@@ -106,7 +106,8 @@ def test_two_lines_are_told_from_where_they_are_apart_but_to_the_end_of_their_in
     from_end, _ = strands(felt, WIDTH_MM, (True, True))
     assert len(from_end) == len(felt)
     assert from_junction.places_mm[0, 0] > felt.places_mm[20, 0] + WIDTH_MM
-    assert len(strands(_felt_with(np.zeros(200)), WIDTH_MM)[0]) == 200  # they are nowhere apart
+    nowhere_apart = strands(_felt_with(np.zeros(200)), WIDTH_MM, (True, True))
+    assert len(nowhere_apart[0]) == 200
 
 
 def test_ink_of_two_lines_may_flare_at_both_its_ends() -> None:
@@ -116,3 +117,24 @@ def test_ink_of_two_lines_may_flare_at_both_its_ends() -> None:
     for still in (20, 40, 160, 180):
         apart_mm[still - 6 : still + 6] = apart_mm[still]
     assert strands(_felt_with(apart_mm), WIDTH_MM)
+
+
+def test_stations_beside_the_middle_of_both_lines_do_not_take_these_along() -> None:
+    """On broad ink stations keep to the thinned ink's middle, and one may leap onto one of the lines: both
+    lines were 56 um off, and turned by 14 degrees, where their ink parts.
+    """
+    felt = _felt_with(np.full(200, 0.4 * WIDTH_MM))
+    off_mm = np.r_[np.zeros(160), np.linspace(0.0, 60 * UM, 40)]
+    off_mm[-15] = 250 * UM
+    beside = replace(felt, places_mm=felt.places_mm + off_mm[:, None] * (0.0, 1.0))
+    two = strands(beside, WIDTH_MM, (True, True))
+    for strand in two:
+        assert np.abs(np.abs(strand.places_mm[:, 1] - 20) - 0.2 * WIDTH_MM).max() < 15 * UM
+
+
+def test_both_lines_begin_where_no_other_line_s_ink_does() -> None:
+    """Half a width before a junction ink is felt of what meets there: it turned the last of a line."""
+    felt = _felt_with(np.full(200, 0.4 * WIDTH_MM))
+    near = round(0.5 * WIDTH_MM / felt.view.step_mm)
+    lengths = [len(strands(felt, WIDTH_MM, (is_end, True))[0]) for is_end in (True, False)]
+    assert lengths == [200, 200 - near]

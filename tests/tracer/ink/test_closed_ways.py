@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink import closed_ways as closed_ways_room
 from morfax.tracer.ink import onward as onward_room
 from morfax.tracer.ink import outlines
 from morfax.tracer.ink.aside import has_arrowhead
 from morfax.tracer.ink.chains import Chain, Junction, Junctions, Link, Side
+from morfax.tracer.ink.closed_ways import closed_ways
 from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.net import FeltLine, Net
 from morfax.tracer.ink.onward import Onward
-from morfax.tracer.ink.outlines import Outline, goes_round_paper
+from morfax.tracer.ink.outlines import Outline, goes_round, goes_round_paper
 from morfax.tracer.ink.way_round import Search
 from morfax.tracer.sensing.leg import Leg
 
@@ -109,6 +111,36 @@ def test_a_sharp_tip_is_one_of_long_straight_lines(
     assert search._is_tip(*sides, np.radians(160)) == is_tip
 
 
+@pytest.mark.parametrize(("go_on", "is_end"), [(0, False), (1, True)])
+def test_a_way_that_turns_off_a_line_that_goes_on_has_an_end_there(
+    go_on: int, is_end: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Onward, "goes_on", lambda *_: False)
+    sides = [Side(n, False) for n in range(2)]
+    junctions = Junctions(
+        Net([FeltLine([], [], (0, 1), LINE_MM, 4.0) for _ in sides]), Settings()
+    )
+    search = Search(junctions, Onward(junctions), Onward(junctions))
+    on = search._turned(*sides, go_on, are_alone=True)
+    assert on is not None and on.is_end == is_end
+
+
+@pytest.mark.parametrize(("middle", "is_round"), [((5.0, 2.0), True), ((5.0, 8.0), False)])
+def test_what_lies_in_a_bay_of_a_chain_is_not_inside_it(
+    middle: tuple[float, float], is_round: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rim = np.array([[0, 0], [10, 0], [10, 10], [6, 10], [6, 4], [4, 4], [4, 10], [0, 10]])
+    lines = [FeltLine([], [], (0, 1), LINE_MM, long_mm) for long_mm in (52.0, 10.0)]
+    junctions = Junctions(Net(lines), Settings())
+    monkeypatch.setattr(Junctions, "places_along", lambda *_: rim)
+    boxes = np.array([[[0, 0], [10, 10]], [middle, middle]])
+    monkeypatch.setitem(junctions.__dict__, "boxes_mm", boxes)
+    monkeypatch.setitem(junctions.__dict__, "middles_mm", np.array([[5.0, 5.0], middle]))
+    chain = Chain([Link(0, False)], True)
+    assert goes_round(chain, junctions, set()) == is_round
+    assert goes_round(chain, junctions, {1})  # where that line is aside
+
+
 @pytest.mark.parametrize(
     ("apart_widths", "is_paper"),
     [
@@ -149,3 +181,21 @@ def test_how_a_line_goes_on_is_looked_at_once(monkeypatch: pytest.MonkeyPatch) -
     onward = Onward(Junctions(Net(lines), Settings()))
     assert all(onward.goes_on(side) for _ in range(3) for side in sides)
     assert len(asked) == len(sides)
+
+
+def test_areas_are_looked_for_without_lines_aside_and_then_without_the_taken_ones_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    without = list[set[int]]()
+
+    def parts(_: Junctions, left_out: set[int]) -> list[Outline]:
+        without.append(left_out)
+        return []
+
+    monkeypatch.setattr(closed_ways_room, "parts", parts)
+    monkeypatch.setattr(closed_ways_room, "lines_aside", lambda _: {1})
+    monkeypatch.setattr(closed_ways_room, "straight_chains", lambda _: [])
+    monkeypatch.setattr(Search, "way", lambda *_: None)
+    lines = [FeltLine([], [], (0, 1), LINE_MM, 4.0) for _ in range(3)]
+    assert list(closed_ways(Junctions(Net(lines), Settings()), {0}, 0.5)) == []
+    assert without[-2:] == [{1}, {0, 1}]  # before them the silhouette was looked for

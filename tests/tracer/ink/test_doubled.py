@@ -17,9 +17,9 @@ from morfax.tracer.drawing.two_levels import with_rims
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.bare import Thinned
 from morfax.tracer.ink.both_lines import strands
-from morfax.tracer.ink.felt import FEWEST_STATIONS
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import ink_left
+from morfax.tracer.ink.run import LEAST_PLACES
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import WIDTH_MM, Points, arc, inked, loops, polyline, together
@@ -229,11 +229,11 @@ def test_of_ink_that_is_felt_over_less_than_half_a_width_nothing_flares_out() ->
     left = ink_left(drawing.sheet)
     run = FeltSheet.of(left.drawing, Settings(), left.ink).felt[0]
     widths_mm = np.full(len(run), np.nan)
-    widths_mm[10 : 10 + FEWEST_STATIONS] = 1.3 * WIDTH_MM
+    widths_mm[10 : 10 + LEAST_PLACES] = 1.3 * WIDTH_MM
     scarcely = replace(run, widths_mm=widths_mm)
-    assert FEWEST_STATIONS * run.view.step_mm < 0.5 * 4 * WIDTH_MM
+    assert LEAST_PLACES * run.view.step_mm < 0.5 * 4 * WIDTH_MM
     one, other = strands(scarcely, 4 * WIDTH_MM)
-    assert len(one) == len(other) == FEWEST_STATIONS
+    assert len(one) == len(other) == LEAST_PLACES
 
 
 def two_pens(thin_mm: float, thick_mm: float, seed: int | None) -> Drawing:

@@ -39,6 +39,17 @@ def test_a_line_ends_on_the_middle_of_the_other_however_many_ends_are_looked_at_
         assert lifted.ends_in_ink_mm([line], ACROSS) == [end_mm]
 
 
+def test_a_leg_of_a_millimetre_tells_where_its_line_ends_seven_further_on() -> None:
+    drawing = inked(ACROSS, polyline((10, 5), (25, 20)), seed=1)
+    view = View(photocell.behind_aperture(drawing, 0.1), WIDTH_MM)
+    begin = MEETS - 8.0 * np.array([math.sqrt(0.5), math.sqrt(0.5)])
+    seen = view.feel(begin, math.pi / 4, 1.0)
+    leg = leg_of(seen, True, view.leg_mm)
+    (end_mm,) = lifted.ends_in_ink_mm([lifted.Loose(view, leg, seen[:, :2])], ACROSS)
+    assert end_mm is not None
+    assert math.dist(leg.at(end_mm), MEETS) < 100 * UM  # 0.7 degrees
+
+
 def test_the_nearest_of_the_others_is_that_of_all_their_places() -> None:
     rng = np.random.default_rng(1)
     lines, places = rng.uniform(0, 10, (40, 2)), rng.uniform(3, 7, (200, 2))

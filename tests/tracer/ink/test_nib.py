@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from morfax.motion.polyline import length_mm, nearest_mm
+from morfax.tracer.ink import nib
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import Points, inked, loops, together
@@ -73,6 +74,21 @@ def test_the_stroke_of_a_rigid_nib_is_one_line(form: str, closed: bool) -> None:
     # taken for two lines it would be run along both rims
     assert run_mm(found) < 1.03 * length_mm(way)
     assert found.ink is not None and not found.ink.single
+
+
+def test_a_slope_ends_at_its_first_maximum() -> None:
+    rises = np.array([0.0, 1.0, 2.0, 3.0, 2.9, 2.0, 4.0])
+    assert nib._slope(rises, 0.5).tolist() == [0.0, 1.0, 2.0, 3.0]
+    assert nib._slope(rises[:5], 0.5).tolist() == [0.0, 1.0, 2.0, 3.0]
+
+
+@pytest.mark.parametrize(("power", "is_straight"), [(1, True), (2, False)])
+def test_where_two_lines_cross_ink_grows_broader_evenly_at_once(
+    power: int, is_straight: bool
+) -> None:
+    slope = np.linspace(0.0, 1.0, 101) ** power
+    assert nib._is_straight([slope, slope], 0.5) == is_straight
+    assert not nib._is_straight([slope, 0.4 * slope], 0.5)  # too low to tell a shape
 
 
 def test_ink_that_may_be_either_is_run_once_and_told() -> None:

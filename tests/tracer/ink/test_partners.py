@@ -72,6 +72,15 @@ def test_a_bend_felt_along_a_short_leg_beside_other_ink_exchanges_no_partners() 
     assert paired(legs) == {frozenset({0, 1}), frozenset({2, 3})}
 
 
+@pytest.mark.parametrize(("turned_deg", "partner"), [(4.0, 2), (9.0, 1)])
+def test_of_two_ways_on_that_ten_widths_nearer_may_turn_by_some_degrees(
+    turned_deg: float, partner: int
+) -> None:
+    assert paired([leg(180, 1.0), leg(0, 6.0), leg(turned_deg, 1.0)]) == {
+        frozenset({0, partner})
+    }
+
+
 def test_bends_are_allowed_for() -> None:
     """Two circles of 5 mm that touch from outside: each goes on round, neither onto the other."""
     bend = 1 / 5.0

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.bare import Thinned
+from morfax.tracer.ink.bare import Bare, Thinned
 from morfax.tracer.ink.left_out import ink_left
-from morfax.tracer.ink.put_down_again import put_down_again
+from morfax.tracer.ink.put_down_again import _There, put_down_again
+from morfax.tracer.ink.run import Run
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.track import InkStroke
 from tests.tracer.inked import Points, inked, polyline
@@ -48,6 +51,22 @@ def test_the_part_of_a_line_that_was_left_is_followed_round_its_corner() -> None
     assert min(np.hypot(*(stroke.way_mm - (40, 20)).T)) < 0.1
     assert stroke.length_mm == pytest.approx(4 + 10 + 10, abs=0.5)
     assert nearest_mm(stroke.way_mm, evenly(bent, STEP_MM)).max() < NEAR_MM
+
+
+@pytest.mark.parametrize(("known", "strokes"), [(0.7, 1), (0.3, 0)])
+def test_ink_of_which_hardly_any_has_a_width_is_no_line(
+    known: float, strokes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stations = _There._stations
+
+    def with_few(there: _There, part: Bare) -> Run:
+        run = stations(there, part)
+        widths_mm = run.widths_mm.copy()
+        widths_mm[round(known * len(widths_mm)) :] = np.nan
+        return replace(run, widths_mm=widths_mm)
+
+    monkeypatch.setattr(_There, "_stations", with_few)
+    assert len(put_down([BAR, POST], [BAR])) == strokes
 
 
 def test_along_ink_of_strokes_on_both_its_sides_and_along_tips_the_head_does_not_go() -> None:

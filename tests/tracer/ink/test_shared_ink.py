@@ -11,7 +11,14 @@ from scipy.ndimage import uniform_filter1d
 from morfax.motion.contour import distance
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.felt import feel_along
-from morfax.tracer.ink.shared_ink import SLACK, SharedInk, _averaged, kept_in_ink, off_rims_mm
+from morfax.tracer.ink.shared_ink import (
+    SLACK,
+    SharedInk,
+    _averaged,
+    _off,
+    kept_in_ink,
+    off_rims_mm,
+)
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.view import View
@@ -66,6 +73,17 @@ def test_a_way_beside_the_ink_is_moved_into_it() -> None:
     crossing = feel_along(view, polyline((6, 10), (34, 10)))
     steep = np.column_stack([20 + 0.5 * (at - 20), 10 + 0.5 * (at - 20)])
     assert np.array_equal(kept_in_ink(steep, SharedInk([crossing]), WIDTH_MM), steep)
+
+
+def test_beyond_its_ends_ink_moves_no_way() -> None:
+    view = View(
+        photocell.behind_aperture(inked(polyline((5, 10), (35, 10)), seed=1), 0.1), WIDTH_MM
+    )
+    ink = SharedInk([feel_along(view, polyline((10, 10), (30, 10)))])
+    x = np.linspace(8.0, 32.0, 241)
+    aside_mm = _off(np.column_stack([x, np.full(241, 10.1)]), ink, WIDTH_MM, []).aside
+    assert not aside_mm[(x < 9.8) | (x > 30.2)].any()
+    assert np.abs(aside_mm[(x > 11) & (x < 29)] + 0.1).max() < 20 * UM  # onto its middle
 
 
 @pytest.mark.parametrize("deg", [80.0, 50.0])

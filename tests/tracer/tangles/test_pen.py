@@ -8,6 +8,7 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import UM
 from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.within_reach import are_within
 
 
 def spiral(places: int) -> Array:
@@ -34,6 +35,6 @@ def test_places_within_a_reach_are_those_whose_distance_is_less(reach_mm: float)
     way = spiral(4 * pen.BOXED)
     places = np.random.default_rng(4).uniform(-20, 60, (4000, 2))
     expected = pen.away_from(places, way) < reach_mm
-    assert np.array_equal(pen.are_within(places, way, reach_mm), expected)
+    assert np.array_equal(are_within(places, way, reach_mm), expected)
     # one that is just as far off is not within
-    assert not pen.are_within(places[:1], way, float(pen.away_from(places[:1], way)[0])).any()
+    assert not are_within(places[:1], way, float(pen.away_from(places[:1], way)[0])).any()

@@ -27,9 +27,10 @@ from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.felt_pen import FAR, PAPER_FROM, FeltPen
 from morfax.tracer.tangles.moved_way import nearest
-from morfax.tracer.tangles.pen import NOWHERE_MM, are_within, away_from
+from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
 from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
-from morfax.tracer.tangles.spline import wrong_along
+from morfax.tracer.tangles.spline import wrong_and_where
+from morfax.tracer.tangles.within_reach import are_within
 
 REACH = 1.6  # widths from the way, the ink is looked at; chosen
 MOST_PLACES = 1500  # of ink, enough to place a corner within 10 um
@@ -120,10 +121,9 @@ def wrong_about(
     ink: SeenInk, way: Array, sharp: NDArray[np.bool_], apart_widths: float
 ) -> Array:
     """How much is wrong about each place of a way (n, 2) mm with some corners, some widths apart, (n,)."""
-    wrong = wrong_along(ink, way, sharp)
+    wrong, at = wrong_and_where(ink, way, sharp)
     noise = ink.noise / max(len(wrong), 1)
     over = np.minimum(wrong**2, MOST) - noise
-    at = np.round(_nearest(ink.places_mm, way)[:, 1]).astype(int)
     each = np.bincount(at, over, len(way)) * ink.area_mm2 / ink.width_mm**2
     around = round(ABOUT / apart_widths)
     sums = np.r_[0.0, np.cumsum(each)]

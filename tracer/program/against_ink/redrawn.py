@@ -50,21 +50,15 @@ def most_astray(drawing: Drawing, way_mm: Array) -> Astray:
     """Where the ink that a pen would leave on a way differs most from what is on a coarse scan."""
     finer, pitch_mm = drawing.finer, drawing.pitch_mm
     # 1. the sheet about the way, and how much of the way is in each pixel
-    rows, columns = drawing.darkness.shape
     around = FRINGE_PX * finer
-    x = way_mm[:, 0] / pitch_mm - 0.5
-    y = rows - way_mm[:, 1] / pitch_mm - 0.5
-    top = max(0, int(y.min()) - around)
-    bottom = min(rows, int(y.max()) + around + 2)
-    left = max(0, int(x.min()) - around)
-    right = min(columns, int(x.max()) + around + 2)
+    rows, columns = _pixels(drawing, way_mm)
+    top, left = (max(0, int(at.min()) - around) for at in (rows, columns))
+    bottom, right = (int(at.max()) + around + 2 for at in (rows, columns))
     sheet = np.asarray(drawing.darkness[top:bottom, left:right], np.float64)
-    spacing_mm = pitch_mm * finer / SAMPLES
-    places = evenly(way_mm, spacing_mm)
-    at = np.column_stack(
-        [rows - places[:, 1] / pitch_mm - 0.5 - top, places[:, 0] / pitch_mm - 0.5 - left]
-    )
-    there = _spread(at, sheet.shape) * (length_mm(way_mm) / len(places) / pitch_mm)
+    places = evenly(way_mm, pitch_mm * finer / SAMPLES)
+    row, column = _pixels(drawing, places)
+    spread = _spread(np.column_stack([row - top, column - left]), sheet.shape)
+    there = spread * (length_mm(way_mm) / len(places) / pitch_mm)
     # 2. the spot and the height that explain the sheet best
     reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * around + 1,) * 2)
     about = cv2.dilate((there > 0).astype(np.uint8), reach) > 0
@@ -76,9 +70,17 @@ def most_astray(drawing: Drawing, way_mm: Array) -> Astray:
     wide = 2 * math.ceil(BESIDE_PX * finer) + 1
     beside = cv2.dilate((there > 0).astype(np.uint8), np.ones((wide, wide), np.uint8)) > 0
     differs = np.abs(cv2.GaussianBlur(sheet - redrawn, (0, 0), AVERAGED_PX * finer)) * beside
-    row, column = np.unravel_index(int(np.argmax(differs)), differs.shape)
-    place_mm = (left + column + 0.5) * pitch_mm, (rows - top - row - 0.5) * pitch_mm
-    return Astray((float(place_mm[0]), float(place_mm[1])), float(differs[row, column]))
+    below, beyond = np.unravel_index(int(np.argmax(differs)), differs.shape)
+    x_mm = (left + beyond + 0.5) * pitch_mm
+    y_mm = (drawing.darkness.shape[0] - top - below - 0.5) * pitch_mm
+    return Astray((float(x_mm), float(y_mm)), float(differs[below, beyond]))
+
+
+def _pixels(drawing: Drawing, places: Array) -> tuple[Array, Array]:
+    """The rows and the columns of some places (n, 2) mm; whole ones are the middles of pixels."""
+    rows = drawing.darkness.shape[0]
+    x_px, y_px = places.T / drawing.pitch_mm
+    return rows - y_px - 0.5, x_px - 0.5
 
 
 def _spread(at: Array, shape: tuple[int, ...]) -> Darkness:

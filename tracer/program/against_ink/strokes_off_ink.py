@@ -26,7 +26,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.compiled import njit
 from morfax.motion.median import median, percentile
 from morfax.motion.neighbours import Neighbours
@@ -36,20 +36,23 @@ from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
+from morfax.tracer.ink.crossing_on_ink import OFF
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER
-from morfax.tracer.program.against_ink.own_ink import PLACES_PX, parts
+from morfax.tracer.program.against_ink.own_ink import PLACES_PX
 from morfax.tracer.program.against_ink.pen_on_ink import (
     PenOnInk,
     Ways,
     band_of,
     clear,
+    in_boxes,
     most_about,
     sums_of,
 )
+from morfax.tracer.program.against_ink.sheet_parts import parts
 from morfax.tracer.program.against_ink.unexplained import Unexplained
+from morfax.tracer.tangles.pen import ink_at
 
 # All limits below were chosen by trial on crowded sheets.
-OFF = 0.08  # widths²: of crossings that are right to 0.1 mm none comes above
 # times what is off at nine of ten of some places to which the cell led; on six sheets of felt pens, nibs and
 # print 0.03 to 0.08 of a width², on those of even pens 0.002 to 0.004
 OF_USUAL, MOST, PLACES = 6.0, 90.0, 200
@@ -80,8 +83,13 @@ def strokes_off_ink(
     reach_px, paper = 2 * CLEAR_WIDTHS * half_px, 0.5 * noise.paper**2
     pen = PenOnInk(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, OFF)
     tiles = parts(drawing, ways, is_station, TILE_PX, pen)
+    # what is told, or raises the limit, is above these
+    limits = np.where(from_memory, OFF, OFF / OF_USUAL)
     found = [
-        (part.stations, _off_at(part.seen, part.ways, part.at, part.pen, part.room))
+        (
+            part.stations,
+            _off_at(part.seen, part.ways, part.at, limits[part.stations], pen, part.room),
+        )
         for part in tiles
     ]
     stations, off = (np.concatenate(column) for column in zip(*found, strict=True))
@@ -173,13 +181,38 @@ def _are_lone(ways: Ways, some: NDArray[np.int64]) -> NDArray[np.bool_]:
 
 
 @njit(cache=True)
-def _off_at(seen, ways, stations, pen, room):  # type: ignore[no-untyped-def]
-    """By how much strokes are off their ink about each station (m,) of a tile, widths²."""
+def _off_at(seen, ways, stations, limits, pen, room):  # type: ignore[no-untyped-def]
+    """By how much strokes are off their ink about each station (m,) of a tile, widths², where that may be
+    above its limit; else no less than that, and not above the limit.
+    """
     band = band_of(seen, ways, pen, room)
     clear(seen, band, room)
     spread, side = room.spread[: seen.size].reshape(seen.shape), 2 * round(pen.half_px) + 1
-    least, worst = np.full(seen.shape, np.inf), np.zeros(seen.shape)
-    paper, left = np.empty(seen.shape), np.empty(seen.shape)
+    worst, off = np.empty(seen.shape), np.empty(len(stations))
+    # 1. all that the strokes' own pens leave: the best pens leave no more
+    values = np.empty(len(band.dark))
+    for k in range(len(values)):
+        wrong = ink_at(band.beyond_px[k], 0.0, pen.softness_px) - band.dark[k]
+        values[k] = wrong * wrong - pen.noise
+    in_boxes(band, values, side, spread, worst)
+    is_sure = True
+    for k in range(len(off)):
+        off[k] = most_about(worst, stations[k], side) / (2 * pen.half_px) ** 2
+        is_sure &= off[k] < (1 - ROUNDED) * limits[k]
+    if is_sure:
+        return off
+    # 2. what the best pens do
+    _best_of(band, pen, spread, worst)
+    for k in range(len(off)):
+        off[k] = most_about(worst, stations[k], side) / (2 * pen.half_px) ** 2
+    return off
+
+
+@njit(cache=True)
+def _best_of(band, pen, spread, worst):  # type: ignore[no-untyped-def]
+    """Fill in the more of what the pen that explains each box best draws on paper, and of what it leaves."""
+    least, worst[:] = np.full(worst.shape, np.inf), 0.0
+    paper, left = np.empty(worst.shape), np.empty(worst.shape)
     # ink that two lines share is broad, and a stroke that goes on from there is not
     own_px, usual_px = band.half_px, np.minimum(band.half_px, pen.half_px)
     for pens in range(1 + np.any(own_px > usual_px)):
@@ -191,10 +224,6 @@ def _off_at(seen, ways, stations, pen, room):  # type: ignore[no-untyped-def]
                     if paper[i, j] + left[i, j] < least[i, j]:
                         least[i, j] = paper[i, j] + left[i, j]
                         worst[i, j] = max(paper[i, j], left[i, j])
-    off = np.empty(len(stations))
-    for k in range(len(off)):
-        off[k] = most_about(worst, stations[k], side) / (2 * pen.half_px) ** 2
-    return off
 
 
 def _places(

@@ -39,6 +39,7 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER, TIP_RAD
+from morfax.tracer.program.against_ink.crossed_ink import crossed_in_ink
 from morfax.tracer.program.against_ink.own_ink import DOUBT, OwnInk
 from morfax.tracer.program.against_ink.pointed import points_of
 from morfax.tracer.program.against_ink.redrawn import most_astray
@@ -60,7 +61,7 @@ MISSED, MISSED_COARSE = 1.25, 2.0
 
 AHEAD = np.radians(np.linspace(-80.0, 80.0, 17))  # of a line's end: where its ink would go on
 
-Kind = Literal["ink", "tip", "bare", "beside", "broad", "pale", "off"]
+Kind = Literal["ink", "tip", "bare", "beside", "crossed", "broad", "pale", "off"]
 
 
 class Unexplained(NamedTuple):
@@ -70,6 +71,7 @@ class Unexplained(NamedTuple):
     tip       a tip of a filled shape, or its edge: how much of it the way cuts off
     bare      a way over bare paper: for how long
     beside    a way beside its own pen's ink: for how long
+    crossed   a closed way that crosses itself within its ink (see `crossed_ink`): how far it goes round there
     broad     strokes within ink that is as broad as two lines: for how long
     off       strokes of all the ink off it, where lines meet (see `strokes_off_ink`): for how long
     pale      on a coarse scan a way over ink that is pale: for how long; and `wants_dpi`, the resolution that
@@ -100,6 +102,9 @@ def unexplained(setup: Setup, own: OwnInk) -> tuple[Unexplained, ...]:
     bays = list(_beside_ink(own, other))
     sure = [place for place in bays if place.is_sure]
     found = [place for place in found if not is_about(place, sure, lines)] + bays
+    for place_mm, long_mm in crossed_in_ink(setup.sheet.drawing, lines):
+        place = Unexplained(place_mm, long_mm, "crossed")
+        found += [] if is_about(place, found, lines) else [place]
     return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 

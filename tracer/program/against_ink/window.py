@@ -1,12 +1,13 @@
-"""Windows: the part of a sheet about some places, in its own pixels and in mm.
+"""Windows: the part of a sheet about some places, in its own pixels and in mm, and what cells see of it.
 
-Signals: a drawing and places (n, 2) mm in; rows and columns out.
+Signals: a drawing and places (n, 2) mm in; rows and columns, or a view, out.
 
 Source: our own.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.following.plain_places import view_of
+from morfax.tracer.sensing.view import View
 
 
 class SheetWindow(NamedTuple):
@@ -60,3 +64,16 @@ class SheetWindow(NamedTuple):
         """The place on the sheet of the middle of a pixel within it."""
         x_px, y_px = self.left + column + 0.5, self.rows - self.top - row - 0.5
         return x_px * self.pitch_mm, y_px * self.pitch_mm
+
+
+def view_about(
+    sheet: Sheet, aperture_mm: float | None, width_mm: float, places: Array, reach_mm: float
+) -> View:
+    """What is about some places (n, 2) mm, as far as that, through cells for a line of a width: of a sheet no
+    more than that is made.
+    """
+    if sheet.window is None:
+        window = SheetWindow.about(sheet.drawing, places, reach_mm)
+        edges = window.top, window.left, window.bottom, window.right
+        sheet = replace(sheet, window=edges)
+    return view_of(sheet, aperture_mm, width_mm)

@@ -24,12 +24,13 @@ from morfax.motion.polyline import length_mm, lengths_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.head import screws
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import set_fields
+from morfax.tracer.limits import ABOUT_WIDTHS
+from morfax.tracer.program.against_ink.window import view_about
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.folding_rule import Rule
@@ -103,7 +104,9 @@ def _run(setup: Setup, line: Line, bay: Bay) -> Splice:
     """The head's run along a bay's rule from memory, as fast as it comes and goes on."""
     xy_mm = line.xy_mm
     first, last = _position(line, bay.first_mm), _position(line, bay.last_mm)
-    view = view_of(setup.sheet, setup.settings.aperture_mm, 2 * bay.rule.half_mm)
+    aperture_mm, width_mm = setup.settings.aperture_mm, 2 * bay.rule.half_mm
+    about, reach_mm = xy_mm[first : first + 1], ABOUT_WIDTHS * width_mm
+    view = view_about(setup.sheet, aperture_mm, width_mm, about, reach_mm)
     ahead = bay.rule.ahead
     stance = Stance(xy_mm[first], math.atan2(ahead[1], ahead[0]), view)
     carriage = Carriage(stance, setup.settings, MOTION_RATE_HZ)

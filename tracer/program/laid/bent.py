@@ -29,7 +29,7 @@ from morfax.motion.usual import THINNED
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.limits import AS_WIDE
-from morfax.tracer.program.against_ink.boxed_lines import BoxedLines, parts_of, within
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.off_ink import (
     OFF,
     REACH,
@@ -130,7 +130,7 @@ class _Way(WayInk):
     def bent(self, felt: UsualPen) -> Line:
         """The line as it is, or along the splines that explain its ink better."""
         bays = [bay for off in self._off(felt) if (bay := self._bay(*off, felt)) is not None]
-        return self.along(bays)
+        return self.along(bays).line
 
     def _off(self, felt: UsualPen) -> Iterator[tuple[int, int]]:
         """The stretches that are off their ink, from which place to which."""
@@ -157,22 +157,11 @@ class _Way(WayInk):
         own = way[np.arange(first, last + 1) % len(way)]
         reach_mm = 2 * REACH * self.line.width_mm
         low, high = own.min(axis=0) - reach_mm, own.max(axis=0) + reach_mm
-        near = [(part, 0.0) for part in self._rest_within(first, last, low, high)]
+        near = [(part, 0.0) for part in self.rest_within(first, last, low, high)]
         for line, part in self.lines.parts(low, high, self.line):
             near.append((part, 0.5 * (line.width_mm - self.line.width_mm)))
         ink = felt.pen.sees(ink_about(drawing, own, self.line.width_mm, REACH, near))
         return without_lone_pixels(ink, own, drawing.pitch_mm), own
-
-    def _rest_within(self, first: int, last: int, low: Array, high: Array) -> Iterator[Array]:
-        """The parts of the way within a box, but for the stretch from one of its places to another."""
-        count, near = len(self.way), within(self.way, low, high)
-        if self.is_closed:
-            # in the order of the way, from the end of the stretch on
-            come = np.sort((near - last) % count)
-            yield from parts_of(self.way, last + come[come <= first + count - last])
-        else:
-            yield from parts_of(self.way, near[near <= first])
-            yield from parts_of(self.way, near[near >= last])
 
     def _bay(self, first: int, last: int, felt: UsualPen) -> Bay | None:
         """The spline along a stretch that is off its ink, if that explains the ink and the way does not."""

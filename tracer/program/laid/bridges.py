@@ -28,7 +28,6 @@ from morfax.motion.polyline import lengths_mm, nearest_mm
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import OF_WIDTH
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.against_ink.window import SheetWindow
@@ -165,12 +164,11 @@ def _sides(
     ink.
     """
     drawing = setup.sheet.drawing
-    view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
     # 1. the shortest on each side
     found = list[LaidWay]()
     for into, out_of, leg in ((*ways, legs[1]), (*ways[::-1], legs[0])):
         own = np.vstack([into[-2:], out_of[: leg + 1]])
-        every = ways_within_rims(drawing, view, own, bar)
+        every = ways_within_rims(setup, width_mm, own, bar)
         found += sorted(every, key=lambda side: side.length_mm)[:1]
     if len(found) < 2:
         return None

@@ -25,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import CORNER_RAD
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.following.line import Line
@@ -46,8 +47,6 @@ SIDE = 5.0  # of a longer side both corners have legs of their own
 OVER = 0.4  # on either side of a place, by how much the way turns there
 NEAR = 2.0  # from a corner of a chain to a place that runs beside its ink
 OFF = 0.4  # that a corner lies off the way, at the most: the head cuts none by more
-# a way that turns by more about a place may have a corner there: one that rounds a corner turns by less
-TURNED_RAD = math.radians(20)
 SWEEPS = 2
 LEG = round(LEGS[0] / STEP_WIDTHS)
 
@@ -94,11 +93,11 @@ class _Chains(WayInk):
         """The line as it is, or along the corners that explain its ink better."""
         if not is_whole(self.line) or self.line.as_told:
             return self.line
-        return self.along([bay for chain in self._chains() for bay in self._bays(chain)])
+        return self.along([b for chain in self._chains() for b in self._bays(chain)]).line
 
     def _chains(self) -> Iterator[list[_Corner]]:
         """The chains of corners of which each is near to the next, in the order of the way."""
-        count, at = len(self.way), np.sort(self.corners_at(OVER, TURNED_RAD))
+        count, at = len(self.way), np.sort(self.corners_at(OVER, CORNER_RAD))
         if len(at) < 2:
             return
         far = round(2 * SIDE / STEP_WIDTHS)
@@ -144,7 +143,7 @@ class _Chains(WayInk):
                 chain[k] = self._settled(chain, k, is_first=sweep == 0)
             for k in range(len(chain) - 2, 0, -1):
                 turned = turned_rad(*(corner.place_mm for corner in chain[k - 1 : k + 2]))
-                if chain[k].is_asked and not TURNED_RAD < turned < FOLDED_RAD:
+                if chain[k].is_asked and not CORNER_RAD < turned < FOLDED_RAD:
                     _leave_out(chain, k)
         gains = [self._gain(chain, k) for k in range(len(chain))]
         for is_right, run in groupby(range(len(chain)), lambda k: gains[k] > -GAIN):

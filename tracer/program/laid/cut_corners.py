@@ -31,15 +31,14 @@ from morfax.motion.arrays import Array, bounds
 from morfax.motion.plane import cross, left_of, meeting
 from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
-from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.corner_chains import with_chains
 from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
-from morfax.tracer.program.laid.news import moved, near_box
-from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
+from morfax.tracer.program.laid.news import near_box
+from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -49,7 +48,6 @@ from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 
 OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
 BENT = 0.05  # widths: a leg that bends by more tells no corner
-MOVED = 0.01  # widths: a way is looked at again where it was laid by so much
 HALF = 0.8  # widths from the middle of a corner to its legs: the head rounds none by more
 LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 
@@ -68,11 +66,10 @@ def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
         left = [place for place in own.beside(NEARLY) if not place.is_sure]
         every = BoxedLines.of(lines)
         mended = [_Corners(setup, line, every, left, news).mended() for line in lines]
-        pairs = list(zip(lines, mended, strict=True))
-        if all(new is line for line, new in pairs):
+        news = np.vstack([np.empty((0, 2)), *(relaid.places_mm for relaid in mended)])
+        if not len(news):
             break
-        news = np.vstack([moved(line, new, MOVED) for line, new in pairs])
-        own = own.mended(mended)
+        own = own.mended([relaid.line for relaid in mended])
     return own
 
 
@@ -81,12 +78,12 @@ class _Corners(WayInk):
     """The corners of one of some lines, which run beside their ink at some places."""
 
     left: Sequence[BesideInk]
-    news: Array | None  # the places (n, 2) mm that have moved since it was last looked at
+    news: Array | None  # the places (n, 2) mm that were laid anew when it was last looked at
 
-    def mended(self) -> Line:
+    def mended(self) -> Relaid:
         """The line as it is, or along the rules that explain what was cut."""
         if not is_plain(self.line) or self.line.as_told:
-            return self.line
+            return self.along([])
         over, is_first = list(self._beside_ink()), self.news is None
         is_new = self._are_new()
         is_asked = self._are_within(over) if is_first else is_new

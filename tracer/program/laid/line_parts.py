@@ -59,13 +59,6 @@ def is_clear(drawing: Drawing) -> bool:
     return is_soft and not drawing.grainy and not drawing.edges_mm
 
 
-def rest_of(way: Array, first: int, last: int, is_closed: bool) -> tuple[Array, ...]:
-    """A way (n, 2) mm but for the stretch from one of its places to another."""
-    if is_closed:
-        return (way[np.arange(last, first + len(way) + 1) % len(way)],)
-    return way[: first + 1], way[last:]
-
-
 def is_beside(own: Array, line: Line, lines: BoxedLines) -> bool:
     """Whether another of some lines comes so near to a stretch (n, 2) mm of one that they share ink."""
     near_mm = BESIDE * line.width_mm

@@ -19,17 +19,15 @@ from morfax.motion.compiled import njit
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.limits import FADES
-from morfax.tracer.program.against_ink.own_ink import SURE
+from morfax.tracer.program.against_ink.off_ink import ABOUT
+from morfax.tracer.program.against_ink.own_ink import STATION_WIDTHS, SURE
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
 from morfax.tracer.tangles.compass import Core
 from morfax.tracer.tangles.seen_ink import SeenInk
 
-# widths between places of a way, and about each: there a pen draws no more on paper than that of a long line
-# (see `own_ink`); of 22 right slots 21 leave 0.01 at most and one 0.08, lines that are open at one end 0.1
-STATION, ABOUT_STATION = 0.25, 0.75
-# the same of ink that the pen does not draw: a line that joins a loop leaves a half; of 50 right loops of all
-# shapes the worst leaves 0.15
+# widths about a place of a way, and of ink there that the pen does not draw: a line that joins a loop leaves
+# a half; of 50 right loops of all shapes the worst leaves 0.15
 ABOUT_LEFT, MOST_LEFT = 1.0, 0.25
 MOST_PLACES = 900  # enough to place a circle within 5 um, and each end of a slot within 10
 
@@ -64,7 +62,9 @@ def is_drawn(ink: SeenInk, core: Core) -> bool:
     """Whether there is ink wherever a pen along a core's way would leave it, but for specks of paper: a line
     that goes round but for its last side is no loop.
     """
-    paper = _most_about(ink, core, ABOUT_STATION, lambda drawn: drawn - ink.darkness)
+    # no more than the pen of a long line: of 22 right slots 21 leave 0.01 at most and one 0.08, lines that
+    # are open at one end 0.1
+    paper = _most_about(ink, core, ABOUT, lambda drawn: drawn - ink.darkness)
     return paper < max(SURE.over, SURE.specks_px2 * ink.area_mm2 / ink.width_mm**2)
 
 
@@ -88,7 +88,7 @@ def _most_about(
     """
     way = np.vstack(core.stretches())
     wrong = np.maximum(excess(ink.drawn_along(way, core.half_mm)), 0.0) ** 2
-    stations = evenly(way, STATION * ink.width_mm)
+    stations = evenly(way, STATION_WIDTHS * ink.width_mm)
     most = _most_near(stations, ink.places_mm, wrong, about * ink.width_mm)
     return float(most) * ink.area_mm2 / ink.width_mm**2
 

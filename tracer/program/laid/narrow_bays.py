@@ -25,7 +25,6 @@ from morfax.motion.arrays import Array, bounds
 from morfax.motion.polyline import broad_mm, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.program.against_ink.bars import bar_at
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import OwnInk
@@ -41,6 +40,7 @@ from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
     LEGS,
     MOUTH,
+    REACH,
     STILL_LEFT,
     is_beside,
     is_clear,
@@ -48,7 +48,7 @@ from morfax.tracer.program.laid.line_parts import (
 )
 from morfax.tracer.program.laid.news import News, near_box
 from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays
-from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
+from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself, folding_rule, pen
@@ -90,7 +90,7 @@ def beside_mended(
 def with_bars(setup: Setup, lines: Sequence[Line], others: Sequence[Line] = ()) -> list[Line]:
     """The lines with those narrow bays mended that show as bars of ink beside them and some others."""
     left = tuple(ink_beside(setup.sheet, [*lines, *others]))
-    return _once_mended(setup, lines, left, others)
+    return [relaid.line for relaid in _once_mended(setup, lines, left, others)]
 
 
 def _mended(
@@ -103,12 +103,11 @@ def _mended(
     left, news = left_by(setup, own), None
     for _ in range(ROUNDS):
         mended = _once_mended(setup, own.lines, left, news=news)
-        if all(new is line for new, line in zip(mended, own.lines, strict=True)):
+        if not any(len(relaid.places_mm) for relaid in mended):
             break
-        before = own.lines, left
-        own = own.mended(mended)
+        own, before = own.mended([relaid.line for relaid in mended]), left
         left = left_by(setup, own)
-        news = News.between(before, (mended, left))
+        news = News.of(mended, before, left)
     uncut = with_corners(setup, own)
     if uncut is not own:
         own, left = uncut, left_by(setup, uncut)
@@ -121,16 +120,16 @@ def _once_mended(
     left: Sequence[Unexplained],
     others: Sequence[Line] = (),
     news: News | None = None,
-) -> list[Line]:
+) -> list[Relaid]:
     """The lines, beside some others, with their narrow bays mended: all of them, or those near to news; those
     of a drawn program as they are.
     """
-    mended, every = list(lines), BoxedLines.of([*lines, *others])
-    if setup.operator.reads_marks(lines):
-        return mended
+    mended, every = list[Relaid](), BoxedLines.of([*lines, *others])
+    is_drawn = not setup.operator.reads_marks(lines)
     for k, line in enumerate(lines):
-        if news is None or news.concerns(line, left):
-            mended[k] = _Bays(setup, line, every, left).mended()
+        is_asked = is_drawn and (news is None or news.concerns(line, left))
+        bays = _Bays(setup, line, every, left, news)
+        mended.append(bays.mended() if is_asked else bays.along([]))
         setup.come(k + 1, len(lines))
     return mended
 
@@ -140,17 +139,26 @@ class _Bays(WayInk):
     """The narrow bays of one of some lines, of which places are left unexplained."""
 
     left: Sequence[Unexplained]
+    news: News | None = None
 
-    def mended(self) -> Line:
+    def mended(self) -> Relaid:
         """The line as it is, or along the rules that explain narrow bays on it."""
         line = self.line
         if not is_whole(line) or not is_clear(self.setup.sheet.drawing):
-            return line
-        suspects = list(self._suspects())[:MANY]
+            return self.along([])
+        suspects = [each for each in self._suspects() if self._is_asked(each)][:MANY]
         bays = [bay for each in suspects if (bay := self._bay(each)) is not None]
         if line.as_told:  # it begins where it is told to
             bays = [bay for bay in bays if bay.first_mm >= 0 and bay.last_mm < self.round_mm]
         return self.along(bays)
+
+    def _is_asked(self, suspect: Suspect) -> bool:
+        """Whether a stretch is asked: it was not looked at before, or something is new near to it."""
+        if self.news is None:
+            return True
+        way = self.way[np.arange(suspect.first, suspect.last + 1) % len(self.way)]
+        near_mm = 2 * REACH * self.line.width_mm
+        return self.news.is_near(*bounds(np.vstack([way, suspect.beyond_mm])), near_mm)
 
     def _suspects(self) -> Iterator[Suspect]:
         """Where the way may have passed a bay by or cut it short."""
@@ -218,10 +226,9 @@ class _Bays(WayInk):
 
     def _rim_bay(self, seen: BayInk, suspect: Suspect) -> Bay | None:
         """The bay along a stretch that lies within the rim of its ink, if that explains the ink better."""
-        setup, ink, best = self.setup, seen.ink, None
-        view = view_of(setup.sheet, setup.settings.aperture_mm, self.line.width_mm)
-        for rim_bay in rim_bays(setup.sheet.drawing, view, seen.own, suspect.beyond_mm):
-            if is_a_pen(setup.sheet, self.line.width_mm + broad_mm(rim_bay.way)):
+        setup, ink, width_mm, best = self.setup, seen.ink, self.line.width_mm, None
+        for rim_bay in rim_bays(setup, width_mm, seen.own, suspect.beyond_mm):
+            if is_a_pen(setup.sheet, width_mm + broad_mm(rim_bay.way)):
                 continue
             drawn = ink.drawn_along(rim_bay.way, rim_bay.half_mm)
             rule = rim_bay._replace(misfit=ink.misfit(drawn))

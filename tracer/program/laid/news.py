@@ -3,8 +3,8 @@
     ─╮ ╭──    a bay that was mended may show another beside it, on its own line or on one near by; lines
      ╰─╯      further off are as they were, and what was found of them still holds
 
-Signals: lines, and the places that they leave unexplained, before and after some were mended in; whether a
-line has to be looked at again out.
+Signals: lines as they were laid anew, and the places that they left unexplained before and leave now, in;
+whether a line, and what of it, has to be looked at again out.
 
 Source: our own.
 """
@@ -17,13 +17,12 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from morfax.motion.arrays import Array, bounds
-from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.bars import ABOUT
 from morfax.tracer.program.against_ink.own_ink import BesideInk
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.laid.line_parts import REACH
-from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.program.laid.way_ink import Relaid
 
 Left = TypeVar("Left", Unexplained, BesideInk)
 
@@ -35,18 +34,17 @@ class News(NamedTuple):
     high_mm: Array
 
     @classmethod
-    def between(
+    def of(
         cls,
-        before: tuple[Sequence[Line], Sequence[Unexplained]],
-        now: tuple[Sequence[Line], Sequence[Unexplained]],
+        relaid: Sequence[Relaid],
+        before: Sequence[Unexplained],
+        now: Sequence[Unexplained],
     ) -> News:
-        """What is new of some lines and of what they leave unexplained."""
-        left = set(before[1]).symmetric_difference(now[1])
+        """What is new of some lines, and of what they left unexplained before and leave now."""
+        left = set(before).symmetric_difference(now)
         places = np.array([place.place_mm for place in left]).reshape(-1, 2)
         reach_mm = np.array([place.length_mm for place in left]).reshape(-1, 1)
-        news = [
-            moved(old, new, STEP_WIDTHS) for old, new in zip(before[0], now[0], strict=True)
-        ]
+        news = [each.places_mm for each in relaid]
         return cls(np.vstack([places - reach_mm, *news]), np.vstack([places + reach_mm, *news]))
 
     def concerns(self, line: Line, left: Sequence[Unexplained]) -> bool:
@@ -58,6 +56,10 @@ class News(NamedTuple):
         )
         # bars are looked for as far beyond the place left, and each place as far beyond the line
         reach_mm = (1 + ABOUT) * longest_mm + 2 * REACH * line.width_mm
+        return self.is_near(low_mm, high_mm, reach_mm)
+
+    def is_near(self, low_mm: Array, high_mm: Array, reach_mm: float) -> bool:
+        """Whether anything is new in a box, or so far about it."""
         is_near = (self.low_mm < high_mm + reach_mm) & (self.high_mm > low_mm - reach_mm)
         return bool(is_near.all(axis=1).any())
 
@@ -76,13 +78,3 @@ def near_box(
         ):
             found.append(place)
     return found
-
-
-def moved(old: Line, new: Line, off_widths: float) -> Array:
-    """The places (n, 2) mm of two states of a line off the other's way, by more than so many widths."""
-    if new is old:
-        return np.empty((0, 2))
-    off_mm = off_widths * new.width_mm
-    old_mm, new_mm = old.places_mm, new.places_mm
-    gone = old_mm[nearest_mm(old_mm, new_mm) > off_mm]
-    return np.vstack([gone, new_mm[nearest_mm(new_mm, old_mm) > off_mm]])

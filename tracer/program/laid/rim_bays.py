@@ -34,11 +34,11 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.ink.rim import felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE
-from morfax.tracer.program.against_ink.window import SheetWindow
+from morfax.tracer.program.against_ink.window import SheetWindow, view_about
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS
 from morfax.tracer.program.lines.selection import lines_of
-from morfax.tracer.sensing.view import View
+from morfax.tracer.program.setup import Setup
 
 # In widths of the pen:
 NEAR = 1.0  # from an end of the stretch to the rim's way
@@ -48,29 +48,32 @@ LOOP = 2.0  # of the way: a longer loop at a crossing is none of a narrow end
 OPEN = 0.2  # in the mean between its sides: a way with less runs out and back along one line
 
 
-def rim_bays(drawing: Drawing, view: View, own: Array, beyond: Array) -> Iterator[LaidWay]:
+def rim_bays(setup: Setup, width_mm: float, own: Array, beyond: Array) -> Iterator[LaidWay]:
     """Those ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
     its first place to its last, that are longer than the stretch and go round more than one line.
     """
-    for bay in ways_within_rims(drawing, view, own, beyond):
-        if _is_bay(bay.way, own, view.width_mm):
+    for bay in ways_within_rims(setup, width_mm, own, beyond):
+        if _is_bay(bay.way, own, width_mm):
             yield bay
 
 
 def ways_within_rims(
-    drawing: Drawing, view: View, own: Array, beyond: Array
+    setup: Setup, width_mm: float, own: Array, beyond: Array
 ) -> Iterator[LaidWay]:
-    """The ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
-    its first place to its last, that do not cross themselves.
+    """The ways of a pen of a width within the rims of the ink about a stretch (n, 2) mm and what belongs to
+    it (m, 2) mm, from its first place to its last, that do not cross themselves.
     """
-    half_mm = 0.5 * view.width_mm
-    for outline in _outlines(drawing, np.vstack([own, beyond]), view.width_mm):
-        if nearest_mm(own[[0, -1]], outline).max() > NEAR * view.width_mm:
+    half_mm, about = 0.5 * width_mm, np.vstack([own, beyond])
+    # the rims are about the outlines, and these about the stretch
+    aperture_mm, reach_mm = setup.settings.aperture_mm, 2 * ABOUT_WIDTHS * width_mm
+    view = view_about(setup.sheet, aperture_mm, width_mm, about, reach_mm)
+    for outline in _outlines(setup.sheet.drawing, about, width_mm):
+        if nearest_mm(own[[0, -1]], outline).max() > NEAR * width_mm:
             continue
         rim = felt_rim(view, outline)
         if rim is None:
             continue
-        for way in _between(rim.way(half_mm), own, view.width_mm):
+        for way in _between(rim.way(half_mm), own, width_mm):
             if not len(crossings_of(way, np.arange(len(way) - 1))):
                 yield LaidWay(tuple(between_corners(way)), half_mm)
 

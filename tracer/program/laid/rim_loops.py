@@ -11,7 +11,6 @@ Source: our own (see `ink.rim`).
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import islice
 
 import cv2
@@ -21,10 +20,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.tracer.drawing.narrow import LONG_WIDTHS
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.following.plain_places import places_of, plainest_first, view_of
+from morfax.tracer.following.plain_places import places_of, plainest_first
 from morfax.tracer.ink.rim import felt_rim
 from morfax.tracer.limits import AS_WIDE
-from morfax.tracer.program.against_ink.window import SheetWindow
+from morfax.tracer.program.against_ink.window import view_about
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.compass import Core
@@ -80,9 +79,7 @@ def felt_pen_mm(sheet: Sheet, aperture_mm: float | None, pen_mm: float) -> float
     reach_mm = LONG_WIDTHS * pen_mm
     x, y = stroke.middles_mm[0].tolist()
     places = places_of(stroke, (x, y), reach_mm)
-    window = SheetWindow.about(sheet.drawing, places, reach_mm)
-    edges = window.top, window.left, window.bottom, window.right
-    view = view_of(replace(sheet, window=edges), aperture_mm, pen_mm)
+    view = view_about(sheet, aperture_mm, pen_mm, places, reach_mm)
     stances = islice(plainest_first(view, places), FELT_PLACES)
     felt_mm = np.array([stance.view.width_mm for stance in stances])
     return median(felt_mm) if len(felt_mm) else pen_mm

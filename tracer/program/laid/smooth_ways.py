@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.curves import cubic
 from morfax.motion.plane import direction
 from morfax.tracer.ink.run import parabolas
 from morfax.tracer.program.laid.laid_way import LaidWay
@@ -86,10 +87,8 @@ def _cubic(first: Array, ahead: Array, last: Array, back: Array, step_mm: float)
     """
     chord = last - first
     long_mm = max(float(np.hypot(*chord)), step_mm)
-    # an arc's: a third of the chord, over the square of the cosine of half the angle to it
+    # an arc's slopes: the chord, over the square of the cosine of half the angle to it
     leaves, comes = (1 + max(float(way @ chord) / long_mm, 0.0) for way in (ahead, -back))
-    reach_mm = 2 / 3 * long_mm
-    held = [first, first + reach_mm / leaves * ahead, last + reach_mm / comes * back, last]
-    t = np.linspace(0.0, 1.0, 1 + math.ceil(long_mm / step_mm))[:, None]
-    shares = np.hstack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3])
-    return np.asarray(shares @ held)
+    leaving, arriving = 2 * long_mm / leaves * ahead, -2 * long_mm / comes * back
+    count = 1 + math.ceil(long_mm / step_mm)
+    return cubic(first, leaving.tolist(), last, arriving.tolist(), count)

@@ -126,11 +126,11 @@ def corners_of(
 ) -> list[int]:
     """The places at which a way turns sharply, each the sharpest of those about it."""
     apart, found = round(over_widths / STEP_WIDTHS), list[int]()
-    for at in np.argsort(-turned_rad).tolist():
-        if turned_rad[at] < least_rad:
-            break
-        if all(abs(at - other) > apart for other in found):
+    sharpest, is_near = np.argsort(-turned_rad), np.zeros(len(turned_rad), bool)
+    for at in sharpest[: np.count_nonzero(turned_rad >= least_rad)].tolist():
+        if not is_near[at]:
             found.append(at)
+            is_near[max(at - apart, 0) : at + apart + 1] = True
     return found
 
 

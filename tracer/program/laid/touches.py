@@ -29,7 +29,6 @@ from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import at_lengths, evenly, lengths_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.program.against_ink.boxed_lines import reaches
 from morfax.tracer.program.against_ink.off_ink import ink_about
@@ -47,7 +46,7 @@ from morfax.tracer.program.laid.line_parts import (
 )
 from morfax.tracer.program.laid.rim_bays import ways_within_rims
 from morfax.tracer.program.laid.smooth_ways import BothWays, Left, smooth_ways
-from morfax.tracer.program.laid.turned_back import Touch, tip_to_tip
+from morfax.tracer.program.laid.turned_back import LEG, LONG, NEAR, Touch, tip_to_tip
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import partners, shortest
@@ -55,10 +54,8 @@ from morfax.tracer.tangles.pen import away_from
 from morfax.tracer.tangles.seen_ink import GAIN, SeenInk
 
 # In widths of the line; chosen by trial on circles that touch lines and each other:
-NEAR = 1.3  # sides that are nearer leave one ink
 ON = 8.0  # of way between two sides of one line
-SHORT, LONG = 5.0, 60.0  # a shorter one is a crossing; a longer one is no touch
-LEG = 2.0  # of clean line before and after
+SHORT = 5.0  # a shorter one is a crossing
 HALF_LEG = 1.0  # of that is run from memory, where lines exchange their ways
 LEAVES = 0.01  # for each width of the ways: head's ways that leave less explain the ink
 # lines that cross by more do not touch: at a corner of one, both went past the other
@@ -99,7 +96,7 @@ def _touches(lines: Sequence[Line], closed: Sequence[int]) -> Iterator[Touch]:
             continue
         yield from _grouped((one, other), (ways[one], ways[other]), partner, width_mm)
     for n, way in ways.items():
-        yield from tip_to_tip(n, way, STATION_WIDTHS, lines[n].width_mm, NEAR, LEG)
+        yield from tip_to_tip(n, way, STATION_WIDTHS, lines[n].width_mm)
 
 
 def _grouped(
@@ -229,15 +226,14 @@ def _rest_mm(
 
 def _rims(setup: Setup, width_mm: float, ways: _Ways, left: Left) -> BothWays | None:
     """The ways within the rims that leave least, from either way's beginning to either's end."""
-    view = view_of(setup.sheet, setup.settings.aperture_mm, width_mm)
-    drawing, about = setup.sheet.drawing, np.vstack(ways)
+    about = np.vstack(ways)
     best: BothWays | None = None
     for is_exchanged in (False, True):
         onto = ways[::-1] if is_exchanged else ways
         found = list[list[LaidWay]]()
         for into, out_of in zip(ways, onto, strict=True):
             own = np.vstack([into[:2], out_of[-2:]])
-            found.append(list(ways_within_rims(drawing, view, own, about)))
+            found.append(list(ways_within_rims(setup, width_mm, own, about)))
         for one, other in product(*found):
             rims = BothWays(one, other, is_exchanged, left(one.way, other.way))
             if best is None or rims.left < best.left:

@@ -9,7 +9,7 @@ Source: our own.
 from __future__ import annotations
 
 import pickle
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha1
@@ -20,11 +20,11 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm, nearest_mm
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines, parts_of, within
 from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, REACH, rest_of
+from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, REACH
 from morfax.tracer.program.laid.spline_fit import CORNER_RAD, TURNS_OVER, corners_of, turns_rad
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -44,6 +44,13 @@ class BayInk(NamedTuple):
     last: int
     own: Array
     ink: SeenInk
+
+
+class Relaid(NamedTuple):
+    """A line, and the places (n, 2) mm at which it was laid anew: where it ran, and where it runs now."""
+
+    line: Line
+    places_mm: Array
 
 
 @dataclass(frozen=True)
@@ -92,8 +99,19 @@ class WayInk:
         if own is None:
             return None
         about = np.vstack([own, beyond_mm])
-        ink = self._ink(about, rest_of(self.way, first, last, self.is_closed))
+        ink = self._ink(about, first, last)
         return None if goes_on(ink, about, REACH) else BayInk(first, last, own, ink)
+
+    def rest_within(self, first: int, last: int, low: Array, high: Array) -> Iterator[Array]:
+        """The parts of the way within a box, but for the stretch from one of its places to another."""
+        count, near = len(self.way), within(self.way, low, high)
+        if self.is_closed:
+            # in the order of the way, from the end of the stretch on
+            come = np.sort((near - last) % count)
+            yield from parts_of(self.way, last + come[come <= first + count - last])
+        else:
+            yield from parts_of(self.way, near[near <= first])
+            yield from parts_of(self.way, near[near >= last])
 
     def stretch(self, at: int, long_mm: float) -> tuple[int, int]:
         """The first and the last place of a stretch of a length about a place."""
@@ -122,10 +140,17 @@ class WayInk:
         rounds, at = divmod(place, len(self.way))
         return rounds * self.round_mm + at * self.step_mm
 
-    def along(self, bays: list[Bay]) -> Line:
+    def along(self, bays: list[Bay]) -> Relaid:
         """The line with the head run along those of some bays that lie apart."""
-        bays = apart(bays, self.round_mm)
-        return laid(self.setup, self.line, bays, self.round_mm) if bays else self.line
+        bays, places_mm = apart(bays, self.round_mm), [np.empty((0, 2))]
+        if not bays:
+            return Relaid(self.line, *places_mm)
+        for bay in bays:
+            first, last = (round(mm / self.step_mm) for mm in (bay.first_mm, bay.last_mm))
+            places_mm.append(self.way[np.arange(first, last + 1) % len(self.way)])
+            places_mm.append(evenly(bay.rule.way, self.step_mm))
+        line = laid(self.setup, self.line, bays, self.round_mm)
+        return Relaid(line, np.vstack(places_mm))
 
     def explained(self, ink: SeenInk, rules: list[Rule]) -> Rule | None:
         """The rule that explains an ink best. A bay is looked at again when another was mended; the same
@@ -136,13 +161,17 @@ class WayInk:
             kept[key] = folding_rule.explained(ink, rules)
         return kept[key]
 
-    def _ink(self, about: Array, rest: Sequence[Array]) -> SeenInk:
-        """The ink about some places (n, 2) mm of a way; the rest of it, and all other lines, are known."""
+    def _ink(self, about: Array, first: int, last: int) -> SeenInk:
+        """The ink about some places (n, 2) mm of a way; all but a stretch of it, and all other lines, are
+        known.
+        """
         ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm, REACH)
         reach_mm = REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
-        known_mm = np.min([pen.away_from(ink.places_mm, part) for part in rest], axis=0)
+        known_mm = np.full(len(ink.places_mm), pen.NOWHERE_MM)
         # what is further away leaves no ink there
+        for part in self.rest_within(first, last, low - reach_mm, high + reach_mm):
+            known_mm = np.minimum(known_mm, pen.away_from(ink.places_mm, part))
         for line, part in self.lines.parts(low, high, self.line, around_mm=reach_mm):
             # a known line is as wide as it was felt, and drawn by this line's pen
             wider_mm = 0.5 * (line.width_mm - self.line.width_mm)

@@ -38,6 +38,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
+from morfax.tracer.junctions.rings import FARTHEST_WIDTHS
 from morfax.tracer.program.nets.centre_crosses import is_centre_cross
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.behind_spot import ABOUT_MM
@@ -46,7 +47,6 @@ if TYPE_CHECKING:
     from morfax.tracer.ink.chains import Chain, Junctions
     from morfax.tracer.ink.outlines import Outline
 
-AREA_WIDTHS = 1.0  # squared: a smaller area of paper in a patch is a flaw of the ink; by trial
 # of its ink: an outline that is shorter leaves bays or other lines out; by trial
 NEARLY_ALL = 0.97
 # of a stroke that is all of a net's ink: a longer closed outline is what was drawn, and the rest its overlap;
@@ -58,7 +58,7 @@ CLOSES = 0.9  # of what the head has run before it was lost: a shorter way round
 FEW = 1 / 3
 WORKS_MM = 10.0  # a head whose cell is out of order is lost before it has run so far
 # from a patch to the edge of what is looked at for its junctions: as far as cells look, and as much again
-ABOUT_WIDTHS = 20.0
+ABOUT_WIDTHS = 2 * FARTHEST_WIDTHS
 MOST_PATCHES = 100_000  # of a sheet with more nobody expects one line
 
 
@@ -128,7 +128,7 @@ def round_ring(setup: Setup, line: Line) -> Line | None:
     if line.length_mm < WORKS_MM and line.fault is not None and lost.by_its_cell(line.fault):
         return None
     patch = sheet.patch_at(np.asarray(line.start_mm))
-    if sheet.are_solid[patch] or _loops(sheet)[patch] != 1:
+    if sheet.are_solid[patch] or sheet.loops()[patch] != 1:
         return None
     closed = _closed(setup, patch)
     if closed is None or closed[0].length_mm < CLOSES * line.length_mm:
@@ -208,19 +208,13 @@ def _has_reference(setup: Setup) -> bool:
 
 
 def are_nets(sheet: Sheet) -> NDArray[np.bool_]:
-    """Which patches go round two areas or more."""
-    return np.asarray((_loops(sheet) > 1) & ~sheet.are_solid)
-
-
-def _loops(sheet: Sheet) -> NDArray[np.int64]:
-    """How many areas each patch goes round."""
-    least_px = (AREA_WIDTHS * sheet.widths_mm / sheet.drawing.pitch_mm) ** 2
-    return sheet.patches.enclosure.loops(least_px)
+    """Which patches go round two areas or more, and are no filled shapes full of specks."""
+    return np.asarray((sheet.loops() > 1) & ~sheet.are_solid & ~sheet.are_speckled())
 
 
 def goes_round(sheet: Sheet, patch: int, areas: int) -> bool:
     """Whether a patch goes round so many areas, and is no filled shape."""
-    return not sheet.are_solid[patch] and _loops(sheet)[patch] == areas
+    return not sheet.are_solid[patch] and sheet.loops()[patch] == areas
 
 
 def may_solve(setup: Setup) -> bool:

@@ -9,8 +9,9 @@ from morfax.jobs.remarks.on_ink import of_ink
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL, STATIONS, Led
+from morfax.tracer.program.against_ink import strokes_off_ink as module
 from morfax.tracer.program.against_ink.pen_on_ink import Ways
-from morfax.tracer.program.against_ink.strokes_off_ink import _places, strokes_off_ink
+from morfax.tracer.program.against_ink.strokes_off_ink import _off_at, _places, strokes_off_ink
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import Points, inked, polyline
@@ -130,3 +131,31 @@ def test_strokes_of_all_the_ink_are_held_against_it(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(module, "_long_enough", lambda strokes: strokes[:2])
     monkeypatch.setattr(module, "put_down_again", lambda *_: ())
     assert {place.kind for place in trace_ink(inked(*lines, seed=1)).unexplained} == {"off"}
+
+
+def test_strokes_on_their_ink_are_held_against_their_own_pens_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "_off_at", _off_at.py_func)
+    monkeypatch.setattr(module, "_best_of", None)  # nobody asks for it
+    assert strokes_off_ink(inked(ACROSS, seed=3), [stroke(ACROSS)]) == []
+
+
+@pytest.mark.parametrize("way", [TIP, CUT])
+def test_what_their_own_pens_leave_is_no_less_than_what_the_best_do(
+    monkeypatch: pytest.MonkeyPatch, way: Points
+) -> None:
+    """So no place is lost where the others are not tried."""
+    found = list[np.ndarray]()
+
+    def off_at(
+        seen: object, ways: object, at: object, limits: np.ndarray, *rest: object
+    ) -> object:
+        quick, best = (_off_at(seen, ways, at, limits + by, *rest) for by in (1e9, -1e9))
+        found.append(np.array([quick, best]))
+        return best
+
+    monkeypatch.setattr(module, "_off_at", off_at)
+    strokes_off_ink(inked(ACROSS, TIP, seed=3), [stroke(ACROSS), stroke(way)])
+    quick, best = np.hstack(found)
+    assert np.all(quick >= best) and np.any(quick > best)

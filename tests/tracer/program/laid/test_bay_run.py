@@ -18,6 +18,7 @@ from morfax.tracer.program.laid import bay_run
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing import photocell
 from morfax.tracer.tangles.folding_rule import Rule
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 from tests.tracer.program.laid.ways import STEP_MM, run_along, steps_mm
@@ -71,6 +72,15 @@ def with_notch(begin_mm: float, first_mm: float, last_mm: float) -> tuple[Line, 
         )
     ]
     return line, laid(Setup(inked(WAY).sheet), line, some, 80.0)
+
+
+def test_the_cells_that_a_bay_is_run_with_see_no_more_than_what_is_about_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The head runs it from memory: a whole sheet was made for each bay of a page."""
+    monkeypatch.setattr(photocell, "near_ink", None)  # nobody asks for the whole sheet
+    line, mended = with_notch(0.0, 6.0, 9.5)
+    assert mended.length_mm > line.length_mm + 5.0
 
 
 @pytest.mark.parametrize("begin_mm", [0.0, 40.0, 5.53, 7.5, 9.98, 79.9])

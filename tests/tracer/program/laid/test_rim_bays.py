@@ -8,11 +8,11 @@ import shapely
 
 from morfax.motion.crossings import crossings_of
 from morfax.motion.polyline import length_mm, nearest_mm, with_places
-from morfax.tracer.following.plain_places import view_of
-from morfax.tracer.head.settings import Settings
 from morfax.tracer.program.laid import rim_bays as rims
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays, ways_within_rims
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing import photocell
 from tests.tracer.inked import UM, WIDTH_MM, Points, inked, polyline, together
 
 NOWHERE = np.empty((0, 2))
@@ -33,11 +33,10 @@ OVER = with_places(
 
 def ways(drawn: Points, own: Points, *others: Points) -> tuple[list[LaidWay], list[LaidWay]]:
     """The ways within the rims from the first place of a stretch to its last, and which of them are bays."""
-    drawing = inked(drawn, *others, seed=1)
-    view = view_of(drawing.sheet, Settings().aperture_mm, WIDTH_MM)
+    setup = Setup(inked(drawn, *others, seed=1).sheet)
     beyond = with_places(polyline((18.25, 19.5), (18.25, 14.2)), 0.05)
-    every = ways_within_rims(drawing, view, own, beyond)
-    return list(every), list(rim_bays(drawing, view, own, beyond))
+    every = ways_within_rims(setup, WIDTH_MM, own, beyond)
+    return list(every), list(rim_bays(setup, WIDTH_MM, own, beyond))
 
 
 def test_a_slit_that_the_head_passed_by_has_its_way_within_the_rim() -> None:
@@ -50,6 +49,16 @@ def test_a_slit_that_the_head_passed_by_has_its_way_within_the_rim() -> None:
     assert apart_mm < 60 * UM
     assert bay.half_mm == 0.5 * WIDTH_MM
     assert all(not len(crossings_of(each.way, np.arange(len(each.way) - 1))) for each in every)
+
+
+def test_the_cells_for_it_see_no_more_than_what_is_about_the_stretch(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """All of the sheet was made for each bay; what they see is the same."""
+    (bay,) = ways(SLIT, OVER)[1]
+    monkeypatch.setattr(photocell, "near_ink", None)  # nobody asks for the whole sheet
+    (again,) = ways(SLIT, OVER)[1]
+    assert np.array_equal(bay.way, again.way)
 
 
 def test_a_bay_is_left_over_a_width_and_a_half_where_the_head_ran_aside() -> None:

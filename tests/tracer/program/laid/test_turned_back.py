@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from morfax.motion.polyline import evenly
 from morfax.tracer.program.laid.turned_back import Touch, tip_to_tip
 from tests.tracer.inked import WIDTH_MM, Points, polyline
 
-STEP, NEAR, LEG = 0.25, 1.3, 2.0  # widths
+STEP = 0.25  # widths
 
 # in from the left along a flat tip at (18, 10), round below, and in from the right along one at (22, 10)
 BOW_TIE = polyline(
@@ -38,12 +39,14 @@ ASIDE = polyline(
     (8, 1),
     (8, 9),
 )
+# the bow tie pulled out until its tips are 34 mm apart: of a line of 0.5 mm 68 widths
+FAR = BOW_TIE + np.where(BOW_TIE > (20.0, 100.0), (30.0, 0.0), 0.0)
 
 
 def found(truth: Points) -> list[Touch]:
     """What is told of a closed line."""
     way = evenly(truth, STEP * WIDTH_MM)
-    return list(tip_to_tip(3, way, STEP, WIDTH_MM, NEAR, LEG))
+    return list(tip_to_tip(3, way, STEP, WIDTH_MM))
 
 
 def test_tips_that_face_each_other_are_told_with_legs_beyond_their_common_ink() -> None:
@@ -59,6 +62,8 @@ def test_tips_that_face_each_other_are_told_with_legs_beyond_their_common_ink() 
         assert last_mm - first_mm == pytest.approx(2 * (3.25 + 1.0), abs=0.5)
 
 
-@pytest.mark.parametrize("truth", [SPEARS, ASIDE])
-def test_a_lone_tip_and_one_that_points_past_another_are_not(truth: Points) -> None:
+@pytest.mark.parametrize("truth", [SPEARS, ASIDE, FAR])
+def test_a_lone_tip_one_that_points_past_another_and_one_far_away_are_not(
+    truth: Points,
+) -> None:
     assert found(truth) == []

@@ -1,0 +1,32 @@
+"""A copy of a trail shares the places so far, and goes on by itself."""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+
+from morfax.tracer.head.trail import BOXED, ROOM, Trail
+
+STEP_MM = 0.03
+
+
+def along(first: int, last: int, up_mm: float = 0.0) -> np.ndarray:
+    """Positions to the right, a step from each to the next."""
+    x_mm = STEP_MM * np.arange(first, last)
+    return np.column_stack([x_mm, np.full(len(x_mm), up_mm)])
+
+
+def test_a_copy_shares_the_places_and_goes_on_by_itself() -> None:
+    """Its own room is made where it goes on: the head is copied before each junction of metres of line."""
+    first = Trail(np.zeros(2), STEP_MM)
+    first.add(along(0, 3 * ROOM))
+    before = first.places()
+    other = copy.deepcopy(first)
+    assert np.shares_memory(first.recent(), other.recent())
+    first.add(along(3 * ROOM, 4 * ROOM))
+    other.add(along(3 * ROOM, 9 * ROOM, up_mm=1.0))
+    assert np.array_equal(other.places()[: len(before)], before)
+    assert np.array_equal(first.places()[: len(before)], before)
+    assert first.places()[-1][1] == 0.0 and other.places()[-1][1] == 1.0
+    assert other._boxed == len(other.places()) // BOXED
