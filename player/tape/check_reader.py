@@ -171,18 +171,17 @@ class CheckReader:
     def heard(self) -> list[Heard]:
         """The frames that are whole by now; those that are calm all at once."""
         told: list[Heard] = []
-        while self._whole():
-            self._put_right()
-            # a loss of the reference behind the next frame is put right before the one behind it
-            is_lost = self._points.lost[1] > self._sound_from
-            most = 1 if is_lost else max(self._whole(), 1)
+        while most := self._whole():
+            if self._put_right():
+                most = 1
             calm, is_quiet = self._quiet.read(self._points, self._theta, self._number, most)
+            if calm.frames or is_quiet:
+                self._clock_lost = False
             if calm.frames:
                 told.append(calm)
-                self._clock_lost = False
                 self._pass(calm.frames)
             if calm.frames < most:
-                told.append(self._quiet_report() if is_quiet else self._report())
+                told.append(self._quiet.report(self._number) if is_quiet else self._report())
                 self._pass(1)
         if told:
             self._points.forget(self._theta - REACH_CYCLES)
@@ -256,11 +255,6 @@ class CheckReader:
             begins += (first.theta + late - late_by_phase).tolist()
         self._theta = float(np.median(begins))
 
-    def _quiet_report(self) -> FrameReport:
-        """The report of the frame that was read last, which is quiet."""
-        self._clock_lost = False
-        return self._quiet.report(self._number)
-
     def _report(self) -> FrameReport:
         """The report of the frame whose gates were read last."""
         gates = self._quiet.gates
@@ -279,17 +273,22 @@ class CheckReader:
         hurt = tuple(self._erasures.damaged), weak
         return frame_report(self._number, rows, read, figures.tolist(), hurt=hurt)
 
-    def _put_right(self) -> None:
-        """Put right what was miscounted of the reference while it failed, at the first frame behind that."""
+    def _put_right(self) -> bool:
+        """Put right what was miscounted of the reference while it failed, at the first frame behind that.
+
+        Whether it failed: then the next frame is to be read by itself.
+        """
         ended = self._points.lost[1]
-        if ended <= self._sound_from or self._points.theta_at(ended) >= self._theta:
-            return
+        if ended <= self._sound_from:
+            return False
+        if self._points.theta_at(ended) >= self._theta:
+            return True
         slipped = slip(self._points, self._theta, self._number)
-        if slipped is None:
-            return  # the next frame may be read
-        self._sound_from = ended
+        if slipped is not None:  # else the next frame may be read
+            self._sound_from = ended
         if slipped:
             self._points.slip(slipped)
+        return True
 
     def _rows(self, theta: Array) -> list[float]:
         """The rows of the tape at some counts of the reference."""

@@ -61,7 +61,7 @@ class FrameOrder:
             return False
         self._number = frames.number + frames.frames
         self._missing, self._told = [0] * len(self._told), frames.figures[-1, :, 1:-2].tolist()
-        self._is_last = (frames.told[-1] >> 60 & 1).astype(bool).tolist()
+        self._is_last = [bool(told >> 60 & 1) for told in frames.told[-1].tolist()]
         return True
 
     def fault(self, report: FrameReport) -> Fault | None:

@@ -94,15 +94,14 @@ class Subcarrier:
         halves = self._halves
         begun = np.concatenate([self._tail, frames[:own]]) if early else frames[:0]
         rest = frames[own : own + (hops - early) * self.hop]
-        for part, at in ((begun, slice(early)), (rest, slice(early, None))):
-            rows = part.reshape(-1, self.hop * frames.shape[1])
-            _sum(rows, scale, self._rows_of_taps, halves[:, :, at])
+        parts = tuple([part.reshape(-1, self.hop * frames.shape[1]) for part in (begun, rest)])
         last = own + (hops - 1 - early) * self.hop
         self._tail = frames[last:].copy() if last >= 0 else begun[-self.hop :].copy()
         # 2. a point for each hop and the next
         new = self._room(hops - 1)
         clock = (self._next, self.hop, self.cycles_per_frame)
-        _turn_back(halves, clock, self._state, self._theta[new], self._points[new])
+        at = self._theta[new], self._points[new]
+        _make(parts, (scale, self._rows_of_taps), halves, (clock, self._state), at)
         self._held, self._next = slice(self._held.start, new.stop), self._next + hops - 1
 
     def _room(self, count: int) -> slice:
@@ -156,6 +155,18 @@ def _taps(hop: int, cycles_per_frame: float) -> NDArray[np.float32]:
     window = np.sin(np.pi * (n + 0.5) / (2 * hop)) ** 2 * (2 / hop)
     first, second = np.split(window * np.exp(-2j * np.pi * cycles_per_frame * n), 2)
     return np.array([first.real, first.imag, second.real, second.imag], np.float32)
+
+
+@njit(cache=True, nogil=True)
+def _make(parts, by, halves, counted, points):  # type: ignore[no-untyped-def]
+    """Make theta and points of hops that come in two parts.
+
+    `by`: scale of a sample, and the taps; `counted`: the clock, and the state.
+    """
+    early = len(parts[0])
+    _sum(parts[0], by[0], by[1], halves[:, :, :early])
+    _sum(parts[1], by[0], by[1], halves[:, :, early:])
+    _turn_back(halves, counted[0], counted[1], points[0], points[1])
 
 
 # The order of the sum is free (reassoc, contract), so that it runs in vectors. The zeros cost less than
@@ -245,10 +256,12 @@ def _turn_back(halves, clock, state, theta, points):  # type: ignore[no-untyped-
         turns[k] = (nominal + place) / CYCLES_PER_SUBCARRIER
     # 3. the subcarriers, turned back by a sixth of it
     for k in range(count):
-        back = complex(sine(0.25 + turns[k]), -sine(turns[k]))
-        for track in range(tracks):
+        re[k], im[k] = sine(0.25 + turns[k]), -sine(turns[k])
+    for track in range(tracks):
+        for k in range(count):
             along = float(halves[track, 0, k]) + halves[track, 2, k + 1]
             across = float(halves[track, 1, k]) + halves[track, 3, k + 1]
-            points[k, track] = complex(along, across) * back
+            turned = along * im[k] + across * re[k]
+            points[k, track] = complex(along * re[k] - across * im[k], turned)
     state[0], state[1], state[2] = place, rate, level
     state[3], state[4] = first_lost, last_lost

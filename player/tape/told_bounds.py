@@ -39,7 +39,7 @@ class ToldBounds:
     @property
     def largest(self) -> float:
         """The largest acceleration told of late, cycles/row²."""
-        return max((bound.acceleration for *_, bound in self._told), default=0.0)
+        return max([bound.acceleration for *_, bound in self._told], default=0.0)
 
     def add(self, report: FrameReport, track: int) -> None:
         """Take what a track says in a frame that was read."""
