@@ -37,6 +37,7 @@ from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.moved import MOVED, moved
 from morfax.tracer.program.against_ink.pen_on_ink import PenOnInk, Ways, over_at
 from morfax.tracer.program.against_ink.sheet_parts import margin_px, parts
@@ -95,12 +96,11 @@ class _Over(NamedTuple):
 
 
 class _Known(NamedTuple):
-    """What is known of lines before some were mended: the way of each that was not, pixels; which were not
-    surely on their ink, and by the number of each of these what was over on it; and where the ways of the
-    others have moved, pixels (n, 2).
+    """What is known of lines some of which were mended: in their boxes; which were not surely on their ink
+    before, and by the number of each of these what was over on it; and where they have moved, pixels (n, 2).
     """
 
-    ways_px: list[NDArray[np.float32] | None]
+    boxed: BoxedLines
     doubtful: NDArray[np.bool_]
     over: dict[int, _Over]
     moved_px: NDArray[np.float32]
@@ -116,14 +116,10 @@ class OwnInk:
 
     def mended(self, lines: Sequence[Line]) -> OwnInk:
         """The lines with some of them mended: what is known of places far from there still holds."""
-        pairs = list(zip(self.lines, lines, strict=True))
+        pairs = zip(self.lines, lines, strict=True)
         moved_mm = [moved(old, new, MOVED) for old, new in pairs if new is not old]
         moved_px = _pixels(self.drawing, np.vstack([np.empty((0, 2)), *moved_mm]))
-        ways_px = [
-            None if new is not old else way
-            for (old, new), way in zip(pairs, self._ways_px, strict=True)
-        ]
-        known = _Known(ways_px, self.doubtful, self._over, moved_px)
+        known = _Known(self.boxed.changed(lines), self.doubtful, self._over, moved_px)
         return OwnInk(self.drawing, lines, known)
 
     def beside(self, limits: OverLimits) -> Iterator[BesideInk]:
@@ -196,22 +192,18 @@ class OwnInk:
         return np.asarray(is_near[row[: len(places_px)], column[: len(places_px)]] > 0)
 
     @cached_property
-    def _ways_px(self) -> list[NDArray[np.float32]]:
-        """The way of each line, (n, 2) pixels."""
-        known = self.known.ways_px if self.known is not None else [None] * len(self.lines)
-        spacing_mm = PLACES_PX * self.drawing.pitch_mm
-        return [
-            _pixels(self.drawing, evenly(line.places_mm, spacing_mm)) if way is None else way
-            for line, way in zip(self.lines, known, strict=True)
-        ]
+    def boxed(self) -> BoxedLines:
+        """The lines in their boxes."""
+        return BoxedLines.of(self.lines) if self.known is None else self.known.boxed
 
     @cached_property
     def _ways(self) -> Ways:
         """The ways of the lines."""
-        counts, pitch_mm = [len(way) for way in self._ways_px], self.drawing.pitch_mm
+        pitch_mm = self.drawing.pitch_mm
+        ways = [evenly(places, PLACES_PX * pitch_mm) for places in self.boxed.places_mm]
         return Ways(
-            np.vstack(self._ways_px),
-            np.repeat(np.arange(len(counts), dtype=np.int32), counts),
+            np.vstack([_pixels(self.drawing, way) for way in ways]),
+            np.repeat(np.arange(len(ways), dtype=np.int32), [len(way) for way in ways]),
             np.array([0.5 * line.width_mm / pitch_mm for line in self.lines]),
             np.array([line.ending in JUDGED and not line.on_edge for line in self.lines]),
         )

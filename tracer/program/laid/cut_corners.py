@@ -33,7 +33,6 @@ from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
-from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.moved import MOVED, moved
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
@@ -66,8 +65,7 @@ def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
     for _ in range(ROUNDS):
         lines = own.lines
         left = [place for place in own.beside(NEARLY) if not place.is_sure]
-        every = BoxedLines.of(lines)
-        mended = [_Corners(setup, line, every, left, news).mended() for line in lines]
+        mended = [_Corners(setup, line, own.boxed, left, news).mended() for line in lines]
         pairs = list(zip(lines, mended, strict=True))
         if all(new is line for line, new in pairs):
             break
