@@ -34,19 +34,6 @@ class BoxedLines(NamedTuple):
         boxes = np.array([bounds(places) for places in places_mm]).reshape(-1, 2, 2)
         return cls(list(lines), places_mm, boxes[:, 0], boxes[:, 1])
 
-    def changed(self, lines: Sequence[Line]) -> BoxedLines:
-        """The same with some of the lines in other states."""
-        places_mm, low_mm, high_mm = (
-            self.places_mm.copy(),
-            self.low_mm.copy(),
-            self.high_mm.copy(),
-        )
-        for k, (old, new) in enumerate(zip(self.lines, lines, strict=True)):
-            if new is not old:
-                places_mm[k] = new.places_mm
-                low_mm[k], high_mm[k] = bounds(places_mm[k])
-        return BoxedLines(list(lines), places_mm, low_mm, high_mm)
-
     def reach(self, low_mm: Array, high_mm: Array) -> NDArray[np.bool_]:
         """Which of the lines (n,) have a box that reaches into another."""
         return np.asarray(((self.low_mm < high_mm) & (self.high_mm > low_mm)).all(axis=1))

@@ -28,6 +28,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.following.line import Line
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import NEARLY, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.laid_way import LaidWay
@@ -71,7 +72,7 @@ def with_chains(setup: Setup, own: OwnInk) -> OwnInk:
         left_mm = np.array([place.place_mm for place in own.beside(NEARLY)])
         if not len(left_mm):
             break
-        every, before = own.boxed, own.lines
+        every, before = BoxedLines.of(own.lines), own.lines
         mended = [
             _Chains(setup, line, every, left_mm).mended() if is_asked else line
             for line, is_asked in zip(before, asked, strict=True)

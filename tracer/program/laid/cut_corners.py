@@ -33,12 +33,12 @@ from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
 from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
-from morfax.tracer.program.against_ink.moved import MOVED, moved
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.corner_chains import with_chains
 from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
-from morfax.tracer.program.laid.news import near_box
+from morfax.tracer.program.laid.news import moved, near_box
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT
@@ -49,6 +49,7 @@ from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 
 OFF = 0.45  # widths: a rule that lies further off the head's way runs out along a tick, or is another line
 BENT = 0.05  # widths: a leg that bends by more tells no corner
+MOVED = 0.01  # widths: a way is looked at again where it was laid by so much
 HALF = 0.8  # widths from the middle of a corner to its legs: the head rounds none by more
 LEFT_LEGS = 0.1  # widths: a way that leaves its legs by less is as they are
 
@@ -65,7 +66,8 @@ def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
     for _ in range(ROUNDS):
         lines = own.lines
         left = [place for place in own.beside(NEARLY) if not place.is_sure]
-        mended = [_Corners(setup, line, own.boxed, left, news).mended() for line in lines]
+        every = BoxedLines.of(lines)
+        mended = [_Corners(setup, line, every, left, news).mended() for line in lines]
         pairs = list(zip(lines, mended, strict=True))
         if all(new is line for line, new in pairs):
             break

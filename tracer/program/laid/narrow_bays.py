@@ -89,7 +89,7 @@ def beside_mended(
 def with_bars(setup: Setup, lines: Sequence[Line], others: Sequence[Line] = ()) -> list[Line]:
     """The lines with those narrow bays mended that show as bars of ink beside them and some others."""
     left = tuple(ink_beside(setup.sheet, [*lines, *others]))
-    return _once_mended(setup, lines, BoxedLines.of([*lines, *others]), left)
+    return _once_mended(setup, lines, left, others)
 
 
 def _mended(
@@ -101,7 +101,7 @@ def _mended(
     own = OwnInk(setup.sheet.drawing, list(lines))
     left, news = left_by(setup, own), None
     for _ in range(ROUNDS):
-        mended = _once_mended(setup, own.lines, own.boxed, left, news)
+        mended = _once_mended(setup, own.lines, left, news=news)
         if all(new is line for new, line in zip(mended, own.lines, strict=True)):
             break
         before = own.lines, left
@@ -117,14 +117,14 @@ def _mended(
 def _once_mended(
     setup: Setup,
     lines: Sequence[Line],
-    every: BoxedLines,
     left: Sequence[Unexplained],
+    others: Sequence[Line] = (),
     news: News | None = None,
 ) -> list[Line]:
-    """The lines, among all, with their narrow bays mended: all of them, or those near to news; those of a
-    drawn program as they are.
+    """The lines, beside some others, with their narrow bays mended: all of them, or those near to news; those
+    of a drawn program as they are.
     """
-    mended = list(lines)
+    mended, every = list(lines), BoxedLines.of([*lines, *others])
     if setup.operator.reads_marks(lines):
         return mended
     for k, line in enumerate(lines):

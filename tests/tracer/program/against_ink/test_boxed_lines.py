@@ -27,17 +27,3 @@ def test_of_lines_that_reach_into_a_box_the_parts_within_it_are_found() -> None:
     # around the box the same line has more of its way
     around = [part for line, part in lines.parts(low, high, around_mm=1.0) if line is bay]
     assert sum(map(len, around)) > np.count_nonzero(inside.all(axis=1))
-
-
-def test_lines_of_which_some_were_mended_are_boxed_as_if_afresh() -> None:
-    """The others are not gone through again; the lines before stay as they were."""
-    flat, bent = (run_along(polyline((0, 5), (10, y), (30, 5)), "ended") for y in (5, 9))
-    far = run_along(polyline((0, 40), (30, 42)), "ended")
-    before = BoxedLines.of([flat, far])
-    now, afresh = before.changed([bent, far]), BoxedLines.of([bent, far])
-    assert now.lines == [bent, far] and now.places_mm[1] is before.places_mm[1]
-    assert np.array_equal(now.places_mm[0], afresh.places_mm[0])
-    assert np.array_equal(now.low_mm, afresh.low_mm) and np.array_equal(
-        now.high_mm, afresh.high_mm
-    )
-    assert before.high_mm[0, 1] < 6 < now.high_mm[0, 1]
