@@ -22,24 +22,22 @@ tick, is not found. At the end of an open line there is paper ahead, or another 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from hashlib import sha1
+from typing import Any, NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median, percentile
-from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import evenly
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.against_ink.moved import MOVED, moved
-from morfax.tracer.program.against_ink.pen_on_ink import PenOnInk, Ways, over_at
-from morfax.tracer.program.against_ink.sheet_parts import margin_px, parts
+from morfax.tracer.program.against_ink.pen_on_ink import PenOnInk, Room, Ways, over_at
 from morfax.tracer.program.against_ink.surely_on_ink import may_be_over
 from morfax.tracer.tangles.felt_pen import FAR
 
@@ -86,169 +84,176 @@ class BesideInk(NamedTuple):
     is_sure: bool
 
 
-class _Over(NamedTuple):
-    """What is over on a line: at its stations, by the numbers of its places; and where these are, pixels."""
-
-    station: NDArray[np.int64]
-    over: Array
-    places_px: NDArray[np.float32]
-
-
-class _Known(NamedTuple):
-    """What is known of lines before some were mended: the way of each that was not, pixels; which were not
-    surely on their ink, and by the number of each of these what was over on it; and where the ways of the
-    others have moved, pixels (n, 2).
+class _Tiles(NamedTuple):
+    """In which tile of a side each place of the ways is, the places in the order of these, and tiles in a
+    row.
     """
 
-    ways_px: list[NDArray[np.float32] | None]
-    doubtful: NDArray[np.bool_]
-    over: dict[int, _Over]
-    moved_px: NDArray[np.float32]
+    side_px: int
+    of_place: NDArray[np.int32]
+    order: NDArray[np.int64]
+    across: int
+
+    @classmethod
+    def of(cls, ways: Ways, side_px: int) -> _Tiles:
+        """The tiles of some ways; the last of each row is empty."""
+        column, row = np.maximum(ways.places_px.T / side_px, 0).astype(np.int32)
+        across = 2 + int(column.max())
+        of_place = row * across + column
+        return cls(side_px, of_place, np.argsort(of_place, kind="stable"), across)
+
+    def about(self, row: int, column: int) -> NDArray[np.int64]:
+        """The numbers of the places in a tile and in the eight about it."""
+        firsts = (np.arange(row - 1, row + 2) * self.across + column - 1)[:, None]
+        edges = (firsts + np.array([0, 3])).astype(
+            self.of_place.dtype
+        )  # else all would be copied
+        ends = np.searchsorted(self.of_place, edges, sorter=self.order)
+        return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
+
+
+ByTile = dict[bytes, NDArray[Any]]  # what was told of tiles, by all that lies in them
 
 
 @dataclass(frozen=True, eq=False)
 class OwnInk:
-    """Some lines of a drawing, which are held against their ink once, for all limits."""
+    """Some lines of a drawing, which are held against their ink once, for all limits; and what was told of
+    tiles of the sheet by all that lies in them.
+    """
 
     drawing: Drawing
     lines: Sequence[Line]
-    known: _Known | None = None
+    told: ByTile = field(default_factory=dict)
 
     def mended(self, lines: Sequence[Line]) -> OwnInk:
-        """The lines with some of them mended: what is known of places far from there still holds."""
-        pairs = list(zip(self.lines, lines, strict=True))
-        moved_mm = [moved(old, new, MOVED) for old, new in pairs if new is not old]
-        moved_px = _pixels(self.drawing, np.vstack([np.empty((0, 2)), *moved_mm]))
-        ways_px = [
-            None if new is not old else way
-            for (old, new), way in zip(pairs, self._ways_px, strict=True)
-        ]
-        known = _Known(ways_px, self.doubtful, self._over, moved_px)
-        return OwnInk(self.drawing, lines, known)
+        """The lines with some of them mended: tiles in which they are as they were are told of at once."""
+        return replace(self, lines=lines)
 
     def beside(self, limits: OverLimits) -> Iterator[BesideInk]:
         """Where lines that closed or ended run beside their ink, by more than some limits; nothing where no
         pen can be told.
         """
-        for k, (station, over, places_px) in sorted(self._over.items()):
-            half_px, usual = self._ways.half_px[k], percentile(over, MOST)
+        for half_px, station, over in self._judged:
+            usual = percentile(over, MOST)
             least, sure = (
                 max(float(each.of(half_px)), each.of_most * usual) for each in (limits, SURE)
             )
             for first, last in _stretches(over > least):
                 worst = first + int(np.argmax(over[first:last]))
                 places = 1 + station[last - 1] - station[first]
-                place_mm = _mm(self.drawing, places_px[worst])
+                place_mm = _mm(self.drawing, self._ways.places_px[station[worst]])
                 long_mm = float(places * PLACES_PX * self.drawing.pitch_mm)
                 yield BesideInk(place_mm, long_mm, bool(over[worst] > sure))
 
     @cached_property
     def doubtful(self) -> NDArray[np.bool_]:
-        """Which lines, of those that closed or ended, are not surely on their ink; or were not before they
-        were mended.
-        """
+        """Which lines, of those that closed or ended, are not surely on their ink."""
         noise = self.drawing.noise
         is_told = bool(self.lines) and noise.softness_px > 0 and not self.drawing.grainy
-        doubtful = np.zeros(len(self.lines), bool)
         if not is_told or not self._ways.judged.any():
-            return doubtful
-        if self.known is not None:
-            doubtful |= self.known.doubtful
-        is_station = _are_stations(self._ways, self._ways.judged & ~doubtful) & self._is_new
-        return doubtful | _doubtful(self.drawing, self._ways, is_station, self._pen)
-
-    @cached_property
-    def _over(self) -> dict[int, _Over]:
-        """What is over on each line that is not surely on its ink, by its number, in the order of its way."""
-        known = {} if self.known is None else self.known.over
-        if not self.doubtful.any():
-            return {}
-        ways, is_station = self._ways, _are_stations(self._ways, self.doubtful)
-        is_known = np.zeros(len(self.lines), bool)
-        is_known[list(known)] = True
-        is_asked = is_station & (self._is_new | ~is_known[ways.line])
-        over = np.empty(len(ways.line))
-        for station, some in _judged(self.drawing, ways, is_asked, self._pen):
-            over[station] = some
-        found = dict[int, _Over]()
-        for k in np.flatnonzero(self.doubtful).tolist():
-            first, last = np.searchsorted(ways.line, (k, k + 1)).tolist()
-            station = first + np.flatnonzero(is_station[first:last])
-            old = station[~is_asked[station]]
-            if len(old):
-                nearest = Neighbours(known[k].places_px).nearest(ways.places_px[old])[1]
-                over[old] = known[k].over[nearest]
-            found[k] = _Over(station - first, over[station], ways.places_px[station])
-        return found
-
-    @cached_property
-    def _is_new(self) -> NDArray[np.bool_]:
-        """Which places of the ways are near to where one has moved; all of lines that are new."""
-        places_px = self._ways.places_px
-        if self.known is None:
-            return np.ones(len(places_px), bool)
-        side_px = margin_px(self._pen)
-        every = np.vstack([places_px, self.known.moved_px])
-        column, row = np.maximum(every.T / side_px, 0).astype(np.int32)
-        moved_at = np.zeros((row.max() + 1, column.max() + 1), np.uint8)
-        moved_at[row[len(places_px) :], column[len(places_px) :]] = 1
-        is_near = cv2.dilate(moved_at, np.ones((3, 3), np.uint8))
-        return np.asarray(is_near[row[: len(places_px)], column[: len(places_px)]] > 0)
-
-    @cached_property
-    def _ways_px(self) -> list[NDArray[np.float32]]:
-        """The way of each line, (n, 2) pixels."""
-        known = self.known.ways_px if self.known is not None else [None] * len(self.lines)
-        spacing_mm = PLACES_PX * self.drawing.pitch_mm
-        return [
-            _pixels(self.drawing, evenly(line.places_mm, spacing_mm)) if way is None else way
-            for line, way in zip(self.lines, known, strict=True)
-        ]
+            return np.zeros(len(self.lines), bool)
+        return _doubtful(self.drawing, self._ways, self.told)
 
     @cached_property
     def _ways(self) -> Ways:
         """The ways of the lines."""
-        counts, pitch_mm = [len(way) for way in self._ways_px], self.drawing.pitch_mm
-        return Ways(
-            np.vstack(self._ways_px),
-            np.repeat(np.arange(len(counts), dtype=np.int32), counts),
-            np.array([0.5 * line.width_mm / pitch_mm for line in self.lines]),
-            np.array([line.ending in JUDGED and not line.on_edge for line in self.lines]),
-        )
+        return _ways(self.drawing, self.lines)
 
     @cached_property
-    def _pen(self) -> PenOnInk:
-        """The pen of most lines."""
-        return _pen(self.drawing, self._ways)
+    def _judged(self) -> list[tuple[Array, NDArray[np.int64], Array]]:
+        """Of each line that is not surely on its ink half its width in pixels, the stations in the order of
+        the way, and what is over there.
+        """
+        if not self.doubtful.any():
+            return []
+        ways, doubtful = self._ways, self.doubtful
+        found = zip(*_judged(self.drawing, ways, doubtful, self.told), strict=True)
+        line, station, over = (np.concatenate(column) for column in found)
+        of_line = (np.flatnonzero(line == number) for number in np.flatnonzero(doubtful))
+        ordered = [own[np.argsort(station[own], kind="stable")] for own in of_line]
+        return [(ways.half_px[line[own[0]]], station[own], over[own]) for own in ordered]
 
 
-def _pixels(drawing: Drawing, places_mm: Array) -> NDArray[np.float32]:
-    """Places (n, 2) mm in columns and rows of the sheet."""
+def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
+    """The ways of lines in pixels of the sheet."""
     pitch_mm, rows = drawing.pitch_mm, drawing.darkness.shape[0]
-    places = np.column_stack([places_mm[:, 0], rows * pitch_mm - places_mm[:, 1]])
-    return (places / pitch_mm - 0.5).astype(np.float32)
+    ways = [evenly(line.places_mm, PLACES_PX * pitch_mm) for line in lines]
+    places = [np.column_stack([way[:, 0], rows * pitch_mm - way[:, 1]]) for way in ways]
+    return Ways(
+        np.vstack([(some / pitch_mm - 0.5).astype(np.float32) for some in places]),
+        np.repeat(np.arange(len(ways), dtype=np.int32), [len(way) for way in ways]),
+        np.array([0.5 * line.width_mm / pitch_mm for line in lines]),
+        np.array([line.ending in JUDGED and not line.on_edge for line in lines]),
+    )
 
 
-def _doubtful(
-    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], pen: PenOnInk
-) -> NDArray[np.bool_]:
-    """Which lines are not surely on their ink at some stations: most are, and need not be judged."""
-    doubtful, least = np.zeros(len(ways.judged), bool), NEARLY.of(ways.half_px)
-    for part in parts(drawing, ways, is_station, QUICK_PX, pen):
+def _doubtful(drawing: Drawing, ways: Ways, told: ByTile) -> NDArray[np.bool_]:
+    """Which lines are not surely on their ink: most are, and need not be judged."""
+    doubtful = np.zeros(len(ways.judged), bool)
+    least, pen = NEARLY.of(ways.half_px), _pen(drawing, ways)
+    for part in parts(drawing, ways, _are_stations(ways, ways.judged), QUICK_PX, pen):
         asked = ~doubtful[ways.line[part.stations]]
         line, at = ways.line[part.stations[asked]], part.at[asked]
-        may = np.empty(len(line), bool)
-        may_be_over(part.seen, part.ways, at, least[line], part.pen, part.room, may)
-        doubtful[line[may]] = True
+        key = part.key(at, least[line])
+        if key not in told:
+            told[key] = np.empty(len(line), bool)
+            may_be_over(part.seen, part.ways, at, least[line], part.pen, part.room, told[key])
+        doubtful[line[told[key]]] = True
     return doubtful
 
 
 def _judged(
-    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], pen: PenOnInk
-) -> Iterator[tuple[NDArray[np.int64], Array]]:
-    """Some stations, tile by tile: number of the place, and what is over."""
-    for part in parts(drawing, ways, is_station, TILE_PX, pen):
-        yield part.stations, over_at(part.seen, part.ways, part.at, part.pen, part.room)
+    drawing: Drawing, ways: Ways, which: NDArray[np.bool_], told: ByTile
+) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
+    """The stations of some lines, tile by tile: line, number of the place, and what is over."""
+    pen = _pen(drawing, ways)
+    for part in parts(drawing, ways, _are_stations(ways, which), TILE_PX, pen):
+        key = part.key(part.at)
+        if key not in told:
+            told[key] = over_at(part.seen, part.ways, part.at, part.pen, part.room)
+        yield ways.line[part.stations], part.stations, told[key]
+
+
+class Part(NamedTuple):
+    """A tile of the sheet with what lies about it: the darkness, the ways as they are seen from its corner,
+    the numbers of the stations in the tile and their pixels, the pen, room to work in, and the corner.
+    """
+
+    seen: NDArray[np.float32]
+    ways: Ways
+    stations: NDArray[np.int64]
+    at: NDArray[np.int64]
+    pen: PenOnInk
+    room: Room
+    corner: NDArray[np.float32]
+
+    def key(self, *asked: NDArray[Any]) -> bytes:
+        """What tells the tile, with all that lies in it, from every other; and what is asked of it."""
+        line, ways = self.ways.line, self.ways
+        every: list[NDArray[Any]] = [self.corner, ways.places_px, line, *asked]
+        every += [ways.half_px[line], ways.judged[line]]
+        pen = repr((self.pen, self.seen.shape)).encode()
+        return sha1(b"".join([pen, *(each.tobytes() for each in every)])).digest()
+
+
+def parts(
+    drawing: Drawing, ways: Ways, is_station: NDArray[np.bool_], side_px: int, pen: PenOnInk
+) -> Iterator[Part]:
+    """The tiles of a side in which some of the places that stand for ways are stations."""
+    tiles = _Tiles.of(ways, side_px)
+    margin = math.ceil(2 * (FAR + 1) * pen.half_px) + 1
+    room = Room.of((side_px + 2 * margin) ** 2, pen)
+    for number in sorted(set(tiles.of_place[is_station].tolist())):
+        row, column = divmod(number, tiles.across)
+        near = tiles.about(row, column)
+        stations = near[is_station[near] & (tiles.of_place[near] == number)]
+        top, left = max(row * side_px - margin, 0), max(column * side_px - margin, 0)
+        down, along = (row + 1) * side_px + margin, (column + 1) * side_px + margin
+        seen = np.ascontiguousarray(drawing.darkness[top:down, left:along])
+        corner = np.array([left, top], np.float32)
+        at = np.round(ways.places_px[stations] - corner).astype(int)
+        at = np.clip(at, 0, np.array(seen.shape)[::-1] - 1)
+        yield Part(seen, ways.seen_from(corner, near), stations, at, pen, room, corner)
 
 
 def _are_stations(ways: Ways, which: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -38,7 +38,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import CELL
 from morfax.tracer.ink.crossing_on_ink import OFF
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER
-from morfax.tracer.program.against_ink.own_ink import PLACES_PX
+from morfax.tracer.program.against_ink.own_ink import PLACES_PX, parts
 from morfax.tracer.program.against_ink.pen_on_ink import (
     PenOnInk,
     Ways,
@@ -48,7 +48,6 @@ from morfax.tracer.program.against_ink.pen_on_ink import (
     most_about,
     sums_of,
 )
-from morfax.tracer.program.against_ink.sheet_parts import parts
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.tangles.pen import ink_at
 

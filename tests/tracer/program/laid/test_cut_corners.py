@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -83,9 +82,9 @@ def test_ink_that_a_way_explains_is_held_against_it_once(
     looked_at = list[int]()
     doubtful = own_ink._doubtful
 
-    def counted(drawing: Drawing, ways: Ways, *rest: Any) -> np.ndarray:
+    def counted(drawing: Drawing, ways: Ways, told: own_ink.ByTile) -> np.ndarray:
         looked_at.append(len(ways.line))
-        return doubtful(drawing, ways, *rest)
+        return doubtful(drawing, ways, told)
 
     monkeypatch.setattr(own_ink, "_doubtful", counted)
     trace(inked(arc((16, 16), 10), seed=4))
