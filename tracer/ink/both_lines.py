@@ -37,8 +37,8 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     `ends` says where their ink ends.
 
     None where the ink swells on the way. Half a width before a junction begins the ink of what meets there:
-    they end before it if a leg of them is left. Where the ink is as narrow as one line they touch, or change
-    sides:
+    they end before it if a leg of them is left, which lies in the middle between the rims. Where the ink is
+    as narrow as one line they touch, or change sides:
 
         width │ ╲  ╱  crosses: it comes and goes at a slope     ╲_  _╱  touches: the slope fades
               │  ╲╱                                               ╲╱
@@ -60,10 +60,9 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
         min(part.stop, len(widths) - (0 if ends[1] else reach)),
     )
     if (within.stop - within.start) * stations.view.step_mm > stations.view.leg_mm:
-        part = within
-    return within_rims(
-        between_rims(stations.part(part.start, part.stop)), widths[part], width_mm
-    )
+        own = between_rims(stations.part(within.start, within.stop))
+        return within_rims(own, widths[within], width_mm)
+    return within_rims(stations.part(part.start, part.stop), widths[part], width_mm)
 
 
 def within_rims(part: Run, widths: Array, width_mm: float) -> list[Run]:

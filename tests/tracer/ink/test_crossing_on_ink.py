@@ -52,12 +52,13 @@ def test_a_corner_in_the_ink_of_another_line_is_its_lines(tip: str, seed: int) -
     assert max(each_by_a_stroke([ACROSS, *TIPS[tip]], seed)) < OFF_MM
 
 
-def test_a_line_that_turns_back_within_its_own_ink_is_one_line() -> None:
-    """Its legs are as those of two lines that end beside each other, which do not explain the ink: a doubled
-    Lissajous figure fell into three strokes, 0.18 mm off.
+@pytest.mark.parametrize("phase", [0.3612, 0.3618, 0.3625])
+def test_a_line_that_turns_back_within_its_own_ink_is_one_line(phase: float) -> None:
+    """Its legs are as those of two lines that end beside each other, or of one that turns back before its
+    tip, which do not explain the ink: 1.1 to 2.1 mm were left.
     """
     turns = np.linspace(0, 2 * np.pi, 6000)
-    figure = 40 * np.column_stack([np.sin(3 * turns + 0.3625), np.sin(4 * turns)])
+    figure = 40 * np.column_stack([np.sin(3 * turns + phase), np.sin(4 * turns)])
     tip = figure[np.hypot(*(figure - 40).T) < 14]
     tip += 4 - tip.min(axis=0)
     (stroke,) = trace_ink(inked(tip, width_mm=0.4, seed=2)).lines
