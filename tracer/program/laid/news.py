@@ -17,7 +17,6 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from morfax.motion.arrays import Array, bounds
-from morfax.motion.polyline import nearest_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.bars import ABOUT
 from morfax.tracer.program.against_ink.own_ink import BesideInk
@@ -79,13 +78,3 @@ def near_box(
         ):
             found.append(place)
     return found
-
-
-def moved(old: Line, new: Line, off_widths: float) -> Array:
-    """The places (n, 2) mm of two states of a line off the other's way, by more than so many widths."""
-    if new is old:
-        return np.empty((0, 2))
-    off_mm = off_widths * new.width_mm
-    old_mm, new_mm = old.places_mm, new.places_mm
-    gone = old_mm[nearest_mm(old_mm, new_mm) > off_mm]
-    return np.vstack([gone, new_mm[nearest_mm(new_mm, old_mm) > off_mm]])
