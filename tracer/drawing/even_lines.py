@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.median import median
 from morfax.tracer.drawing.components import INK
 
 Darkness = NDArray[np.float32]
@@ -83,9 +84,9 @@ class EvenLines(NamedTuple):
         dark = seen[np.clip(beside, 0, len(seen) - 1)].max(axis=1)
         found = []
         for times in (of for of in FINER if 3 * of <= self.lines):
-            first = int(np.argmax([np.median(dark[k::times]) for k in range(times)]))
+            first = int(np.argmax([median(dark[k::times]) for k in range(times)]))
             of_these = dark[first::times]
-            if np.mean(of_these > HEAVIER * np.median(dark)) > PRESENT:
+            if np.mean(of_these > HEAVIER * median(dark)) > PRESENT:
                 found.append(
                     self._replace(
                         first_px=self.first_px + first * self.period_px,
@@ -104,7 +105,7 @@ def even_lines(upright: Darkness, level: float, pitch_mm: float) -> EvenLines | 
     if len(lines) < FEWEST_LINES:
         return None
     # 2. the period that they keep; those midway between two are of a finer family
-    period = float(np.median(np.diff(lines)))
+    period = median(np.diff(lines))
     if not LEAST_PERIOD_MM <= period * pitch_mm <= LARGEST_PERIOD_MM:
         return None
     halves = np.r_[0, np.cumsum(np.round(2 * np.diff(lines) / period))]
@@ -118,7 +119,7 @@ def even_lines(upright: Darkness, level: float, pitch_mm: float) -> EvenLines | 
     begin, asked = ours.min(), int(np.ptp(ours)) + 1
     if len(ours) < SPANNED * asked:  # all of them are asked for along their runs
         return None
-    half_px = 0.5 * float(np.median(widths)) + SOFT_PX
+    half_px = 0.5 * median(widths) + SOFT_PX
     if asked * period < SPREAD * len(is_line) or period < 2 * half_px + 1:
         return None
     return EvenLines(first + begin * period, period, asked, half_px)
@@ -140,12 +141,12 @@ def are_evenly_apart(seen: Array, level: float) -> bool:
     """Whether the lines that cross a row are evenly apart, or are some of such lines."""
     middles, widths = _middles(seen, seen > level, math.inf)
     middles = (
-        middles[widths < 2 * np.median(widths)] if len(middles) else middles
+        middles[widths < 2 * median(widths)] if len(middles) else middles
     )  # none along a line across
     if len(middles) < FEWEST_LINES:
         return False
     gaps = np.diff(middles)
-    times = gaps / np.median(gaps)
+    times = gaps / median(gaps)
     return bool(np.mean(np.abs(times - np.round(times)) < 2 * OFF_PERIOD) > SPANNED)
 
 

@@ -36,9 +36,8 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     """The two lines of a width whose ink runs together along some stations: half a width within its rims;
     `ends` says where their ink ends.
 
-    None where the ink swells on the way. Half a width before a junction begins the ink of what meets there:
-    they end before it if a leg of them is left, which lies in the middle between the rims. Where the ink is
-    as narrow as one line they touch, or change sides:
+    None where the ink swells on the way. Of a leg or more their middle lies between the rims of the ink.
+    Where the ink is as narrow as one line they touch, or change sides:
 
         width │ ╲  ╱  crosses: it comes and goes at a slope     ╲_  _╱  touches: the slope fades
               │  ╲╱                                               ╲╱
@@ -55,14 +54,10 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     stations, widths = stations.part(*part_of), widths[slice(*part_of)]
     near, far = (round(share * width_mm / stations.view.step_mm) for share in CROSSED)
     part = _told_apart(0.5 * (widths / width_mm - 1), ends, near, far)
-    within = slice(
-        max(part.start, 0 if ends[0] else reach),
-        min(part.stop, len(widths) - (0 if ends[1] else reach)),
-    )
-    if (within.stop - within.start) * stations.view.step_mm > stations.view.leg_mm:
-        own = between_rims(stations.part(within.start, within.stop))
-        return within_rims(own, widths[within], width_mm)
-    return within_rims(stations.part(part.start, part.stop), widths[part], width_mm)
+    own = stations.part(part.start, part.stop)
+    if len(own) * stations.view.step_mm > stations.view.leg_mm:
+        own = between_rims(own)
+    return within_rims(own, widths[part], width_mm)
 
 
 def within_rims(part: Run, widths: Array, width_mm: float) -> list[Run]:

@@ -130,11 +130,3 @@ def test_stations_beside_the_middle_of_both_lines_do_not_take_these_along() -> N
     two = strands(beside, WIDTH_MM, (True, True))
     for strand in two:
         assert np.abs(np.abs(strand.places_mm[:, 1] - 20) - 0.2 * WIDTH_MM).max() < 15 * UM
-
-
-def test_both_lines_begin_where_no_other_line_s_ink_does() -> None:
-    """Half a width before a junction ink is felt of what meets there: it turned the last of a line."""
-    felt = _felt_with(np.full(200, 0.4 * WIDTH_MM))
-    near = round(0.5 * WIDTH_MM / felt.view.step_mm)
-    lengths = [len(strands(felt, WIDTH_MM, (is_end, True))[0]) for is_end in (True, False)]
-    assert lengths == [200, 200 - near]
