@@ -29,7 +29,12 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.ink.crossing_on_ink import WaysOn, is_explained, told_by_ink
+from morfax.tracer.ink.crossing_on_ink import (
+    WaysOn,
+    is_explained,
+    is_one_with_a_tip,
+    told_by_ink,
+)
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
@@ -101,8 +106,8 @@ class Crossing:
         if self.drawn is not None:
             return self.drawn
         if len(self.legs) == 2:
-            told = WaysOn(() if self._tips else ((0, 1),), {})
-            return told_by_ink(self, told) if are_side_by_side(*self.legs) else told
+            are_two = self._tips and not is_one_with_a_tip(self, (0, 1))
+            return WaysOn(() if are_two else ((0, 1),), {})
         if vertices := self._vertices:
             return WaysOn(tuple(sorted(vertices)), vertices)
         return told_by_ink(self, WaysOn(tuple(self._by_turnings), {}))

