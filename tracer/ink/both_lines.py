@@ -36,8 +36,9 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     """The two lines of a width whose ink runs together along some stations: half a width within its rims;
     `ends` says where their ink ends.
 
-    None where the ink swells on the way. Of a leg or more their middle lies between the rims of the ink.
-    Where the ink is as narrow as one line they touch, or change sides:
+    None where the ink swells on the way. Of a leg or more their middle lies between the rims of the ink, and
+    goes straight on over half a width before a junction, where the ink of what meets there begins. Where the
+    ink is as narrow as one line they touch, or change sides:
 
         width │ ╲  ╱  crosses: it comes and goes at a slope     ╲_  _╱  touches: the slope fades
               │  ╲╱                                               ╲╱
@@ -55,9 +56,21 @@ def strands(stations: Run, width_mm: float, ends: Ends = (False, False)) -> list
     near, far = (round(share * width_mm / stations.view.step_mm) for share in CROSSED)
     part = _told_apart(0.5 * (widths / width_mm - 1), ends, near, far)
     own = stations.part(part.start, part.stop)
-    if len(own) * stations.view.step_mm > stations.view.leg_mm:
-        own = between_rims(own)
+    clear = slice(0 if ends[0] else reach, len(own) - (0 if ends[1] else reach))
+    if (clear.stop - clear.start) * stations.view.step_mm > stations.view.leg_mm:
+        own = _drawn_out(between_rims(own.part(clear.start, clear.stop)), own, clear)
     return within_rims(own, widths[part], width_mm)
+
+
+def _drawn_out(clear: Run, whole: Run, part: slice) -> Run:
+    """A run with stations straight ahead of its ends, for those of a whole of which it is a part."""
+    steps = np.arange(len(whole)) - part.start
+    within = np.clip(steps, 0, len(clear) - 1)
+    headings = clear.headings_rad[within]
+    ahead_mm = (steps - within) * whole.view.step_mm
+    ways = np.column_stack([np.cos(headings), np.sin(headings)])
+    places = clear.places_mm[within] + ahead_mm[:, None] * ways
+    return replace(whole, places_mm=places, headings_rad=headings)
 
 
 def within_rims(part: Run, widths: Array, width_mm: float) -> list[Run]:

@@ -130,3 +130,15 @@ def test_stations_beside_the_middle_of_both_lines_do_not_take_these_along() -> N
     two = strands(beside, WIDTH_MM, (True, True))
     for strand in two:
         assert np.abs(np.abs(strand.places_mm[:, 1] - 20) - 0.2 * WIDTH_MM).max() < 15 * UM
+
+
+def test_both_lines_go_straight_on_into_the_ink_of_a_junction() -> None:
+    """Half a width before it begins the ink of what meets there, which moves stations aside."""
+    felt = _felt_with(np.full(200, 0.4 * WIDTH_MM))
+    x = felt.places_mm[:, 0]
+    aside_mm = np.maximum(x - (x[-1] - 0.5 * WIDTH_MM), 0.0)
+    drawn_aside = replace(felt, places_mm=felt.places_mm + aside_mm[:, None] * (0.0, 1.0))
+    two = strands(drawn_aside, WIDTH_MM, (True, False))
+    assert len(two) == 2
+    for strand in two:
+        assert np.abs(np.abs(strand.places_mm[:, 1] - 20) - 0.2 * WIDTH_MM).max() < 15 * UM
