@@ -1,9 +1,8 @@
 """The spool: a sound file being written, of whatever kind its name asks for, that cannot end as half a tape.
 
 Signals: frames float32 (n, tracks), full scale 1, in blocks in; a WAV (RF64 inside while it grows), RF64,
-W64, FLAC or AIFF out. A block is written in a thread of its own while the next one is made. The text goes
-into the header before the first frame, as a FLAC takes it nowhere else. A W64 has no place for a text: it
-goes into a file beside it, `cam.w64.json` (source.sidecar).
+W64, FLAC or AIFF out. The text goes into the header before the first frame, as a FLAC takes it nowhere else.
+A W64 has no place for a text: it goes into a file beside it, `cam.w64.json` (source.sidecar).
 
 Source: EBU Tech 3306 (RF64); Apple, Audio Interchange File Format 1.3; Sonic Foundry, Wave64 file format 2.
 Questions: a plain WAV and an AIFF count their bytes with 32 bits. The first is written as an RF64 until it is
@@ -12,7 +11,6 @@ known to be small enough; the second has no larger kind and is refused beyond it
 
 from __future__ import annotations
 
-from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path as FilePath
 
 import numpy as np
@@ -79,36 +77,23 @@ class Spool(Ending):
             for_soundfile(file), "w", rate_hz, tracks, subtype, format=container
         )
         self.frames = 0
-        self._thread, self._writing = ThreadPoolExecutor(1, "spool"), Future[None]()
-        self._writing.set_result(None)
         self.takes: SampleType = np.int16 if subtype == "PCM_16" else np.float32
         if text and container != "W64":
             self._sound.comment = text
 
     def end(self, error: BaseException | None) -> None:
         """Close the file; it is whole if nothing went wrong."""
-        self._thread.shutdown()
         self._sound.close()
         if error is None:
-            self._writing.result()
             self._check_whole()
 
     def put(self, frames: Stored) -> None:
-        """Have frames written, which stay as they are until then, while the next ones are made.
-
-        Raises SoundFileRuntimeError on a disk that was full for those before, TapeFault beyond the size of an
-        AIFF.
-        """
+        """Write frames; raises SoundFileRuntimeError on a full disk, TapeFault beyond an AIFF's size."""
         self.frames += len(frames)
         if self._container == "AIFF" and self.frames * self._frame_bytes > LARGEST_AIFF_BYTES:
             raise TapeFault(
                 f"cannot write {self._name}: an AIFF ends at 2 GiB; write a .wav, .rf64, .w64 or .flac"
             )
-        self._writing.result()
-        self._writing = self._thread.submit(self._write, frames)
-
-    def _write(self, frames: Stored) -> None:
-        """Write frames; raises SoundFileRuntimeError on a full disk."""
         try:
             if self.takes is np.int16:
                 self._sound.buffer_write(in_16_bit(frames), "int16")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from pathlib import Path
 
 import numpy as np
@@ -53,37 +52,3 @@ def test_a_spool_is_called_as_the_file_that_it_will_be(tmp_path: Path) -> None:
         with pytest.raises(TapeFault, match=r"cannot write .*a\.aiff: an AIFF ends"):
             spool.put(FRAMES)
         spool.frames = 0
-
-
-class Slow:
-    """A sound file whose writing takes as long as somebody holds it, or fails."""
-
-    def __init__(self, fails: bool) -> None:
-        self.may_write, self.fails, self.is_closed = threading.Event(), fails, False
-
-    def buffer_write(self, samples: np.ndarray, kind: str) -> None:
-        """Wait, and fail as on a full disk."""
-        assert self.may_write.wait(10) and not self.is_closed
-        assert not self.fails
-
-    def close(self) -> None:
-        """Close."""
-        self.is_closed = True
-
-
-@pytest.mark.parametrize("fails", [False, True])
-def test_a_block_is_written_while_the_next_is_made_and_a_full_disk_is_told(
-    tmp_path: Path, fails: bool
-) -> None:
-    spool = Spool(tmp_path / "a.rf64", 48_000, 2, ("RF64", "PCM_16"), "")
-    whole = spool._sound
-    spool._sound = slow = Slow(fails)
-    spool.put(FRAMES)  # nothing is written yet
-    slow.may_write.set()
-    if fails:
-        for ending in (lambda: spool.put(FRAMES), lambda: spool.end(None)):
-            with pytest.raises(soundfile.SoundFileError, match="not all frames"):
-                ending()
-    spool.end(OSError())
-    assert slow.is_closed
-    whole.close()
