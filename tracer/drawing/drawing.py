@@ -36,7 +36,7 @@ from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
-from morfax.tracer.drawing.tiles import Tiles
+from morfax.tracer.drawing.tiles import Kept, Tiles
 
 if TYPE_CHECKING:
     from morfax.tracer.corrections.on_sheet import OnSheet, StopAt, TurnAt
@@ -236,8 +236,8 @@ class Drawing:
         """The lines in grey levels on square pixels."""
         # 1. darkness, without what is printed and the scan's border
         darkness, shapes, paper_noise, has_shapes = _levelled(grey, pitch_mm, reading)
-        cleared, told = _cleared(darkness, pitch_mm, reading)
-        darkness, paper_noise = cleared.darkness, paper_noise / cleared.ink
+        darkness, ink, told = _cleared(darkness, pitch_mm, reading)
+        paper_noise /= ink
         lines, pale_mm = within(darkness, paper_noise), 0.0
         times = speckled.times_larger(darkness, lines, pitch_mm)
         if times > 1:
@@ -283,12 +283,14 @@ class Drawing:
 
 def _cleared(
     darkness: Darkness | Tiles, pitch_mm: float, reading: Reading
-) -> tuple[ruling.Cleared, tuple[str, ...]]:
-    """Darkness without what is printed and without the scan's border, and notes of both."""
+) -> tuple[Kept, float, tuple[str, ...]]:
+    """Darkness without what is printed and without the scan's border, how dark what is drawn was before it
+    was made 1, and notes of both.
+    """
     cleared = ruling.left_out(darkness, pitch_mm, reading.printed)
     edges = without_border(cleared.darkness, LEAST if reading.pale_is_ink else INK)
     notes = tuple(filter(None, (cleared.note, border_note(edges) if edges else None)))
-    return cleared, notes
+    return cleared.darkness, cleared.ink, notes
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Levelled:

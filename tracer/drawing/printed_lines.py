@@ -122,7 +122,8 @@ class _Frame(NamedTuple):
         missed = 0
         for part in ROWS:
             row = int(part * high)
-            seen = np.sort(self.darkness[row - 3 : row + 4], axis=0)[3]
+            beside = self.darkness[max(row - 3, 0) : row + 4]
+            seen = np.sort(beside, axis=0)[len(beside) // 2]
             missed += not any(are_evenly_apart(seen, level) for level in LEVELS)
             if missed > len(ROWS) // 2:
                 return False
