@@ -57,6 +57,11 @@ class RunEnds:
             way = [course.to_end(self.carriage.stands(), incoming, end)]
             self.carriage.run(way, self.settings.speed_mm_s, STATIONS)
             return self._go_home()
+        way_home = self._home.faint_corner(self.view, incoming, end)
+        if way_home is not None and self.carriage.travel_mm > self._home.away_mm:
+            way = [course.to_end(self.carriage.stands(), incoming, end), way_home]
+            self.carriage.run(way, leader=STATIONS)
+            return self._done("closed")
         return self._end(incoming, end, joined=choices > 0)
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
