@@ -14,8 +14,7 @@ import numpy as np
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import APART_MM, with_places
-from morfax.tracer.head import course
+from morfax.tracer.following.faint_corner import Tip
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.kernel import HOME_COSINE
 from morfax.tracer.head.stance import Stance
@@ -23,8 +22,6 @@ from morfax.tracer.head.state import Home
 from morfax.tracer.junctions.line_ahead import AHEAD
 from morfax.tracer.limits import NEAR
 from morfax.tracer.sensing.leg import Leg, turn
-from morfax.tracer.sensing.probe import END_WIDTHS
-from morfax.tracer.sensing.view import View
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,33 +59,16 @@ class WayHome:
                 return [*distinct[:k], np.vstack([way[:near], home])]
         return None
 
+    @property
+    def tip(self) -> Tip:
+        """Home as an end of the line."""
+        return Tip(self.stance.place_mm, self.stance.heading_rad + math.pi)
+
     def is_across(self, incoming: Leg, end_mm: float, within_mm: float) -> bool:
         """Whether home is an open end that lies across a gap, straight ahead of the end of a leg."""
-        to_home_rad = self._from_end_rad(incoming.at(end_mm), within_mm)
-        if to_home_rad is None:
+        way = self.stance.place_mm - incoming.at(end_mm)
+        if not self.stance.at_end or np.hypot(*way) > within_mm:
             return False
         on = incoming.heading_at(end_mm)
+        to_home_rad = math.atan2(way[1], way[0])
         return all(abs(turn(on, a)) < AHEAD for a in (to_home_rad, self.stance.heading_rad))
-
-    def faint_corner(self, view: View, incoming: Leg, end_mm: float) -> Array | None:
-        """The course from the end of a leg onto home, (n, 2) mm, if the line turns there on paler ink, as of
-        a pencil, so that home looks like an open end; None if not.
-
-        One of the two tips is the corner: the other's line leads straight on to it.
-        """
-        end = incoming.at(end_mm)
-        to_home_rad = self._from_end_rad(end, END_WIDTHS * view.width_mm)
-        if to_home_rad is None:
-            return None
-        headings = incoming.heading_at(end_mm), self.stance.heading_rad
-        if min(abs(turn(to_home_rad, heading)) for heading in headings) > AHEAD:
-            return None
-        way = with_places(np.vstack([end, self.stance.place_mm]), APART_MM)
-        return way if course.on_ink(view, [way]) else None
-
-    def _from_end_rad(self, end: Array, within_mm: float) -> float | None:
-        """The direction from an end to home, if home is an open end that is no further away; else None."""
-        way = self.stance.place_mm - end
-        if not self.stance.at_end or np.hypot(*way) > within_mm:
-            return None
-        return math.atan2(way[1], way[0])

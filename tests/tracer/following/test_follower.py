@@ -52,7 +52,7 @@ def test_a_line_comes_round_by_a_corner_that_is_paler_and_not_across_paper(
     rows, columns = np.indices(drawing.darkness.shape)
     right_mm = (columns + 0.5) * drawing.pitch_mm - 18
     up_mm = (high - rows - 0.5) * drawing.pitch_mm - 34
-    drawing.darkness[(np.abs(right_mm + 0.2) < 0.5) & (np.abs(up_mm + 0.55) < 0.2)] *= left
+    drawing.darkness[(np.abs(right_mm + 0.25) < 0.3) & (np.abs(up_mm + 0.6) < 0.25)] *= left
     run = trace(drawing).lines[0]
     assert run.ending == ending
     if ending == "closed":
