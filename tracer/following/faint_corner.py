@@ -26,14 +26,14 @@ from morfax.tracer.sensing.probe import END_WIDTHS
 from morfax.tracer.sensing.view import View
 
 
-class Tip(NamedTuple):
+class TipPose(NamedTuple):
     """An end of a line: where it is (x, y) mm, and in which direction the line leads out to it, rad."""
 
     place_mm: Array
     outward_rad: float
 
 
-def faint_corner(view: View, one: Tip, other: Tip) -> list[Array] | None:
+def faint_corner(view: View, one: TipPose, other: TipPose) -> list[Array] | None:
     """The course from one tip to another as stretches (n, 2) mm, if pale ink leads there, or None."""
     begin, end = one.place_mm, other.place_mm
     way, straight = end - begin, [_straight(begin, end)]
@@ -51,7 +51,7 @@ def faint_corner(view: View, one: Tip, other: Tip) -> list[Array] | None:
     return next((way for way in [*ways, straight] if on_ink(view, way)), None)
 
 
-def _where_both_meet(one: Tip, other: Tip) -> Array | None:
+def _where_both_meet(one: TipPose, other: TipPose) -> Array | None:
     """Where the lines meet straight on from their tips, (x, y) mm; None if they do not."""
     on, back = direction(one.outward_rad), direction(other.outward_rad)
     if abs(cross(on, back)) < math.sin(CORNER_RAD):

@@ -13,7 +13,7 @@ import math
 from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.tracer.following import lost
-from morfax.tracer.following.faint_corner import Tip, faint_corner
+from morfax.tracer.following.faint_corner import TipPose, faint_corner
 from morfax.tracer.following.felt_line import Anchor
 from morfax.tracer.following.followed import Followed, without_repeat
 from morfax.tracer.following.way_home import WayHome
@@ -69,7 +69,7 @@ class RunEnds:
         """The course by an end of the line and pale ink onto home; None if the line ends here."""
         if not self._home.stance.at_end or self.carriage.travel_mm < self._home.away_mm:
             return None
-        tip = Tip(incoming.at(end_mm), incoming.heading_at(end_mm))
+        tip = TipPose(incoming.at(end_mm), incoming.heading_at(end_mm))
         onto_home = faint_corner(self.view, tip, self._home.tip)
         if onto_home is None:
             return None

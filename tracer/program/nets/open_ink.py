@@ -18,7 +18,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from morfax.tracer.drawing.strokes import Stroke
-from morfax.tracer.following.faint_corner import Tip, faint_corner
+from morfax.tracer.following.faint_corner import TipPose, faint_corner
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.open_ends import stances_at
 from morfax.tracer.following.plain_places import stands_near, view_of
@@ -86,7 +86,7 @@ def leads_on(junctions: Junctions, gap_mm: float) -> bool:
     """Whether the head goes on from any end of a patch, across a gap or over pale ink to another end."""
     from morfax.tracer.ink.net import end_leg
 
-    net, tips = junctions.net, list[Tip]()
+    net, tips = junctions.net, list[TipPose]()
     for line in net.lines:
         for last in (False, True):
             if line.junctions[last] not in net.free_ends:
@@ -95,7 +95,7 @@ def leads_on(junctions: Junctions, gap_mm: float) -> bool:
             if straight_on(view, leg, gap_mm) is not None:
                 return True
             end_mm = end_of(view, leg) or 0.0
-            tip = Tip(leg.at(end_mm), leg.heading_at(end_mm))
+            tip = TipPose(leg.at(end_mm), leg.heading_at(end_mm))
             if any(faint_corner(view, tip, other) is not None for other in tips):
                 return True
             tips.append(tip)
