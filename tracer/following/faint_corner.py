@@ -21,8 +21,8 @@ from morfax.motion.plane import CORNER_RAD, cross, direction, heading_of, meetin
 from morfax.motion.polyline import APART_MM, with_places
 from morfax.tracer.head.course import on_ink
 from morfax.tracer.junctions.line_ahead import AHEAD
-from morfax.tracer.sensing.leg import turn
-from morfax.tracer.sensing.probe import END_WIDTHS
+from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.probe import END_WIDTHS, end_of
 from morfax.tracer.sensing.view import View
 
 
@@ -31,6 +31,12 @@ class TipPose(NamedTuple):
 
     place_mm: Array
     outward_rad: float
+
+    @classmethod
+    def of(cls, view: View, leg: Leg) -> TipPose:
+        """The tip to which a leg leads; the leg's end, if it ends nowhere near."""
+        end_mm = end_of(view, leg) or 0.0
+        return cls(leg.at(end_mm), leg.heading_at(end_mm))
 
 
 def faint_corner(view: View, one: TipPose, other: TipPose) -> list[Array] | None:

@@ -34,7 +34,6 @@ from morfax.tracer.program.nets.net_outline import (
     may_solve,
 )
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.sensing.probe import end_of
 
 if TYPE_CHECKING:
     from morfax.tracer.ink.chains import Junctions
@@ -94,8 +93,7 @@ def leads_on(junctions: Junctions, gap_mm: float) -> bool:
             view, leg = line.runs[-1 if last else 0].view, end_leg(line, last)
             if straight_on(view, leg, gap_mm) is not None:
                 return True
-            end_mm = end_of(view, leg) or 0.0
-            tip = TipPose(leg.at(end_mm), leg.heading_at(end_mm))
+            tip = TipPose.of(view, leg)
             if any(faint_corner(view, tip, other) is not None for other in tips):
                 return True
             tips.append(tip)
