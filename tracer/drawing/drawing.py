@@ -261,13 +261,14 @@ class Drawing:
             pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
             lines = within(darkness, paper_noise) if pale_mm else lines
         notes = (*notes, *told, *grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm))
-        hard = not isinstance(darkness, Tiles) and coarse.is_hard(np.asarray(darkness))
+        most = None if isinstance(darkness, Tiles) else darkest(np.asarray(darkness))
+        hard = most is not None and coarse.is_hard(np.asarray(darkness), most)
         # 3. grain, of lines as they are drawn
         averaged = grain.averaged(darkness, drawn_grain, lines.width_px, pitch_mm)
         if averaged is not None:
             darkness, notes = averaged.darkness, (*notes, averaged.note)
         # 4. steps of pixels, and too large pixels
-        steps = hard and averaged is None
+        steps = most if hard and averaged is None else None
         darkness, finer, has_rims = coarse.without_steps(darkness, lines, steps)
         if finer > 1 and reading.pale_is_ink:  # a line of a pixel is paler now
             pale_mm += deepened(darkness, pitch_mm / finer, None, shapes)
@@ -288,7 +289,8 @@ class Drawing:
             drawn=averaged.drawn if averaged is not None and finer == 1 else None,
         )
         if averaged is None and finer == 1 and not has_rims:  # the darkness that was measured
-            vars(drawing)["noise"] = lines.found.noise(pitch_mm)
+            known = {} if most is None else {"darkest": most}
+            vars(drawing).update(known, noise=lines.found.noise(pitch_mm))
         return drawing
 
 

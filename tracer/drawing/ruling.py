@@ -38,7 +38,7 @@ from morfax.tracer.drawing.even_lines import (
     LARGEST_PERIOD_MM,
     LEAST_PERIOD_MM,
 )
-from morfax.tracer.drawing.printed_lines import Family, families
+from morfax.tracer.drawing.printed_lines import Family, families, may_have_lines
 from morfax.tracer.drawing.tiles import Kept, Tiles
 from morfax.tracer.effort import FEW_PX
 
@@ -73,7 +73,7 @@ def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> Cleared:
     if paper == "plain":
         return Cleared(darkness)
     small, by = _small_enough(darkness)
-    found = families(small, by * pitch_mm)
+    found = families(small, by * pitch_mm) if small.size else []
     if paper == "ruled":
         found = found[:1]
     if not found:
@@ -119,12 +119,16 @@ def _in_words(found: list[list[Family]], pixel_mm: float) -> tuple[str, str]:
 
 
 def _small_enough(darkness: Kept) -> tuple[Darkness, int]:
-    """The sheet on pixels that are so many times larger, few enough to look for printed lines on them."""
+    """The sheet on pixels that are so many times larger, few enough to look for printed lines on them; no row
+    of it if some of its rows and columns show none.
+    """
     by = max(1, math.isqrt(max(1, darkness.size // SEARCHED_PX)))
     if isinstance(darkness, Tiles):
         return darkness.shrunk(by), by
     if by == 1:
         return darkness, by
+    if not may_have_lines(darkness, by):
+        return darkness[:0], by
     size = darkness.shape[1] // by, darkness.shape[0] // by
     return np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32), by
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.motion.units import MM_PER_INCH
+from morfax.tracer.drawing import ruling
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.printed_lines import families
 from morfax.tracer.drawing.ruling import PaperKind, left_out
@@ -210,3 +212,18 @@ def test_as_few_lines_as_there_may_be_are_found(bare_mm: float, is_upright: bool
     assert family.is_whole is (bare_mm == 0)
     ends = sorted(abs(at) / TO_PX for at in family.run_px)
     assert ends == pytest.approx([bare_mm, 62.0] if bare_mm else [math.inf] * 2, abs=0.13)
+
+
+@pytest.mark.parametrize("is_printed", [True, False])
+def test_a_large_sheet_is_made_smaller_only_where_printed_lines_may_be(
+    is_printed: bool,
+) -> None:
+    """No row of a sheet without lines in the rows and columns looked at."""
+    sheet = np.random.default_rng(6).normal(0.0, 0.02, (3001, 2998)).astype(np.float32)
+    if is_printed:
+        sheet[:, 20::60] = sheet[:, 21::60] = sheet[:, 22::60] = 0.6
+    small, by = ruling._small_enough(sheet)
+    assert by == 2
+    whole = cv2.resize(sheet, (1499, 1500), interpolation=cv2.INTER_AREA)
+    assert np.array_equal(small, whole) if is_printed else small.size == 0
+    assert bool(left_out(sheet, PITCH_MM, "auto").note) == is_printed
