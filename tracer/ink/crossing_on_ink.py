@@ -10,6 +10,10 @@ pen leaves least. What explains the ink goes before what the legs tell. Not wher
 as those of letters are, nor on scans whose pixels were made finer, or of pencil: their ink shows no pen, and
 blots and arrowheads were run to and fro.
 
+Where the ways that legs tell explain the ink, others may do so about as well: a corner in another line's ink
+leaves what two ends there leave, and what two lines leave that bend within it. Of these the lines go on that
+turn least: two that go straight on and one with a corner go before three that bend.
+
 Signals: a crossing in; its pairs, and the corners between them, out.
 
 Four legs of one pen that turn are redrawn over as many vertices as it takes instead, if that explains their
@@ -34,10 +38,19 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
 from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.head.course import on_ink
-from morfax.tracer.ink.partners import MOST_LEGS, SMOOTHLY, Pair, likeliest, turnings
+from morfax.tracer.ink.partners import (
+    CORNERED,
+    MOST_LEGS,
+    SMOOTHLY,
+    Pair,
+    likeliest,
+    pairs_cost,
+    turnings,
+)
+from morfax.tracer.ink.redrawn_crossing import AS_WELL
 from morfax.tracer.junctions.corner import Corner
 from morfax.tracer.tangles import pen, settling
-from morfax.tracer.tangles.redrawing import VERTEX
+from morfax.tracer.tangles.redrawing import STROKE, VERTEX
 from morfax.tracer.tangles.sketch import ALL, softness_of
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -49,6 +62,7 @@ OFF = 0.08  # widths², in a box as wide as a line: of crossings that are right 
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
 REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
 TRIED = 5  # pairings
+FEWEST_LEGS = 4  # of which more than one may go on in another way than the others
 PLAIN = math.radians(6)  # lines that turn by less, all of which go on, are plain
 
 
@@ -82,9 +96,11 @@ class AsDrawn:
 
     @property
     def cost(self) -> float:
-        """What is wrong in all, and the price of its corners, widths²."""
-        corners = sum(map(len, self.crossing.solution.corners.values()))
-        return self.ink.left(self._wrong) + VERTEX * corners
+        """What is wrong in all, and the price of its corners and of lines that end in it, widths²."""
+        pairs, corners = self.crossing.solution
+        effort = float(sum(map(len, corners.values())))
+        effort += STROKE * (len(self.crossing.legs) - 2 * len(pairs))
+        return self.ink.left(self._wrong) + VERTEX * effort
 
 
 def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
@@ -97,14 +113,50 @@ def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     by_legs = crossing.as_drawn(told)
     ink = _Ink.about(crossing, by_legs.ways_mm)
     now = AsDrawn(by_legs, ink)
-    if ink.is_empty or now.off < OFF:
+    if ink.is_empty:
         return told
+    if now.off < OFF:
+        return _straightest(now, told)
     tried = [AsDrawn(crossing.as_drawn(drawn), ink) for drawn in _others(crossing, told, ink)]
     best = min(tried, key=lambda each: each.cost, default=now)
     gain = 0.0 if best.off < OFF else MUCH
     if best.off < now.off and best.cost < now.cost - gain:
         return best.crossing.solution
     return told
+
+
+def _straightest(now: AsDrawn, told: WaysOn) -> WaysOn:
+    """How lines go on through a crossing whose ink they explain: as they turn least, of all ways that explain
+    it about as well. Two lines that would end beside each other are one with a corner.
+    """
+    crossing, ink = now.crossing, now.ink
+    if len(crossing.legs) < FEWEST_LEGS:
+        return told
+    costs = turnings(crossing.legs, crossing.width_mm, crossing.views[0])
+    alone = sorted(set(range(len(crossing.legs))).difference(*told.pairs))
+    if len(alone) > 1:
+        joined = likeliest(costs[np.ix_(alone, alone)], TRIED)
+        more = [tuple((alone[a], alone[b]) for a, b in pairs) for pairs in joined]
+        ways = [tuple(sorted((*told.pairs, *pairs))) for pairs in more if pairs]
+    elif any(crossing.turnings_rad[pair] > PLAIN for pair in told.pairs):
+        ways = [told.pairs, *likeliest(costs, TRIED)]
+    else:
+        return told
+    others = [_cornered(crossing, pairs, ink) for pairs in dict.fromkeys(ways)]
+    tried = [AsDrawn(crossing.as_drawn(drawn), ink) for drawn in others if drawn is not None]
+    right = [now, *(each for each in tried if each.off < OFF)]
+    least = min(each.cost for each in right)
+    as_good = [each for each in right if each.cost < least + AS_WELL]
+    best = min(as_good, key=lambda each: (_turned(each.crossing.solution, costs), each.cost))
+    return best.crossing.solution
+
+
+def _turned(way: WaysOn, turnings_rad: Array) -> float:
+    """By how much lines turn that go on so, rad²; one that has a corner turns as one does at least."""
+    costs = turnings_rad.copy()
+    for pair in way.corners:
+        costs[pair] = max(costs[pair], CORNERED)
+    return pairs_cost(way.pairs, costs)
 
 
 def is_one_with_a_tip(crossing: Crossing, pair: Pair) -> bool:

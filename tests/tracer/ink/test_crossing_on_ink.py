@@ -43,6 +43,15 @@ TIPS = {
         polyline((21.4, 4.1), (18.6, 35.9)),
     ],
     "within": [polyline((33.2, 14.8), (20, 19.6), (31.5, 27.6))],
+    # the ink tells of two ends, or of two lines that bend, as well as of a corner
+    "beside": [
+        polyline((15.7, 33.7), (20, 20.36), (32.4, 26.9)),
+        polyline((18.6, 7.6), (23.6, 33)),
+    ],
+    "below the middle": [
+        polyline((14.5, 32.8), (20, 19.89), (25.4, 32.8)),
+        polyline((20.6, 7.3), (21.4, 33.3)),
+    ],
 }
 
 
