@@ -61,6 +61,13 @@ def test_a_corner_in_the_ink_of_another_line_is_its_lines(tip: str, seed: int) -
     assert max(each_by_a_stroke([ACROSS, *TIPS[tip]], seed)) < OFF_MM
 
 
+def test_two_corners_across_each_other_are_both_lines() -> None:
+    """All their legs turn, so no line passes, and what lies between the legs is too short to be felt."""
+    x, y = 20.72, 21.36
+    lines = [polyline((5, y), (x, y), (x, 5)), polyline((36, 20), (20, 20), (20, 5))]
+    assert max(each_by_a_stroke(lines, 1)) < OFF_MM
+
+
 @pytest.mark.parametrize("phase", [0.3618, 0.3621])
 def test_a_line_that_turns_back_within_its_own_ink_is_one_line(phase: float) -> None:
     """Its legs are as those of two lines that end beside each other, which do not explain the ink: a doubled
