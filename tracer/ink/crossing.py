@@ -29,8 +29,8 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.ink.crossing_ink import WaysOn
 from morfax.tracer.ink.crossing_on_ink import (
-    WaysOn,
     is_explained,
     is_one_with_a_tip,
     told_by_ink,

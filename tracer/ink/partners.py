@@ -107,6 +107,12 @@ def are_side_by_side(one: Leg, other: Leg) -> bool:
     return abs(turn(one.heading_rad, other.heading_rad)) < TIP
 
 
+def pairs_cost(pairs: Sequence[Pair], costs: Array) -> float:
+    """What it costs to pair some legs so, and to leave the others without partners, rad²."""
+    alone = len(costs) - 2 * len(pairs)
+    return _cost(tuple(pairs), costs) + 0.5 * NOT_JOINED * alone
+
+
 def meeting_place(legs: Sequence[Leg]) -> Array:
     """The place nearest to the lines of all legs, (x, y) mm; the mean of their ends if they are one line."""
     ends = np.array([leg.end_mm for leg in legs])
