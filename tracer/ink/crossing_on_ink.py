@@ -49,6 +49,7 @@ OFF = 0.08  # widths², in a box as wide as a line: of crossings that are right 
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
 REACH = 1.2  # widths from ways and felt ink: so far ink is the crossing's
 TRIED = 5  # pairings
+ENDED = 20  # places of the end of a line
 PLAIN = math.radians(6)  # lines that turn by less, all of which go on, are plain
 
 
@@ -69,7 +70,7 @@ class AsDrawn:
     @cached_property
     def ways(self) -> list[Array]:
         """The ways through it, and the ends of lines without a partner, (n, 2) mm."""
-        return [*self.crossing.ways_mm, *self.crossing.ended_mm]
+        return [*self.crossing.ways_mm, *_ended_mm(self.crossing)]
 
     @cached_property
     def _wrong(self) -> Array:
@@ -156,8 +157,16 @@ def _cornered(crossing: Crossing, pairs: tuple[Pair, ...], ink: _Ink) -> WaysOn 
     if not corners:
         return drawn
     drawn = ink.settled(crossing, drawn)
-    ways = [crossing.as_drawn(drawn).way(pair) for pair in corners]
+    some = crossing.as_drawn(drawn)
+    ways = [way for pair, way in zip(pairs, some.ways_mm, strict=True) if pair in corners]
     return drawn if all(on_ink(crossing.views[0], [way]) for way in ways) else None
+
+
+def _ended_mm(crossing: Crossing) -> list[Array]:
+    """Places of the lines that end in a crossing, from their clean ends on, (n, 2) mm."""
+    paired = {leg for pair in crossing.pairs for leg in pair}
+    alone = [k for k in range(len(crossing.legs)) if k not in paired]
+    return [crossing.legs[k].at(np.linspace(0.0, crossing.end_mm(k), ENDED)) for k in alone]
 
 
 @dataclass(frozen=True)
@@ -236,7 +245,7 @@ class _Ink:
         """The same pairs with their corners moved to where they explain the ink best."""
         some = crossing.as_drawn(drawn)
         smooth = [some.way(pair) for pair in drawn.pairs if pair not in drawn.corners]
-        known_mm = self.known_with([*smooth, *some.ended_mm])
+        known_mm = self.known_with([*smooth, *_ended_mm(some)])
         poses = np.array([(*leg.end_mm, leg.heading_rad) for leg in crossing.legs])
         ends = poses[np.array(list(drawn.corners), np.int64)]
         counts = np.array([len(some) for some in drawn.corners.values()], np.int64)

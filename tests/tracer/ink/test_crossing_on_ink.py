@@ -7,6 +7,8 @@ import pytest
 import shapely
 
 from morfax.tracer.following.line import Line
+from morfax.tracer.ink import crossing
+from morfax.tracer.ink.lifted import Loose
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import UM, Points, inked, polyline
 
@@ -50,6 +52,23 @@ TIPS = {
 @pytest.mark.parametrize("tip", TIPS)
 def test_a_corner_in_the_ink_of_another_line_is_its_lines(tip: str, seed: int) -> None:
     assert max(each_by_a_stroke([ACROSS, *TIPS[tip]], seed)) < OFF_MM
+
+
+def test_where_lines_end_in_ink_is_asked_once_of_each_way_to_go_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A third of all that was asked on a page of gears had been asked before."""
+    asked, ends_in_ink_mm = list[bytes](), crossing.ends_in_ink_mm
+
+    def counted(loose: list[Loose], lines_mm: Points, **rest: bool) -> list[float | None]:
+        legs = [line.leg.end_mm.tobytes() for line in loose]
+        asked.extend([b"".join([*legs, lines_mm.tobytes()])] if loose else [])
+        return ends_in_ink_mm(loose, lines_mm, **rest)
+
+    monkeypatch.setattr(crossing, "ends_in_ink_mm", counted)
+    _strokes([ACROSS, polyline((14, 4), (20, 20))], 1)
+    counts = len(asked), len(set(asked))
+    assert counts == (1, 1)
 
 
 @pytest.mark.parametrize("phase", [0.3618, 0.3621])
