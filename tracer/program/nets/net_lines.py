@@ -77,11 +77,11 @@ def lines_of_ring(setup: Setup, contour: Contour, reads_marks: bool) -> list[Lin
     net = NetLines(setup, stroke.patch, contour.number)
     if not (net.forks and net.is_clear):
         return []
-    lines = net.round_about()
-    if lines and reads_marks and net.ends_in_marks:
-        return []  # the head reads them
-    if lines or contour.reach_mm >= LETTER_MM or not can_stand(setup, contour):
-        return lines
+    if net.comes_round:
+        # the head reads marks
+        return [] if reads_marks and net.ends_in_marks else net.round_about()
+    if contour.reach_mm >= LETTER_MM or not can_stand(setup, contour):
+        return []
     return strokes_of(setup, stroke.patch, contour.number)
 
 
@@ -135,17 +135,26 @@ class NetLines:
         ends = [line for line in net.lines if not net.free_ends.isdisjoint(line.junctions)]
         return all(line.length_mm < longest_mm(view) for line in ends)
 
-    def round_about(self) -> list[Line]:
-        """All lines, the longest closed one first, however short that is; none if it leaves out much of a
-        stroke that does not come round.
-        """
+    @cached_property
+    def _longest_round(self) -> Outline | None:
+        """The longest closed way; None if it leaves out much of a stroke that does not come round."""
         junctions = self._junctions
         strokes_mm = (chain_mm(chain, junctions) for chain in junctions.chains())
         least_mm = CLOSES * max(strokes_mm, default=0.0)
-        ways = [way for way in self._closed_ways if way.length_mm > least_mm]
-        if not ways:
+        longest = max(self._closed_ways, key=lambda way: way.length_mm, default=None)
+        return longest if longest is not None and longest.length_mm > least_mm else None
+
+    @property
+    def comes_round(self) -> bool:
+        """Whether a closed way goes along most of it; the head has not run yet."""
+        return self._longest_round is not None
+
+    def round_about(self) -> list[Line]:
+        """All lines, the longest closed one first, however short that is; none if it does not come round."""
+        longest = self._longest_round
+        if longest is None:
             return []
-        return self.lines() or [self._run(max(ways, key=lambda way: way.length_mm).chain)]
+        return self.lines() or [self._run(longest.chain)]
 
     @property
     def forks(self) -> bool:
