@@ -30,8 +30,14 @@ def between(
     """
     if isinstance(darkness, Tiles):
         return darkness.between(rows, columns)
-    out = np.empty(np.shape(rows))
     at = np.column_stack([np.ravel(rows), np.ravel(columns)])
+    return between_at(darkness, at, edge_goes_on=edge_goes_on).reshape(np.shape(rows))
+
+
+def between_at(darkness: NDArray[Any], places: Array, *, edge_goes_on: bool) -> Array:
+    """The same at places (…, 2), rows and columns, which lie together."""
+    out = np.empty(places.shape[:-1])
+    at = places.reshape(-1, 2)
     _read(np.ascontiguousarray(darkness), at, edge_goes_on, out.reshape(-1))
     return out
 

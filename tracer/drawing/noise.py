@@ -37,6 +37,7 @@ from morfax.tracer.drawing.profiles import (
     Profiles,
     middle_of,
     profiles_of,
+    seen_across,
     seen_at,
 )
 from morfax.tracer.drawing.tiles import Kept
@@ -160,10 +161,10 @@ def _along(darkness: Kept, profiles: Profiles) -> float:
     along = ahead_px * profiles.across[:, ::-1] * [1, -1]
     reach = round(ASIDE_PX / STEP_PX)
     count = 2 * math.ceil(0.5 * profiles.width_px / STEP_PX) + 1
-    at_px = STEP_PX * (np.arange(count + 2 * reach) - (count + 2 * reach - 1) / 2)
-    across = profiles.across[:, :, None] * at_px
-    here = seen_at(darkness, profiles.middles[:, :, None] + across)[:, reach : reach + count]
-    there = seen_at(darkness, (profiles.middles + along)[:, :, None] + across)
+    at_px = STEP_PX * (np.arange(float(count + 2 * reach)) - (count + 2 * reach - 1) / 2)
+    across, middles = profiles.across, profiles.middles
+    here = seen_across(darkness, middles, across, at_px)[:, reach : reach + count]
+    there = seen_across(darkness, middles + along, across, at_px)
     # 2. put over each other as they fit best, where the line goes on
     apart = np.array(
         [np.mean((there[:, k : k + count] - here) ** 2, axis=1) for k in range(2 * reach + 1)]

@@ -18,9 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.compiled import njit
 from morfax.motion.median import median
 from morfax.motion.plane import left_of, unit
-from morfax.tracer.drawing.between import between
+from morfax.tracer.drawing.between import between, between_at
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.tiles import Kept, Tiles
@@ -89,7 +90,7 @@ def profiles_of(darkness: Kept) -> Profiles | None:
     # a place anywhere between two pixels of the line, not always on a row: so noise is averaged alike
     share = np.arange(len(places)) * GOLDEN % 1.0 - 0.5
     middles = places.mean(axis=2) - share[:, None] * left_of(across)
-    seen = seen_at(darkness, middles[:, :, None] + across[:, :, None] * at_px)
+    seen = seen_across(darkness, middles, across, at_px)
     # 3. with one line in the middle and paper beside it
     outside = np.abs(at_px) > 0.75 * half_px
     alone = np.all(_smooth(seen)[:, outside] < PAPER, axis=1) & (seen[:, len(at_px) // 2] > INK)
@@ -148,6 +149,24 @@ def _slope(darkness: Kept, places: Array, reach_px: float = SLOPE_PX) -> Array:
 def seen_at(darkness: Kept, places: Array) -> Array:
     """Darkness between pixels: places (2, n) or (n, 2, k), rows and columns."""
     return between(darkness, *np.moveaxis(places, -2, 0), edge_goes_on=True)
+
+
+def seen_across(darkness: Kept, middles: Array, across: Array, at_px: Array) -> Array:
+    """The same at distances (k,) px from places (n, 2) along unit vectors (n, 2); (n, k)."""
+    if isinstance(darkness, Tiles):
+        return seen_at(darkness, middles[:, :, None] + across[:, :, None] * at_px)
+    places = np.empty((len(middles), len(at_px), 2))
+    _spread_out(middles, across, at_px, places)
+    return between_at(darkness, places, edge_goes_on=True)
+
+
+@njit(cache=True)
+def _spread_out(middles, across, at_px, places):  # type: ignore[no-untyped-def]
+    """Fill in the places at some distances from others along unit vectors."""
+    for n in range(len(middles)):
+        for k in range(len(at_px)):
+            for axis in range(2):
+                places[n, k, axis] = middles[n, axis] + across[n, axis] * at_px[k]
 
 
 def _own(seen: Array, paper: float) -> Array:

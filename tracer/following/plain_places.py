@@ -100,7 +100,9 @@ def stance_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> St
 def stands_near(view: View, stroke: Stroke, place_mm: tuple[float, float]) -> bool:
     """Whether there is such a stance: the first that is found will do."""
     places = places_of(stroke, place_mm, ROUND_WIDTHS * stroke.width_mm)
-    return any(_stance_at(view, place) is not None for place in places)
+    if view.on_edge:
+        return any(_stance_at(view, place) is not None for place in places)
+    return any(_scores(view, places[k : k + 1])[0, 0] > 0 for k in range(len(places)))
 
 
 def places_of(
@@ -125,13 +127,21 @@ def plainest_first(view: View, places: Array) -> Iterator[Stance]:
         yield from (stance for stance, _, _ in found)
         return
     # the kernel only tells in which order they come
-    scores = np.empty((len(places), 2))
-    _score(view.cells, np.ascontiguousarray(places), (view.width_mm, view.step_mm), scores)
+    scores = _scores(view, places)
     felt_mm, bends = np.round(scores[:, 0], 1).tolist(), scores[:, 1].tolist()
     clean = np.flatnonzero(scores[:, 0] > 0).tolist()
     for k in sorted(clean, key=lambda k: (felt_mm[k], -bends[k]), reverse=True):
         if (found_there := _stance_at(view, places[k])) is not None:
             yield found_there[0]
+
+
+def _scores(view: View, places: Array) -> Array:
+    """How far the line is felt to the shorter side of each place, mm, 0 where it is not clean; and its bend
+    there, 1/mm.
+    """
+    scores = np.empty((len(places), 2))
+    _score(view.cells, np.ascontiguousarray(places), (view.width_mm, view.step_mm), scores)
+    return scores
 
 
 def _stance_at(view: View, place: Array) -> tuple[Stance, float, float] | None:

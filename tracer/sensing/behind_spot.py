@@ -50,6 +50,8 @@ def near_ink(drawing: Drawing, sigma_px: float) -> Darkness:
         inked, np.ones((about, about), np.uint8)
     )
     near = padded.reshape(tiles[0], TILE_BLOCKS, tiles[1], TILE_BLOCKS).any(axis=(1, 3))
+    if near.all():
+        return np.asarray(cv2.GaussianBlur(darkness, (0, 0), sigma_px), np.float32)
     # 2. each stretch behind the spot
     seen, side = _bare(darkness.shape), TILE_BLOCKS * BLOCK_PX
     edges = np.diff(np.pad(near, ((0, 0), (1, 1))).astype(np.int8), axis=1)

@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.special import erf
 
+from morfax.tracer.drawing import profiles
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.noise import measured, within
+from morfax.tracer.drawing.profiles import profiles_of, seen_across, seen_at
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from tests.tracer.inked import DPI, NOISE, SOFTNESS_MM, UM, WIDTH_MM, arc, inked, polyline
@@ -161,3 +163,16 @@ def test_ink_beside_what_is_lighter_than_paper_tells_no_width(lighter: float) ->
     noise = np.random.default_rng(1).normal(0, 0.01, rows.shape)
     darkness = np.asarray(cv2.GaussianBlur(rows, (0, 0), 0.7) + noise, np.float32)
     assert within(darkness).seen_px == pytest.approx(4.0, abs=0.2)
+
+
+def test_what_is_seen_across_lines_is_what_is_seen_at_each_place() -> None:
+    """To the bit; only no array of all the places is made of others."""
+    darkness = ruled(6.0, 0.8, 0.7)
+    found = profiles_of(darkness)
+    assert found is not None
+    places = found.middles[:, :, None] + found.across[:, :, None] * found.at_px
+    across = seen_across(darkness, found.middles, found.across, found.at_px)
+    assert np.array_equal(across, seen_at(darkness, places))
+    filled = np.empty((len(found.middles), len(found.at_px), 2))
+    profiles._spread_out.py_func(found.middles, found.across, found.at_px, filled)
+    assert np.array_equal(np.moveaxis(filled, 2, 1), places)

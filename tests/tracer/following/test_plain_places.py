@@ -111,3 +111,23 @@ def test_the_ring_about_a_place_is_outside_of_its_own_ink_and_of_several_pixels(
     (radius_mm,) = radii
     assert radius_mm > 0.75 * view.width_mm and radius_mm >= 4 * pitch_mm
     assert radius_mm < max(1.25 * view.width_mm, 6 * pitch_mm)
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_whether_the_head_can_stand_is_told_by_the_kernel(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Place by place as what is felt there has it; to make it out took 4 % of a plate of holes."""
+    sheet = Sheet.of(inked(*LINES[name], seed=5))
+    stroke = sheet.longest()
+    view = view_of(sheet, None, stroke.width_mm)
+    off = np.random.default_rng(6).normal(0.0, 0.3, stroke.middles_mm.shape)
+    places = np.vstack([stroke.middles_mm, stroke.middles_mm + off])
+    stands = [plain_places._stance_at(view, place) is not None for place in places]
+    assert 10 < sum(stands) < len(places)
+    assert (plain_places._scores(view, places)[:, 0] > 0).tolist() == stands
+    monkeypatch.setattr(plain_places, "_stance_at", None)
+    here = tuple(places[stands.index(True)].tolist())
+    assert plain_places.stands_near(view, stroke, here)
+    monkeypatch.setattr(plain_places, "places_of", lambda *_: places[~np.array(stands)])
+    assert not plain_places.stands_near(view, stroke, here)

@@ -42,3 +42,16 @@ def test_the_darkest_blocks_count_the_ink() -> None:
     darkness = np.zeros((500, 333), np.float32)
     cv2.circle(darkness, (160, 250), 120, 0.9, 5)
     assert Drawing(darkness, PITCH_MM).ink_px == np.count_nonzero(darkness > 0.5)
+
+
+def test_a_sheet_with_ink_near_everywhere_is_seen_at_once() -> None:
+    """Of a star of 1.1 Mpx tile by tile took twice the time; a corner without ink gets its noise then."""
+    darkness = np.random.default_rng(4).normal(0, 0.05, (290, 500)).astype(np.float32)
+    darkness[140:150, 20:480] = 1.0
+    seen = behind_aperture(Drawing(darkness, 0.05), APERTURE_MM).darkness
+    soft = cv2.GaussianBlur(darkness, (0, 0), APERTURE_MM / 4 / 0.05)
+    assert np.array_equal(seen, soft)
+    larger = np.zeros((2000, 2000), np.float32)
+    larger[:290, :500] = darkness
+    near = behind_aperture(Drawing(larger, 0.05), APERTURE_MM).darkness
+    assert np.array_equal(near[:280, :490], soft[:280, :490])

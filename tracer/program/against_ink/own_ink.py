@@ -85,13 +85,14 @@ class BesideInk(NamedTuple):
 
 
 class _Tiles(NamedTuple):
-    """In which tile of a side each place of the ways is, the places in the order of these, and tiles in a
-    row.
+    """In which tile of a side each place of the ways is, the places in the order of these, the tiles in that
+    order, and tiles in a row.
     """
 
     side_px: int
     of_place: NDArray[np.int32]
     order: NDArray[np.int64]
+    in_order: NDArray[np.int32]
     across: int
 
     @classmethod
@@ -100,15 +101,14 @@ class _Tiles(NamedTuple):
         column, row = np.maximum(ways.places_px.T / side_px, 0).astype(np.int32)
         across = 2 + int(column.max())
         of_place = row * across + column
-        return cls(side_px, of_place, np.argsort(of_place, kind="stable"), across)
+        order = np.argsort(of_place, kind="stable")
+        return cls(side_px, of_place, order, of_place[order], across)
 
     def about(self, row: int, column: int) -> NDArray[np.int64]:
         """The numbers of the places in a tile and in the eight about it."""
         firsts = (np.arange(row - 1, row + 2) * self.across + column - 1)[:, None]
-        edges = (firsts + np.array([0, 3])).astype(
-            self.of_place.dtype
-        )  # else all would be copied
-        ends = np.searchsorted(self.of_place, edges, sorter=self.order)
+        edges = (firsts + np.array([0, 3])).astype(np.int32)  # else all would be copied
+        ends = np.searchsorted(self.in_order, edges)
         return np.sort(np.concatenate([self.order[a:b] for a, b in ends.tolist()]))
 
 
@@ -252,7 +252,7 @@ def parts(
         seen = np.ascontiguousarray(drawing.darkness[top:down, left:along])
         corner = np.array([left, top], np.float32)
         at = np.round(ways.places_px[stations] - corner).astype(int)
-        at = np.clip(at, 0, np.array(seen.shape)[::-1] - 1)
+        at = np.minimum(np.maximum(at, 0), np.array(seen.shape)[::-1] - 1)
         yield Part(seen, ways.seen_from(corner, near), stations, at, pen, room, corner)
 
 
