@@ -92,9 +92,22 @@ def rows_of(image: Image, stream: BinaryIO) -> Rows | None:
     return found
 
 
+def bytes_of(image: Image, stream: BinaryIO) -> Bytes | None:
+    """All grey levels of a TIFF whose pixels stand in the file as they are, read once; None of another."""
+    if image.format != "TIFF" or not _is_plain(image):
+        return None
+    straight = tiff_rows.not_packed(image, stream)
+    return None if straight is None else Rows(straight[0], image.size[::-1], straight[1])[:]
+
+
+def _is_plain(image: Image) -> bool:
+    """Whether a picture is upright and not transparent."""
+    return image.getexif().get(ORIENTATION) in UPRIGHT and "transparency" not in image.info
+
+
 def _rows_of(image: Image, stream: BinaryIO) -> Rows | None:
     """The same."""
-    if image.getexif().get(ORIENTATION) not in UPRIGHT or "transparency" in image.info:
+    if not _is_plain(image):
         return None
     parts: Iterator[Bytes] | None = None
     if image.format == "PNG":

@@ -28,7 +28,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.compiled import njit
 from morfax.motion.units import MM_PER_INCH
+from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.contrast import DARKER
 from morfax.tracer.drawing.two_levels import with_rims
@@ -70,14 +72,18 @@ def finer(darkness: Darkness, times: int, seen_px: float = math.inf) -> Darkness
     return np.asarray(larger, np.float32)
 
 
-def without_steps(darkness: Any, lines: Within, has_steps: bool) -> tuple[Any, int, bool]:
+def without_steps(
+    darkness: Any, lines: Within, darkest_there: Darkness | None
+) -> tuple[Any, int, bool]:
     """Darkness of which the head feels no pixel as a step, how many times finer its pixels are, and whether
-    rims were laid through them (`two_levels`).
+    rims were laid through them (`two_levels`); of a sheet that has steps the darkest of its blocks is given.
     """
     finer_times = times_finer(darkness, lines.width_px)
     if finer_times > 1:
         return finer(np.asarray(darkness), finer_times, lines.seen_px), finer_times, False
-    return (with_rims(np.asarray(darkness)) if has_steps else darkness), 1, has_steps
+    if darkest_there is None:
+        return darkness, 1, False
+    return with_rims(np.asarray(darkness), darkest_there), 1, True
 
 
 def wanted_dpi(pitch_mm: float) -> int:
@@ -99,10 +105,29 @@ def note(seen_px: float, pitch_mm: float) -> str:
     )
 
 
-def is_hard(darkness: Darkness) -> bool:
-    """Whether pixels are paper or ink, and hardly any lies between: no lens has softened the lines."""
-    not_paper = darkness[darkness > PAPER]
-    return bool(not_paper.size and np.mean(not_paper < 1 - PAPER) < BETWEEN)
+def is_hard(darkness: Darkness, darkest_there: Darkness | None = None) -> bool:
+    """Whether pixels are paper or ink, and hardly any lies between: no lens has softened the lines.
+
+    The darkest of the sheet's blocks is told where it is known.
+    """
+    most = darkest(darkness) if darkest_there is None else darkest_there
+    not_paper, between = _counts(darkness, most > PAPER)
+    return bool(not_paper and between / not_paper < BETWEEN)
+
+
+@njit(cache=True)
+def _counts(darkness, are_asked):  # type: ignore[no-untyped-def]
+    """How many pixels of some blocks are not paper, and how many of these are not ink either."""
+    paper, ink = np.float32(PAPER), np.float32(1 - PAPER)
+    not_paper = between = 0
+    for i in range(len(are_asked)):
+        for j in np.flatnonzero(are_asked[i]):
+            rows = darkness[i * BLOCK_PX : (i + 1) * BLOCK_PX]
+            for row in rows:
+                for seen in row[j * BLOCK_PX : (j + 1) * BLOCK_PX]:
+                    not_paper += seen > paper
+                    between += paper < seen < ink
+    return not_paper, between
 
 
 def _left_of(darkness: Darkness, soft: Darkness) -> np.float32:

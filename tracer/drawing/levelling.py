@@ -30,7 +30,7 @@ from morfax.tracer.drawing.contrast import (
     Contrast,
     strokes_of,
 )
-from morfax.tracer.drawing.memory import give_back
+from morfax.tracer.drawing.memory import SHEET_BYTES, give_back
 from morfax.tracer.drawing.paper_noise import every_px, paper_noise
 from morfax.tracer.drawing.scan import Grey
 from morfax.tracer.drawing.tiles import Tiles
@@ -71,7 +71,7 @@ def levelled(grey: Grey, pitch_mm: float, shapes_are_ink: bool = False) -> Level
     noise_of_paper = paper_noise(sample / np.float32(ink))
     if everywhere is None:
         return Levelled(contrast.darkness(ink), shapes, noise_of_paper, has_shapes)
-    if grey.size > FEW_PX:
+    if everywhere.nbytes > SHEET_BYTES:
         give_back()
     darkness = contrast.in_parts_of(ink, everywhere)
     return Levelled(darkness, shapes, noise_of_paper, has_shapes)

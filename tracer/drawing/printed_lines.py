@@ -12,6 +12,7 @@ Source: our own. Questions: a photograph of paper that is not flat has no such l
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import cv2
@@ -79,6 +80,44 @@ class Family(NamedTuple):
         )
 
 
+def may_have_lines(darkness: Darkness, by: int) -> bool:
+    """Whether most of some rows or columns of a sheet are inked at places that are evenly apart, on pixels
+    that are so many times larger: only these rows and columns are made so large.
+    """
+    return any(
+        _have_lines(_larger_rows(each, by), len(each) // by) for each in (darkness, darkness.T)
+    )
+
+
+def _larger_rows(darkness: Darkness, by: int) -> Callable[[int, int], Darkness]:
+    """What gives some rows of a sheet on pixels that are so many times larger."""
+    wide = darkness.shape[1] // by
+
+    def rows(top: int, bottom: int) -> Darkness:
+        part = np.ascontiguousarray(darkness[by * top : by * bottom, : by * wide])
+        larger = cv2.resize(part, (wide, len(part) // by), interpolation=cv2.INTER_AREA)
+        return np.asarray(larger, np.float32)
+
+    return rows
+
+
+def _have_lines(rows: Callable[[int, int], Darkness], high: int) -> bool:
+    """Whether most of some rows of so many are inked at places that are evenly apart: to ask that takes no
+    time, and most drawings have none.
+    """
+    if not high:
+        return False
+    missed = 0
+    for part in ROWS:
+        row = int(part * high)
+        beside = rows(max(row - 3, 0), min(row + 4, high))
+        seen = np.sort(beside, axis=0)[len(beside) // 2]
+        missed += not any(are_evenly_apart(seen, level) for level in LEVELS)
+        if missed > len(ROWS) // 2:
+            return False
+    return True
+
+
 def families(darkness: Darkness, pitch_mm: float) -> list[list[Family]]:
     """The families of printed lines on a sheet: upright ones, lying ones, both or none; of each way the
     heavier ones among its lines first, and all of them last.
@@ -115,18 +154,8 @@ class _Frame(NamedTuple):
         return [self._family(one, tilt, runs) for one in (*finest.heavier(seen), finest)]
 
     def _may_have_lines(self) -> bool:
-        """Whether most of some rows are inked at places that are evenly apart: to ask that takes no time, and
-        most drawings have none.
-        """
-        high = len(self.darkness)
-        missed = 0
-        for part in ROWS:
-            row = int(part * high)
-            seen = np.sort(self.darkness[row - 3 : row + 4], axis=0)[3]
-            missed += not any(are_evenly_apart(seen, level) for level in LEVELS)
-            if missed > len(ROWS) // 2:
-                return False
-        return True
+        """Whether most of some rows are inked at places that are evenly apart."""
+        return _have_lines(lambda top, bottom: self.darkness[top:bottom], len(self.darkness))
 
     def _tilt(self) -> float:
         """The tilt at which ink gathers on lines, rad."""

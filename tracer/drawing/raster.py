@@ -137,10 +137,12 @@ def _picture(file: Path, stream: BinaryIO, coloured: bool, page: int | None) -> 
         pixels: Any = parts
         if parts is None:
             room.make_sure(file, *image.size)
+            pixels = None if coloured else by_rows.bytes_of(image, stream)
+        if pixels is None:
             image.load()
         camera = exif.camera(image.getexif())
         stated = _stated(image, camera)
-        if parts is None:
+        if pixels is None:
             ImageOps.exif_transpose(image, in_place=True)
             pixels = np.array(image.convert("RGB")) if coloured else _grey(image)
     notes = page_notes(file, taken, pages) if page is None else ()
@@ -179,6 +181,8 @@ def _is_own(image: Image) -> bool:
 
 def _grey(image: Image) -> Grey:
     """Grey levels 0..255 of an image of any mode: its darkest channel, so that coloured lines are dark."""
+    if image.mode == "L":
+        return np.array(image)
     columns, rows = image.size
     deep = image.mode in ("I;16", "I;16B", "I;16L", "I", "F")
     grey = np.empty((rows, columns), np.float32 if deep else np.uint8)
@@ -203,7 +207,7 @@ def _darkest_channel(image: Image, levels: list[int] | None) -> NDArray[np.uint8
     """The darkest colour channel of an image of eight bits or fewer, on white where it is transparent; of
     coloured paper with other levels (see `coloured_paper`).
     """
-    if image.mode in ("1", "L"):
+    if image.mode == "1":
         return np.asarray(image.convert("L"))
     if image.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in image.info:
         from PIL import Image as Images

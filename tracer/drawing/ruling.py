@@ -38,7 +38,7 @@ from morfax.tracer.drawing.even_lines import (
     LARGEST_PERIOD_MM,
     LEAST_PERIOD_MM,
 )
-from morfax.tracer.drawing.printed_lines import Family, families
+from morfax.tracer.drawing.printed_lines import Family, families, may_have_lines
 from morfax.tracer.drawing.tiles import Kept, Tiles
 from morfax.tracer.effort import FEW_PX
 
@@ -73,30 +73,26 @@ def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> Cleared:
     if paper == "plain":
         return Cleared(darkness)
     small, by = _small_enough(darkness)
-    found = families(small, by * pitch_mm)
+    found = families(small, by * pitch_mm) if small.size else []
     if paper == "ruled":
         found = found[:1]
     if not found:
         if paper == "auto":
             return Cleared(darkness)
-        raise DrawingFault(
-            f"--paper {paper}, but no printed lines are found: {FEWEST_LINES} or more, straight,"
-            f" {LEAST_PERIOD_MM:g} to {LARGEST_PERIOD_MM:g} mm apart, over half of the sheet or more; leave"
-            " --paper out, or name the line's colour with --ink"
-        )
-    kind = "squared" if len(found) == 2 else "ruled"
-    apart = " and ".join(f"{by * pitch_mm * of[-1].period_px:.2f}" for of in found)
+        raise _none_found(paper)
     printed, ink = _levels(small, [family for of in found for family in of])
     if paper == "auto":
         whole = [of for of in found if of[0].is_whole]
         is_drawn = printed > PALER * ink and min(of[-1].lines for of in found) <= BOARD
-        if not whole and (kind == "ruled" or is_drawn):
+        if not whole and (len(found) == 1 or is_drawn):
+            kind, apart = _in_words(found, by * pitch_mm)
             note = (
                 f"straight lines run over most of the sheet, {apart} mm apart; if the paper is {kind},"
                 f" give --paper {kind}, and they are left out"
             )
             return Cleared(darkness, note=note)
         found = whole or found
+    kind, apart = _in_words(found, by * pitch_mm)
     left = np.asarray(np.asarray(darkness) / ink, np.float32)
     for family in (family for of in found for family in of):
         left = _without(left, family.enlarged(by))
@@ -107,13 +103,32 @@ def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> Cleared:
     return Cleared(left, ink, note)
 
 
+def _none_found(paper: PaperKind) -> DrawingFault:
+    """What an operator is told who asked for printed lines that are not there."""
+    return DrawingFault(
+        f"--paper {paper}, but no printed lines are found: {FEWEST_LINES} or more, straight,"
+        f" {LEAST_PERIOD_MM:g} to {LARGEST_PERIOD_MM:g} mm apart, over half of the sheet or more; leave"
+        " --paper out, or name the line's colour with --ink"
+    )
+
+
+def _in_words(found: list[list[Family]], pixel_mm: float) -> tuple[str, str]:
+    """What paper with such printed lines is called, and how far apart they are, mm."""
+    apart = " and ".join(f"{pixel_mm * of[-1].period_px:.2f}" for of in found)
+    return "squared" if len(found) == 2 else "ruled", apart
+
+
 def _small_enough(darkness: Kept) -> tuple[Darkness, int]:
-    """The sheet on pixels that are so many times larger, few enough to look for printed lines on them."""
+    """The sheet on pixels that are so many times larger, few enough to look for printed lines on them; no row
+    of it if some of its rows and columns show none.
+    """
     by = max(1, math.isqrt(max(1, darkness.size // SEARCHED_PX)))
     if isinstance(darkness, Tiles):
         return darkness.shrunk(by), by
     if by == 1:
         return darkness, by
+    if not may_have_lines(darkness, by):
+        return darkness[:0], by
     size = darkness.shape[1] // by, darkness.shape[0] // by
     return np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32), by
 

@@ -57,6 +57,8 @@ def not_packed(image: Image, stream: BinaryIO) -> tuple[BinaryIO, int] | None:
         return None
     if tags.get(PHOTOMETRIC) != BLACK_IS_ZERO or tags.get(BITS) != (8,):
         return None
+    if tags.get(FILL_ORDER, 1) != 1:  # bits from the right
+        return None
     begins, sizes = np.array(tags[STRIPS]), np.array(tags[STRIP_BYTES])
     columns, rows = image.size
     if np.any(begins[1:] != begins[:-1] + sizes[:-1]) or sizes.sum() != rows * columns:

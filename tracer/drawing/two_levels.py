@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.compiled import njit
 from morfax.motion.moments import NO_PLACES, parabola_of, with_place
-from morfax.tracer.drawing.blocks import runs_in
+from morfax.tracer.drawing.blocks import BLOCK_PX, darkest, runs_in
 from morfax.tracer.drawing.components import INK
 
 Darkness = NDArray[np.float32]
@@ -47,18 +47,27 @@ LEVELS = 255.0  # of a scan in grey: what rounding leaves of paper and of ink is
 # pixel's upper left corner
 DOWN, RIGHT = (0, -1, 0, 1), (1, 0, -1, 0)
 LEFT_DOWN, LEFT_RIGHT = (-1, -1, 0, 0), (0, -1, -1, 0)
+BARE_PX = 256  # of a row, that are looked through at a time; chosen
 PASSED = 2  # marks ink whose lower side a chain has come by
 
 
-def with_rims(darkness: Darkness) -> Darkness:
+def with_rims(darkness: Darkness, darkest_there: Darkness | None = None) -> Darkness:
     """The darkness with its rims laid through the steps of the pixels, in its place. Paper is only written
     where it is lighter than that: a sheet takes no memory where nothing is drawn.
+
+    The darkest of the sheet's blocks is told where it is known.
     """
-    row, begin, end = runs_in(darkness, INK)
-    if len(row):
+    most = darkest(darkness) if darkest_there is None else darkest_there
+    inked = np.nonzero(most > INK)
+    if len(inked[0]):
+        first, left = (BLOCK_PX * int(at.min()) for at in inked)
+        last, right = (BLOCK_PX * (int(at.max()) + 1) for at in inked)
+        row, begin, end = runs_in(darkness[first:last, left:right], INK)
         # and a pixel of paper about all ink, into which a rim may move
-        rows = slice(max(int(row[0]) - 1, 0), int(row[-1]) + 2)
-        _lay_rims(darkness[rows, max(int(begin.min()) - 1, 0) : int(end.max()) + 1])
+        rows = slice(max(first + int(row[0]) - 1, 0), first + int(row[-1]) + 2)
+        _lay_rims(
+            darkness[rows, max(left + int(begin.min()) - 1, 0) : left + int(end.max()) + 1]
+        )
     _no_lighter(darkness)
     return darkness
 
@@ -79,11 +88,17 @@ def _lay_rims(darkness: Darkness) -> None:
 
 @njit(cache=True)
 def _no_lighter(darkness):  # type: ignore[no-untyped-def]
-    """Make paper what is lighter than paper."""
-    for row in range(len(darkness)):
-        for column in range(darkness.shape[1]):
-            if darkness[row, column] < 0.0:
-                darkness[row, column] = 0.0
+    """Make paper what is lighter than paper; stretches of a row without anything lighter are only read, in
+    vectors: a bit of each number says so.
+    """
+    for row in darkness:
+        for first in range(0, len(row), BARE_PX):
+            stretch, signs = row[first : first + BARE_PX], np.int32(0)
+            for bits in stretch.view(np.int32):
+                signs |= bits
+            if signs < 0:
+                for k in range(len(stretch)):
+                    stretch[k] = max(stretch[k], np.float32(0.0))
 
 
 def _sides(ink: NDArray[np.uint8]) -> int:

@@ -12,10 +12,13 @@ import pytest
 from morfax.jobs.remarks.scale_doubts import scale_doubts
 from morfax.motion.contour import distance
 from morfax.motion.units import MM_PER_INCH
-from morfax.tracer.drawing.coarse import finer, is_hard
+from morfax.tracer.drawing import coarse
+from morfax.tracer.drawing.blocks import darkest
+from morfax.tracer.drawing.coarse import BETWEEN, finer, is_hard
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
+from morfax.tracer.limits import PAPER
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, Points, arc, inked, polyline
@@ -94,6 +97,18 @@ def test_hard_lines_of_any_slope_are_found(corner: tuple[float, float]) -> None:
 def test_a_sheet_of_paper_alone_is_not_hard() -> None:
     """As one on which all that is dark are filled shapes; warnings are errors here."""
     assert not is_hard(np.zeros((20, 20), np.float32))
+
+
+@pytest.mark.parametrize("pale", [30, 34])
+def test_a_sheet_is_hard_by_all_pixels_that_are_not_paper(pale: int) -> None:
+    """Only blocks that have some are looked through; 3 % of 1 100 are 33, some at the sheet's edge."""
+    sheet = np.random.default_rng(3).normal(0.0, 0.02, (61, 83)).astype(np.float32)
+    places = np.random.default_rng(4).permutation(sheet.size)[:1100]
+    sheet.flat[places] = 0.98
+    sheet.flat[places[:pale]] = 0.5
+    not_paper = sheet[sheet > PAPER]
+    assert is_hard(sheet) == (np.mean(not_paper < 1 - PAPER) < BETWEEN) == (pale == 30)
+    assert coarse._counts.py_func(sheet, darkest(sheet) > PAPER) == (1100, pale)
 
 
 def test_only_hard_lines_are_made_as_dark_as_before() -> None:

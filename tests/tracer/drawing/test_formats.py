@@ -156,3 +156,29 @@ def test_a_plain_picture_loads_no_reader_of_other_formats(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "[]"
+
+
+def test_a_tiff_that_is_not_packed_is_read_as_it_stands(
+    grey: NDArray[np.uint8], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pillow copies it five times, as long as all else takes on empty paper. One that is turned is set
+    upright, one that is cut off is refused.
+    """
+    from PIL.TiffImagePlugin import TiffImageFile
+
+    loaded = list[str]()
+    load = TiffImageFile.load
+    monkeypatch.setattr(TiffImageFile, "load", lambda self: loaded.append("") or load(self))
+    plain, turned, mirrored = (tmp_path / f"{name}.tif" for name in ("a", "b", "c"))
+    Image.fromarray(grey).save(plain)
+    assert np.array_equal(raster.read(plain, coloured=False).pixels, grey) and not loaded
+    Image.fromarray(grey).save(turned, tiffinfo={0x112: 3})
+    assert np.array_equal(raster.read(turned, coloured=False).pixels, grey[::-1, ::-1])
+    # the bits of each byte from the right
+    Image.fromarray(grey).save(mirrored, tiffinfo={0x10A: 2})
+    bits = np.packbits(np.unpackbits(grey[..., None], axis=2)[..., ::-1], axis=2)[..., 0]
+    assert np.array_equal(raster.read(mirrored, coloured=False).pixels, bits)
+    assert loaded
+    plain.write_bytes(plain.read_bytes()[:-1])
+    with pytest.raises(DrawingFault, match="damaged"):
+        raster.read(plain, coloured=False)

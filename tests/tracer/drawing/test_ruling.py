@@ -8,12 +8,14 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
 from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.motion.units import MM_PER_INCH
+from morfax.tracer.drawing import ruling
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.printed_lines import families
 from morfax.tracer.drawing.ruling import PaperKind, left_out
@@ -160,6 +162,25 @@ def test_plain_paper_stays_as_it_is_and_a_drawn_grid_is_kept() -> None:
     assert np.mean(kept_squares.darkness > 0.5) > 0.05
 
 
+@pytest.mark.parametrize("rows", [1, 3, 6])
+def test_a_sheet_of_few_rows_has_no_printed_lines(rows: int) -> None:
+    """Of a strip that is lower than what is looked at of other sheets."""
+    darkness = np.zeros((rows, 600), np.float32)
+    darkness[rows // 2, 50:550] = 1.0
+    assert families(darkness, PITCH_MM) == []
+    assert families(np.ascontiguousarray(darkness.T), PITCH_MM) == []
+
+
+def test_of_ruled_paper_with_a_drawn_table_only_what_is_left_out_is_named() -> None:
+    """Lines 8 mm apart go from edge to edge; seven upright ones, 9 mm apart, end before the paper does."""
+    levels = on_paper(LINE, (8.0,), 0.9)
+    low, high = round(5 * TO_PX), round(61 * TO_PX)
+    for mm in np.arange(6.0, 61.0, 9.0):
+        levels[low:high, round(mm * TO_PX) : round(mm * TO_PX) + 3] = 105
+    (note,) = opened(levels).notes
+    assert note.startswith("the paper is ruled, with lines 8.00 mm apart; they are left out")
+
+
 def test_printed_lines_that_are_not_there_are_refused() -> None:
     with pytest.raises(DrawingFault, match="no printed lines are found"):
         opened(on_paper(LINE, (), 0.0), "squared")
@@ -191,3 +212,18 @@ def test_as_few_lines_as_there_may_be_are_found(bare_mm: float, is_upright: bool
     assert family.is_whole is (bare_mm == 0)
     ends = sorted(abs(at) / TO_PX for at in family.run_px)
     assert ends == pytest.approx([bare_mm, 62.0] if bare_mm else [math.inf] * 2, abs=0.13)
+
+
+@pytest.mark.parametrize("is_printed", [True, False])
+def test_a_large_sheet_is_made_smaller_only_where_printed_lines_may_be(
+    is_printed: bool,
+) -> None:
+    """No row of a sheet without lines in the rows and columns looked at."""
+    sheet = np.random.default_rng(6).normal(0.0, 0.02, (3001, 2998)).astype(np.float32)
+    if is_printed:
+        sheet[:, 20::60] = sheet[:, 21::60] = sheet[:, 22::60] = 0.6
+    small, by = ruling._small_enough(sheet)
+    assert by == 2
+    whole = cv2.resize(sheet, (1499, 1500), interpolation=cv2.INTER_AREA)
+    assert np.array_equal(small, whole) if is_printed else small.size == 0
+    assert bool(left_out(sheet, PITCH_MM, "auto").note) == is_printed

@@ -126,3 +126,19 @@ def test_rims_are_laid_about_the_ink_alone_and_lighter_paper_is_paper(
     across_px = round(2 * (60.0 + 2.3)) + 2
     assert asked[0] == asked[1] == pytest.approx((across_px, across_px), abs=1)
     assert laid.sum() == pytest.approx(small.sum(), rel=1e-6)
+
+
+def test_what_is_lighter_than_paper_is_found_in_any_stretch_of_a_row() -> None:
+    """In vectors by the bits of the numbers, and as a plain loop has it."""
+    sheet = (
+        np.random.default_rng(5)
+        .normal(0.0, 1.0, (3, 2 * two_levels.BARE_PX + 9))
+        .astype(np.float32)
+    )
+    bare = np.abs(sheet)
+    bare[0, 0] = bare[1, two_levels.BARE_PX] = bare[2, -1] = -0.25
+    for some in (sheet, bare):
+        for lighten in (two_levels._no_lighter, two_levels._no_lighter.py_func):
+            paper = some.copy()
+            lighten(paper)
+            assert np.array_equal(paper, np.maximum(some, 0.0))
