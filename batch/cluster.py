@@ -27,10 +27,10 @@ from typing import TYPE_CHECKING, Any
 from morfax.batch.one import failed, there_already, trace_one
 from morfax.batch.order import Order
 from morfax.batch.results import LocalResults, RemoteResults, Results, file_system
-from morfax.batch.row import KILLED, MISTAKE, BatchRow
+from morfax.batch.row import KILLED, BatchRow
 from morfax.batch.search import is_address
 from morfax.jobs.wrong_use import WrongUse
-from morfax.motion.faults import FileFault
+from morfax.motion.faults import MISTAKE, FileFault
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.batch.order import Order
 from morfax.batch.results import FIGURES, PATH, PICTURE, Results
-from morfax.batch.row import MISTAKE, NO_MEMORY, BatchRow, Ending
+from morfax.batch.row import NO_MEMORY, BatchRow, Ending
 from morfax.jobs.listener import Silent
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
-from morfax.motion.faults import Fault, FileFault
+from morfax.motion.faults import MISTAKE, Fault, FileFault
 from morfax.motion.files import written_beside
 
 if TYPE_CHECKING:

@@ -18,12 +18,12 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Literal
 
-from morfax.motion.faults import DRAWING
+from morfax.motion.faults import BY_SIGNAL, DRAWING, SIGKILL
 
 Ending = Literal["done", "incomplete", "fault", "over limit", "no memory", "killed", "mistake"]
 SPOILT: tuple[Ending, ...] = ("no memory", "mistake")  # the worker's memory may be in pieces
-# exit codes: that of timeout(1); of a signal 9, as a shell gives it; EX_SOFTWARE of sysexits.h
-OVER_LIMIT, NO_MEMORY, KILLED, MISTAKE = 124, DRAWING, 137, 70
+OVER_LIMIT = 124  # the exit code of timeout(1)
+NO_MEMORY, KILLED = DRAWING, BY_SIGNAL + SIGKILL
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ import click
 
 from morfax.jobs import kernels
 from morfax.jobs.damaged_kernels import compile_damaged_again
-from morfax.motion.faults import DrawingFault, Fault, FileFault
+from morfax.motion.faults import BY_SIGNAL, MISTAKE, DrawingFault, Fault, FileFault
 
 # objects that Python makes before it looks for rings of them that nobody holds (its own figure is 700). The
 # modules of a verb make 80 000, which all stay: to look through them took a twelfth of a short `trace`
@@ -75,7 +75,6 @@ Examples:
 """
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 NO_MEMORY = "not enough memory; scan the drawing at a lower resolution, or cut out the part to be traced"
-MISTAKE = 70  # EX_SOFTWARE of sysexits.h
 
 
 class Verbs(click.Group):
@@ -154,7 +153,7 @@ def _ended(words: Sequence[str] | None) -> int:
 def _interrupted(stop: BaseException) -> int:
     """Say that the work was interrupted; the exit code that the signal asks for."""
     said = "interrupted; no unfinished file was left under its final name"
-    return _say(said, 128 + _signal_of(stop))
+    return _say(said, BY_SIGNAL + _signal_of(stop))
 
 
 def _failed(error: Exception) -> int:

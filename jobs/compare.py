@@ -15,6 +15,7 @@ from morfax.jobs.settings import correction_settings, flattening
 from morfax.jobs.settings.settings import DrawingFile
 from morfax.jobs.settings.zero import OF_PART, Zero, refuse_of_part, said_by
 from morfax.jobs.wrong_use import WrongUse
+from morfax.motion.usual import RAPID_MM_S
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 # of a program that is compared: the control's servos then stay within 10 um of it
-FASTEST_MM_S = 20.0
+FASTEST_MM_S = RAPID_MM_S
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from morfax.jobs.listener import SILENT, Listener
-from morfax.jobs.media.live import USUAL_TRACKS, Outlet
-from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ
+from morfax.jobs.media.live import Outlet
+from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ, TRACKS
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -60,7 +60,7 @@ class DevicesJob:
     tone: str | None = None  # the device that the tone goes to
     meters: str | None = None  # the device whose levels are shown
     lasts_s: float = 30.0
-    tracks: int = USUAL_TRACKS
+    tracks: int = TRACKS
     reference_hz: float = REFERENCE_HZ
     show: Show | None = None  # hears every reading
 

@@ -11,3 +11,4 @@ from typing import Any
 Figures = Mapping[str, Any]
 
 MOST_PLACES = 30  # of one kind, the worst first, that a picture marks and a table lists; the figures have all
+FEW_PLACES = 10  # the same of a kind of which a plan with two pens has many

@@ -25,6 +25,9 @@ from typing import Any
 SHOWN = 40  # characters of a wrong line or value: a fault is one line
 # exit codes; 1 is a fault of no kind, 2 wrong use
 DRAWING, LINE, TAPE, LOCK, MOTION, FILE, CARD, DEVICE = 3, 4, 5, 6, 7, 8, 9, 10
+MISTAKE = 70  # EX_SOFTWARE of sysexits.h
+BY_SIGNAL = 128  # and the number of the signal, as a shell gives it
+SIGKILL = 9  # also where the system has no such name
 
 
 class Fault(Exception):

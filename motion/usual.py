@@ -5,6 +5,8 @@ Source: our own choice; a plotter's unit is that of HP-GL.
 
 from __future__ import annotations
 
+TRACKS = 4  # of a tape: reference, X, Y, Z
+WAIT_S = 60.0  # for the carriers of a tape to come
 SAMPLE_RATE_HZ = 48_000
 SAMPLES_PER_MOTION = 8
 MOTION_RATE_HZ = SAMPLE_RATE_HZ / SAMPLES_PER_MOTION

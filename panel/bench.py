@@ -15,6 +15,7 @@ from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
+from morfax.motion.faults import BY_SIGNAL, SIGKILL
 from morfax.panel import commands, sheet_picture
 from morfax.panel.commands import CommandLine, Options
 from morfax.panel.corrected import corrections_text, lay_corrections
@@ -262,8 +263,8 @@ class Bench:
     def _ended(self, message: dict[str, Any]) -> None:
         """The worker ended by itself, or was ended by the operator."""
         if self.busy is not None:
-            # by the system's SIGKILL, 9, itself or behind a shell: Windows has no such name
-            is_killed = message["code"] in (-9, 128 + 9)
+            # by the system, itself or behind a shell
+            is_killed = message["code"] in (-SIGKILL, BY_SIGNAL + SIGKILL)
             why = "too little memory, maybe" if is_killed else f"code {message['code']}"
             self.tell(
                 "fault",

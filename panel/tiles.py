@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 TILE = 512  # pixels a side
+HELD = 512  # tiles that are kept as PNG
 QUICK = [cv2.IMWRITE_PNG_COMPRESSION, 1]  # speed before size: the network is this computer
 
 
@@ -35,7 +36,7 @@ class Pyramid:
                     cv2.resize(self.levels[-1], half, interpolation=cv2.INTER_AREA), np.uint8
                 )
             )
-        self.tile = lru_cache(maxsize=512)(self._tile)
+        self.tile = lru_cache(HELD)(self._tile)
 
     def _tile(self, level: int, column: int, row: int) -> bytes:
         """A tile as PNG; raises IndexError where there is none."""
@@ -50,7 +51,7 @@ class LineMap:
         self.levels = [numbers]
         while max(self.levels[-1].shape) > TILE:
             self.levels.append(_halved(self.levels[-1]))
-        self.tile = lru_cache(maxsize=512)(self._tile)
+        self.tile = lru_cache(HELD)(self._tile)
 
     def _tile(self, level: int, column: int, row: int) -> bytes:
         """A tile as PNG; raises IndexError where there is none."""

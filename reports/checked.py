@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from morfax.jobs.figures import MOST_PLACES
 from morfax.motion.arrays import Array
 from morfax.player.gcode.check.planes import CHORD_RAD
 from morfax.reports.canvas import NUMBERS_IN, PANEL_IN, WIDTH_IN, new_figure, save
@@ -44,7 +45,6 @@ WOOD, TRAVEL = "#f3e3c3", "#8a8a8a"
 ARROWS = 60  # along the whole cut
 ARROW_IN = 0.12  # its length
 DASHES = 0, (5, 3)
-MOST_MARKED = 30  # findings with their line; further ones would hide the drawing
 
 
 def draw_checked(result: CheckResult, name: str, file: FilePath) -> None:
@@ -216,7 +216,7 @@ def _marked(axes: Axes, findings: Sequence[Finding]) -> None:
             style: dict[str, Any] = {"marker": "x", "markersize": SPOT_PT, "linestyle": "none"}
             axes.plot(*np.array(places).T, color=colour, label=label, zorder=ON_SPOTS, **style)
     texts: dict[tuple[float, ...], list[Finding]] = {}
-    for finding in shown[:MOST_MARKED]:
+    for finding in shown[:MOST_PLACES]:
         assert finding.place_mm is not None
         texts.setdefault(finding.place_mm[:2], []).append(finding)
     for place_mm, here in texts.items():

@@ -11,7 +11,8 @@ import click
 
 from morfax.console.options.groups import option
 from morfax.console.options.types import TIME
-from morfax.jobs.media.live import STANDSTILL_S, WAIT_S, Intake, Outlet
+from morfax.jobs.media.live import STANDSTILL_S, Intake, Outlet
+from morfax.motion.usual import WAIT_S
 
 DEVICE = "a sound device: its number, its name or a part of it, as `morfax devices` lists them"
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from morfax.jobs.wrong_use import WrongUse
-from morfax.motion.usual import SAMPLE_RATE_HZ
+from morfax.motion.usual import SAMPLE_RATE_HZ, TRACKS, WAIT_S
 
 if TYPE_CHECKING:
     from morfax.motion.motion import Motion
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 PIPE = "-"  # instead of a file's name: standard input or output
 STANDSTILL_S = 3.0  # at both ends of a tape for a device: time for both recorders to settle
-USUAL_TRACKS = 4  # reference, X, Y, Z
-WAIT_S = 60.0  # for the carriers to come
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +48,7 @@ class Intake:
         from morfax.recorder.sound.device_source import DeviceSource
         from morfax.recorder.tape.format import TapeFormat, is_format_text
 
-        tracks, rate_hz = USUAL_TRACKS, SAMPLE_RATE_HZ
+        tracks, rate_hz = TRACKS, SAMPLE_RATE_HZ
         if is_format_text(text):
             labelled = TapeFormat.from_json(text)
             tracks, rate_hz = labelled.tracks, labelled.sample_rate_hz

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-MARKED = 10  # of the places that a picture marks: a plan with two pens has many
+from morfax.jobs.figures import FEW_PLACES
 
 
 class Located(Protocol):
@@ -56,5 +56,5 @@ class OnLines:
     @property
     def marked_mm(self) -> dict[str, tuple[float, float]]:
         """The places that a picture marks, by name."""
-        worst = self.of_lines[:MARKED]
+        worst = self.of_lines[:FEW_PLACES]
         return {f"{self.marked} {k}": found.place_mm for k, (_, found) in enumerate(worst, 1)}

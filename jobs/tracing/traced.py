@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from morfax.jobs.figures import MOST_PLACES
+from morfax.jobs.figures import FEW_PLACES, MOST_PLACES
 from morfax.jobs.media import files as medium
 from morfax.jobs.remarks.stub_lines import StubLines
 from morfax.jobs.remarks.two_lines import TwoLines
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from morfax.tracer.program.program import Trace
 
 Place = tuple[float, float]
-PALE_MARKED = 10  # of the pale lines: a plan has many
 REACHED_MM = PLOTTER_MM / 2  # half a step of a plotter: so far below 0 a place is written as 0
 SHEET = ZeroOnSheet("sheet")
 NOT_TWO, NO_STUBS = TwoLines(), StubLines()
@@ -85,7 +84,7 @@ class Traced:
             stops_mm |= {f"left {k}": (x, y) for k, (x, y, _) in enumerate(lost, 1)}
             single = self.trace.ink.single[:MOST_PLACES]
             stops_mm |= {f"two lines {k}": (x, y) for k, (x, y, _) in enumerate(single, 1)}
-            pale = self.trace.ink.pale[:PALE_MARKED]
+            pale = self.trace.ink.pale[:FEW_PLACES]
             stops_mm |= {f"pale {k}": (x, y) for k, (x, y, _) in enumerate(pale, 1)}
         beside = enumerate(self.trace.unexplained[:MOST_PLACES], 1)
         stops_mm |= {f"unexplained {k}": place.place_mm for k, place in beside}

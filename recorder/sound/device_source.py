@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from morfax.motion.faults import DeviceFault
+from morfax.motion.usual import WAIT_S
 from morfax.recorder.sound import device as portaudio
 from morfax.recorder.sound.device import Device
 from morfax.recorder.sound.device_sink import PIECE_FRAMES
@@ -40,7 +41,7 @@ class DeviceSource:
     sample = "FLOAT"
 
     def __init__(
-        self, device: Device, rate_hz: int, tracks: int, text: str = "", wait_s: float = 60.0
+        self, device: Device, rate_hz: int, tracks: int, text: str = "", wait_s: float = WAIT_S
     ) -> None:
         self.name, self.tracks, self.rate_hz = f"the device {device.name!r}", tracks, rate_hz
         self.text, self._device, self._wait_s = text, device, wait_s

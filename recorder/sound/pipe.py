@@ -23,7 +23,7 @@ import numpy as np
 
 from morfax.motion.ending import Ending
 from morfax.motion.faults import TapeFault
-from morfax.motion.usual import SAMPLE_RATE_HZ
+from morfax.motion.usual import SAMPLE_RATE_HZ, TRACKS
 from morfax.recorder.sound.riff import UNKNOWN
 from morfax.recorder.sound.sixteen_bit import in_16_bit
 from morfax.recorder.sound.source import BLOCK_FRAMES, Frames, SampleType, Stored
@@ -37,7 +37,7 @@ _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 class Samples:
     """Layout of the samples in the pipe: tracks, rate, bits, and whether they are floats."""
 
-    tracks: int = 4
+    tracks: int = TRACKS
     sample_rate_hz: int = SAMPLE_RATE_HZ
     bits: int = 16
     is_float: bool = False

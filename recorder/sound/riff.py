@@ -32,6 +32,7 @@ LARGEST_RIFF_BYTES = 2**32 - 2**16
 UNKNOWN = 0xFFFFFFFF
 _EXTENSIBLE = b"\xfe\xff"
 _SEARCHED_BYTES = 65536  # of a header
+_HEAD_BYTES, _FORMAT_BYTES = 12, 40  # of a RIFF; of an extensible format, with its GUID
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +57,13 @@ def read_sizes(file: str | os.PathLike[str]) -> Sizes | None:
         kind = opened.read(24)
         if kind[:4] in (b"FORM", b"riff") and len(kind) == 24:
             return _whole_file(kind, os.fstat(opened.fileno()).st_size)
-        opened.seek(12)
-        kind = kind[:12]
-        if len(kind) < 12 or kind[:4] not in (b"RIFF", b"RF64", b"BW64") or kind[8:] != b"WAVE":
+        opened.seek(_HEAD_BYTES)
+        kind = kind[:_HEAD_BYTES]
+        if (
+            len(kind) < _HEAD_BYTES
+            or kind[:4] not in (b"RIFF", b"RF64", b"BW64")
+            or kind[8:] != b"WAVE"
+        ):
             return None
         end = os.fstat(opened.fileno()).st_size
         return _find_data(opened, kind[:4], end)
@@ -100,8 +105,8 @@ def replace_text(file: str | os.PathLike[str], old: str, new: str) -> None:
 def _name_samples_plainly(opened: BinaryIO, format_at: int) -> None:
     """Copy the kind of sample (first two bytes of its GUID) to where a plain format has it."""
     opened.seek(format_at)
-    body = opened.read(40)
-    if body[:2] == _EXTENSIBLE and len(body) == 40:
+    body = opened.read(_FORMAT_BYTES)
+    if body[:2] == _EXTENSIBLE and len(body) == _FORMAT_BYTES:
         opened.seek(format_at)
         opened.write(body[24:26])
 
