@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machine.playing import ByHand, Playing
 from morfax.jobs.machine.recording import RecordingUnit
-from morfax.jobs.machine.running import on_machine
+from morfax.jobs.machine.running import on_machine_as_read
 from morfax.jobs.media import files as medium
 from morfax.jobs.media import outlines
 from morfax.jobs.media.live import PIPE, Intake
@@ -170,7 +170,7 @@ class PlayJob:
             "paths": [str(file) for file in paths] or None,
             "following": [str(file) for file in charts] or None,
             "picture": None if picture is None else str(picture),
-            **({} if fault else on_machine(self.tape, self.by_hand.machine)),
+            **({} if fault else self._on_machine(playback)),
             **_figures(passage, playback, fault),
         }
         if not fault and not passage.worked:
@@ -196,6 +196,11 @@ class PlayJob:
             elif not is_picture(file):
                 self._record(played.path, file, listener)
         return Passage.of(played.path), played.playback, played.fault, played.path
+
+    def _on_machine(self, playback: Playback) -> Figures:
+        """The machine that a G-code program is for, and how long it runs there."""
+        program = getattr(playback, "as_read", None)
+        return on_machine_as_read(program, self.by_hand.machine) if program else {}
 
     def _record(self, path: Path, file: FilePath, listener: Listener) -> None:
         """Record the machine's path in the medium that a name says, for the usual machine of that."""

@@ -105,6 +105,33 @@ def pairs_within(points: ArrayLike, reach: float) -> NDArray[np.int64]:
     return np.vstack(found)
 
 
+def crowds(
+    points: ArrayLike, reach: float, apart: int = 1
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """How many of the points (n, 2) are no further from each than a reach, of those with numbers lower by
+    so many or more, and of those with numbers higher by as much.
+    """
+    points = np.asarray(points, np.float64)
+    order = np.argsort(points[:, 0], kind="stable")
+    lower, higher = np.zeros(len(order), np.int64), np.zeros(len(order), np.int64)
+    _count_pairs((points[order], order), reach, apart, lower, higher)
+    return lower, higher
+
+
+@njit(cache=True, nogil=True)
+def _count_pairs(numbered, reach, apart, lower, higher):  # type: ignore[no-untyped-def]
+    """Count each pair at both its points, which stand in order of x with the number of each."""
+    points, numbers = numbered
+    for k in range(len(points)):
+        for other in range(k + 1, len(points)):
+            x, y = points[other, 0] - points[k, 0], points[other, 1] - points[k, 1]
+            if x > reach:
+                break
+            if x * x + y * y <= reach * reach and abs(numbers[other] - numbers[k]) >= apart:
+                lower[max(numbers[k], numbers[other])] += 1
+                higher[min(numbers[k], numbers[other])] += 1
+
+
 def _boxes_of(points: Array) -> Array:
     """The boxes (2 · leaves, 4) round some points: lowest and highest x and y; the first is none."""
     leaves = 1 << (-(-len(points) // LEAF) - 1).bit_length()

@@ -100,53 +100,7 @@ def between_corners(way: Array) -> list[Array]:
 
 def nearest_mm(places_mm: Array, others_mm: Array) -> Array:
     """Distance of each place (n, 2) from the nearest of others (m, 2), mm; infinite where there is none."""
-    others = np.ascontiguousarray(others_mm, float)
-    by_x = others[np.argsort(others[:, 0], kind="stable")]
-    strip = np.arange(len(others)) // max(1, math.isqrt(len(others)))
-    firsts = np.flatnonzero(np.diff(strip, prepend=-1, append=-1))
-    edges = np.column_stack([by_x[firsts[:-1], 0], by_x[firsts[1:] - 1, 0]])
-    strips = by_x[np.lexsort((by_x[:, 1], strip))]
-    return np.asarray(_nearest(np.ascontiguousarray(places_mm, float), strips, firsts, edges))
-
-
-@njit(cache=True)
-def _nearest(places, strips, firsts, edges):  # type: ignore[no-untyped-def]
-    """Distance of each place from the nearest of others, which stand in strips of X, sorted by Y within.
-
-    │ · │·  │ · │      A strip is passed over from where it is further off in X than the nearest place so
-    │·  │ x │  ·│      far; so are the places of a strip that are further off in Y. For places near a line
-    │  ·│  ·│ · │      few are left, and no tree is built, nor scipy.spatial loaded for it (0.5 s).
-    """
-    nearest = np.empty(len(places))
-    for k in range(len(places)):
-        x, y = places[k]
-        middle, best = np.searchsorted(edges[:, 0], x), np.inf
-        for way in (-1, 1):
-            n = middle if way > 0 else middle - 1
-            while 0 <= n < len(edges):
-                away = max(edges[n, 0] - x, x - edges[n, 1], 0.0)
-                if away * away > best:
-                    break
-                best = _nearer(strips[firsts[n] : firsts[n + 1]], x, y, away, best)
-                n += way
-        nearest[k] = math.sqrt(best)
-    return nearest
-
-
-@njit(cache=True)
-def _nearer(strip, x, y, away, best):  # type: ignore[no-untyped-def]
-    """The least square of a distance so far, or of one to a place of a strip that is so far away in X."""
-    middle = np.searchsorted(strip[:, 1], y)
-    for way in (-1, 1):
-        i = middle if way > 0 else middle - 1
-        while 0 <= i < len(strip):
-            across = strip[i, 0] - x
-            along = strip[i, 1] - y
-            if away * away + along * along > best:
-                break
-            best = min(best, across * across + along * along)
-            i += way
-    return best
+    return Neighbours(others_mm).nearest(places_mm)[0]
 
 
 def plain(line_mm: Array, within_mm: float) -> Array:

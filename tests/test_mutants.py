@@ -8,7 +8,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from tests.mutants import Copy, Mutant, mutants_of
+from tests.mutants import __main__ as runner
 from tests.mutants.tree import ROOT, WatchedTest
 from tests.mutants.users import users_of
 
@@ -139,3 +142,14 @@ def test_a_mutant_that_waits_for_ever_is_found(tmp_path: Path) -> None:
     copy = object.__new__(Copy)
     copy.root, copy._environment = tmp_path, dict(os.environ) | {"PYTHONPATH": str(ROOT)}
     assert not copy.passes(["test_a.py"], 0.1)  # a second of the clock
+
+
+def test_a_survivor_is_told_by_the_text_that_was_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Somebody who writes tests for the survivors may change the file while the others still run."""
+    monkeypatch.setattr(runner, "ROOT", tmp_path)
+    (tmp_path / "a.py").write_text(SOURCE)
+    chosen = runner.chosen_of(Path("a.py"), 0, 1)
+    (tmp_path / "a.py").write_text("# another text\n" * 40)
+    assert {chosen.told(m) for m in chosen.mutants} == {m.told(SOURCE) for m in found()}

@@ -129,6 +129,11 @@ class MachineReader(GcodeReader):
             self.feed_mm_s = self.machine.panel_feed_mm_s
         super().read(_SPINDLE.sub("", _PANEL.sub("", plain)))
 
+    def note(self, letters: Sequence[str], numbers: Sequence[str]) -> None:
+        """Note a line that has words for the tool; what M67 says is in the feeds of the moves."""
+        if ("M", "67") not in zip(letters, numbers, strict=True):
+            super().note(letters, numbers)
+
     def obey(self, letters: list[str], numbers: list[str]) -> None:
         """Carry out the words of a line: those of the tool first, then the reader's own."""
         words = list(zip(letters, map(float, numbers), strict=True))

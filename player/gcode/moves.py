@@ -8,7 +8,7 @@ Source: RS-274-D names the kinds. Questions: rapids have no feed of their own; e
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -31,14 +31,15 @@ class Move(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program as read: start of the machine, moves, the machine that it is for, '' if not known, and notes
-    on it for the operator.
+    """A program as read: start of the machine, moves, the machine that it is for, '' if not known, notes on
+    it for the operator, and lines with words for the tool, each with the move that comes next.
     """
 
     start_mm: Place
     moves: list[Move]
     machine: str = ""
     notes: tuple[str, ...] = ()
+    said: Sequence[tuple[int, str]] = ()
 
     @property
     def end_mm(self) -> Place:

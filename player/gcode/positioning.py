@@ -82,6 +82,7 @@ class PositionPlayback(Supervised):
         self, program: Program, settings: PositionControl, name: str = "program"
     ) -> None:
         self.program, self.settings, self.name = program, settings, name
+        self.as_read = program
         self.start_mm: Array = np.array(program.start_mm, np.float64)
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None

@@ -121,6 +121,7 @@ def play_pulses(
         for move in program.moves
     ]
     playback = PulsePlayback(replace(program, moves=moves), control, str(file))
+    playback.as_read = program
     if moves != program.moves and fastest_mm_s is None:
         playback.notes += (
             f"{file} asks for feeds above {most_mm_s:g} mm/s, the fastest of this control; they are played "
@@ -137,6 +138,7 @@ class PulsePlayback(Supervised):
 
     def __init__(self, program: Program, settings: PulseControl, name: str = "program") -> None:
         self.program, self.settings, self.name = program, settings, name
+        self.as_read = program  # where its feeds are above what this control runs
         self.start_mm: Array = np.array(program.start_mm)
         self.end_mm: Array = self.start_mm.copy()
         self.end_error_mm: Array | None = None

@@ -73,7 +73,8 @@ def parse_rs274(
         )
     x_mm, y_mm, z_mm = (0.0 if place is None else place for place in reader.start)
     notes = (reader.unended,) if reader.unended and not reader.ended else ()
-    return Program((x_mm, y_mm, z_mm), reader.moves_from((x_mm, y_mm, z_mm)), notes=notes)
+    moves = reader.moves_from((x_mm, y_mm, z_mm))
+    return Program((x_mm, y_mm, z_mm), moves, notes=notes, said=reader.said)
 
 
 class GcodeReader:
@@ -90,6 +91,7 @@ class GcodeReader:
     def __init__(self, name: str, start_mm: Sequence[float] | None) -> None:
         self.name, self.number, self.ended = name, 0, False
         self.moves: list[Move] = []
+        self.said: list[tuple[int, str]] = []  # words of the tool, before which move
         self.start: list[float | None] = (
             [None, None, None] if start_mm is None else list(start_mm)
         )
@@ -121,7 +123,15 @@ class GcodeReader:
             self.begun = self.has_words = True
             if is_name and self.takes_number:
                 return
-            self.obey(parts[1::3], parts[2::3])
+            letters, numbers = parts[1::3], parts[2::3]
+            if "M" in letters:
+                self.note(letters, numbers)
+            self.obey(letters, numbers)
+
+    def note(self, letters: Sequence[str], numbers: Sequence[str]) -> None:
+        """Note a line that has words for the tool."""
+        words = " ".join(map("".join, zip(letters, numbers, strict=True)))
+        self.said.append((len(self.moves), words))
 
     def _second_look(self, text: str) -> list[str]:
         """A line that is not all words: a %, small letters, or refused."""

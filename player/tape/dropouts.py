@@ -226,7 +226,7 @@ class Gaps:
         if b + self._side > len(rows) or not is_short:
             return self._ended(rows, axis, a, time_s)
         if a < self._side:
-            return self._uncertain(axis, cycles[max(a - 1, 0)], time_s, (b - a) / self._rate_hz)
+            return self._uncertain(axis, cycles[max(a - 1, 0)], time_s, b - a)
         gap = self._riding.across(rows, axis, (a, b), self._side)
         steady = self._surprised[min(a + self._spread, len(rows) - 1), axis]
         noise = self._surprises.noise(axis)
@@ -235,7 +235,7 @@ class Gaps:
             gap = replace(gap, furthest=_furthest(gap, cycles, (a, b)))
         if self._riding.bounds is None and not gap.bridge.certain:
             if self._riding.told is None:
-                return self._uncertain(axis, gap.before.place, time_s, (b - a) / self._rate_hz)
+                return self._uncertain(axis, gap.before.place, time_s, b - a)
             self.doubtful[gap.first, axis] = gap.bridge
             gap = gap.ending(self._riding.told.get((gap.first, axis), 0))
         cycles[a:b] = gap.laid()
@@ -264,14 +264,17 @@ class Gaps:
             time_s=time_s,
         )
 
-    def _uncertain(self, axis: int, place: float, time_s: float, gap_s: float) -> LockFault:
-        """The fault of a gap with an uncertain count; `place` is the last certain one, cycles."""
+    def _uncertain(self, axis: int, place: float, time_s: float, rows: int) -> LockFault:
+        """The fault of so many rows with an uncertain count; `place` is the last certain one, cycles."""
         name, position_mm = self._names[axis], self._place_mm(axis, place)
+        gap_s, cut = rows / self._rate_hz, ""
+        # the filter alone makes these of an edge between two signals
+        if rows <= 4 * self._spread:
+            cut = " (or the tape is cut there, and any length is missing)"
         return LockFault(
-            f"{name.upper()} was lost for {gap_s * 1e3:.1f} ms at {time_s:.3f} s, last certain position "
-            f"{position_mm:.3f} mm: how many cycles passed there is not certain; copy the tape "
-            "again, mend it "
-            "(morfax mend), or go on behind it from a position given by hand (--resume-at "
+            f"{name.upper()} was lost for {gap_s * 1e3:.1f} ms at {time_s:.3f} s{cut}, last certain position "
+            f"{position_mm:.3f} mm: how many cycles passed there is not certain; copy the tape again, "
+            f"mend it (morfax mend), or go on behind it from a position given by hand (--resume-at "
             f"{time_s + gap_s + SIDE_S:.2f}s --from ...)",
             axis=name,
             time_s=time_s,

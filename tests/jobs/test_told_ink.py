@@ -16,8 +16,11 @@ from morfax.jobs.settings.line_settings import LineSettings
 from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.tracing.tracing import Tracing
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.lines.selection import Others
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.survey import survey
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.drawing.test_skips import ring
@@ -197,6 +200,26 @@ def test_a_ring_whose_line_leads_to_a_contour_is_told_as_reference_point_and_mar
     heard = Heard()
     traced = Tracing.prepared(marked("off")).trace(drawing, heard)
     assert len(traced.trace.lines) == 2 and not any("the ring" in text for text in heard.said)
+
+
+def test_a_ring_near_a_stroke_of_a_part_is_a_hole_of_it_where_the_stroke_leads_to_no_contour() -> (
+    None
+):
+    """A colouring page's freckle near the tip of a fin's line: taken for the reference point, it was not cut,
+    nor was the outline of what it is drawn on.
+    """
+    fin = polyline((34, 34), (42, 24), (47, 13.4)), polyline((42, 24), (72, 30))
+    drawing = inked(arc((42.0, 32.0), 30.0), *fin, arc((27.0, 40.0), 1.6), seed=1)
+    heard = Heard()
+    trace = Tracing.prepared(CONTOURS).trace(drawing, heard).trace
+    assert trace.reference_mm is None and not any("tool up" in text for text in heard.said)
+    endings = {round(line.length_mm): line.ending for line in trace.lines}
+    assert endings[round(math.tau * 1.6)] == endings[round(math.tau * 30)] == "closed"
+    assert not any(entry.is_reference for entry in survey(Setup(drawing.sheet)).entries)
+    program = Tracing.prepared(marked("on")).trace(drawing, Heard()).trace
+    assert program.reference_mm == pytest.approx((27, 40), abs=0.05)
+    means_program = Setup(drawing.sheet, operator=Operator(marks="on"))
+    assert any(entry.is_reference for entry in survey(means_program).entries)
 
 
 def test_a_cross_that_a_program_begins_with_is_not_told() -> None:

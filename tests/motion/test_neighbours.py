@@ -7,7 +7,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from morfax.motion.neighbours import LEAF, MOST_MET, Neighbours, _met, pairs_within
+from morfax.motion import neighbours
+from morfax.motion.neighbours import (
+    LEAF,
+    MOST_MET,
+    Neighbours,
+    _count_pairs,
+    _met,
+    crowds,
+    pairs_within,
+)
 
 ROUNDING = 1e-12  # of places up to 100
 
@@ -103,3 +112,18 @@ def test_the_pairs_within_a_reach_are_those_of_trying_all(
 def test_of_no_points_none_is_near() -> None:
     away, number = Neighbours(np.empty((0, 2))).nearest([(1.0, 2.0), (3.0, 4.0)])
     assert np.all(np.isinf(away)) and number.tolist() == [0, 0]
+
+
+@pytest.mark.parametrize("apart", [1, 2, 7])
+@pytest.mark.parametrize("kernel", [_count_pairs, _count_pairs.py_func])
+def test_crowds_are_those_of_all_pairs(
+    apart: int, kernel: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(neighbours, "_count_pairs", kernel)
+    points = np.random.default_rng(apart).integers(0, 12, (90, 2)).astype(float)
+    near, numbers = tried(points, points) <= 2.0, np.arange(90)
+    before = numbers[:, None] - numbers
+    lower, higher = crowds(points, 2.0, apart)
+    assert lower.tolist() == (near & (before >= apart)).sum(axis=1).tolist()
+    assert higher.tolist() == (near & (-before >= apart)).sum(axis=1).tolist()
+    assert [len(some) for some in crowds(points[:0], 2.0)] == [0, 0]

@@ -16,7 +16,7 @@ from morfax.motion.kernel_folder import kernel_folder
 from morfax.motion.kernel_linker import Entry, Linker
 from morfax.motion.object_file import GAP_FIELDS, GAPS, SECTION_FIELDS, SECTIONS_AT, ObjectFile
 from morfax.motion.placed_code import placed
-from morfax.motion.polyline import _nearest
+from morfax.motion.polyline import _kept
 
 pytestmark = [
     pytest.mark.skipif(not machine_code.can_be_kept(), reason="numba runs the kernels here"),
@@ -30,31 +30,27 @@ pytestmark = [
 @pytest.fixture(scope="module")
 def asked() -> tuple[Any, ...]:
     """Arguments of a kernel that has constants, loops and arrays that it gives back."""
-    rng = np.random.default_rng(3)
-    places, strip = rng.normal(size=(40, 2)), rng.normal(size=(300, 2))
-    strip = strip[np.argsort(strip[:, 1])]
-    edges = np.array([[strip[:, 0].min(), strip[:, 0].max()]])
-    return places, strip, np.array([0, len(strip)]), edges
+    return np.random.default_rng(3).normal(size=(300, 2)).cumsum(axis=0), 0.8
 
 
 @pytest.fixture(scope="module")
 def entry(asked: tuple[Any, ...]) -> Entry:
     """What is kept of that kernel."""
-    _nearest(*asked)
-    return machine_code._read(_nearest, kernel_folder())[described(asked)]
+    _kept(*asked)
+    return machine_code._read(_kept, kernel_folder())[described(asked)]
 
 
 def test_placed_code_and_llvm_s_give_the_same_to_the_bit(
     asked: tuple[Any, ...], entry: Entry, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ours = Linker()
-    own = ours.function(_nearest, entry)(*asked)
-    away = np.hypot(*np.moveaxis(asked[0][:, None] - asked[1], -1, 0)).min(axis=1)
-    assert np.allclose(own, away, rtol=1e-14)  # a few roundings
+    own = ours.function(_kept, entry)(*asked)
+    assert np.array_equal(own, _kept.py_func(*asked))
+    assert 2 < own.sum() < len(own)
     assert "_by_llvm" not in vars(ours)
     monkeypatch.setattr(kernel_linker, "placed", refused)
     other = Linker()
-    by_llvm = other.function(_nearest, entry)(*asked)
+    by_llvm = other.function(_kept, entry)(*asked)
     assert "_by_llvm" in vars(other)
     assert np.array_equal(own, by_llvm)
 
@@ -113,7 +109,7 @@ def test_pages_that_may_not_be_run_are_left_to_llvm(
     with pytest.raises(OSError, match="no pages"):
         placed(entry[0], lambda _: 0)
     other = Linker()
-    other.function(_nearest, entry)(*asked)
+    other.function(_kept, entry)(*asked)
     assert "_by_llvm" in vars(other)
 
 
@@ -122,8 +118,8 @@ def test_kept_kernels_run_without_llvmlite() -> None:
     code = """if True:
         import sys
         import numpy as np
-        from morfax.motion.polyline import _nearest
-        _nearest(np.zeros((4, 2)), np.ones((9, 2)), np.array([0, 9]), np.ones((1, 2)))
+        from morfax.motion.polyline import _kept
+        _kept(np.zeros((4, 2)), 0.1)
         print("llvmlite" in sys.modules, "numba" in sys.modules)
         """
     subprocess.run([sys.executable, "-c", code], check=True)  # compiles, if need be

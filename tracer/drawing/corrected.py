@@ -52,6 +52,7 @@ def corrected(
         shapes=_shapes(drawing, laid),
         corrected=replace(laid, ink_changed=changed),
         bare=drawing if changed else None,
+        drawn=None,  # nothing was rubbed out there
     )
 
 

@@ -17,7 +17,7 @@ it is never guessed.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,11 +25,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing import coarse, grain, inks, large, raster, ruling, speckled
+from morfax.tracer.drawing import coarse, grain, inks, large, raster, speckled
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
-from morfax.tracer.drawing.border import border_note, without_border
+from morfax.tracer.drawing.cleared import cleared
 from morfax.tracer.drawing.components import INK
-from morfax.tracer.drawing.deepening import LEAST, deepened, deepened_note
+from morfax.tracer.drawing.deepening import deepened, deepened_note
 from morfax.tracer.drawing.levelling import Levelled, levelled
 from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, measured, within
@@ -99,7 +99,17 @@ class Drawing:
     has_rims: bool = False
     grainy: bool = False
     paper_noise: float | None = None
+    drawn: Darkness | None = None
     narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
+
+    @cached_property
+    def as_drawn(self) -> Drawing:
+        """The drawing without the slit that it is seen through, with the same noise."""
+        if self.drawn is None:
+            return self
+        drawing = replace(self, darkness=self.drawn, drawn=None, grainy=False)
+        vars(drawing)["noise"] = self.noise
+        return drawing
 
     def times_at(self, place_mm: NDArray[np.float64]) -> float:
         """How many times enlarged the head follows the edge nearest to a place; 1 on a drawing of lines.
@@ -236,8 +246,8 @@ class Drawing:
         """The lines in grey levels on square pixels."""
         # 1. darkness, without what is printed and the scan's border
         darkness, shapes, paper_noise, has_shapes = _levelled(grey, pitch_mm, reading)
-        cleared, told = _cleared(darkness, pitch_mm, reading)
-        darkness, paper_noise = cleared.darkness, paper_noise / cleared.ink
+        darkness, ink, told = cleared(darkness, pitch_mm, reading.printed, reading.pale_is_ink)
+        paper_noise /= ink
         lines, pale_mm = within(darkness, paper_noise), 0.0
         times = speckled.times_larger(darkness, lines, pitch_mm)
         if times > 1:
@@ -276,21 +286,12 @@ class Drawing:
             has_rims=has_rims,
             grainy=averaged is not None,
             paper_noise=paper_noise,
+            drawn=averaged.drawn if averaged is not None and finer == 1 else None,
         )
         if averaged is None and finer == 1 and not has_rims:  # the darkness that was measured
             known = {} if most is None else {"darkest": most}
             vars(drawing).update(known, noise=lines.found.noise(pitch_mm))
         return drawing
-
-
-def _cleared(
-    darkness: Darkness | Tiles, pitch_mm: float, reading: Reading
-) -> tuple[ruling.Cleared, tuple[str, ...]]:
-    """Darkness without what is printed and without the scan's border, and notes of both."""
-    cleared = ruling.left_out(darkness, pitch_mm, reading.printed)
-    edges = without_border(cleared.darkness, LEAST if reading.pale_is_ink else INK)
-    notes = tuple(filter(None, (cleared.note, border_note(edges) if edges else None)))
-    return cleared, notes
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Levelled:

@@ -18,7 +18,7 @@ much, and what that and the way back soften is taken off its width.
 
 Source: our own; filters matched to a direction are the textbook's way (S. Chaudhuri and others, 1989, blood
 vessels in fundus images). Questions: ends of lines stay where they are (half of the slit is on paper there),
-and a corner is rounded by some 0.1 mm.
+and a corner is rounded by some 0.1 mm, which `program.laid.grain_corners` mends.
 """
 
 from __future__ import annotations
@@ -87,9 +87,10 @@ class Slit(NamedTuple):
 
 
 class Averaged(NamedTuple):
-    """A sheet seen through the slit: its darkness, and what the operator should know of it."""
+    """A sheet seen through the slit: its darkness, that as it was drawn, and what to tell."""
 
     darkness: Darkness
+    drawn: Darkness
     note: str
 
 
@@ -101,12 +102,17 @@ def slit_for(grain: float, width_px: float, pitch_mm: float) -> Slit | None:
     return Slit(along_px, max(ACROSS_WIDTHS * width_px, 0.5), width_px)
 
 
+def reach_mm(width_mm: float) -> float:
+    """How far from a corner the slit for lines of a width rounds them, mm: two of its standard deviations."""
+    return 2 * max(ALONG_MM, ALONG_WIDTHS * width_mm)
+
+
 def _note(slit: Slit, pitch_mm: float) -> str:
     """What the operator should know of a sheet that is seen through the slit."""
     long_mm = 2 * slit.along_px * pitch_mm
     return (
         f"the lines have grain, as of a pencil: they are averaged over {long_mm:.1f} mm along each line, "
-        "which rounds corners by some 0.1 mm; lines that are inked over are followed more exactly"
+        "and corners may be off by some 0.1 mm; lines that are inked over are followed more exactly"
     )
 
 
@@ -148,7 +154,11 @@ def averaged(
         return None
     drawn = np.asarray(darkness)
     seen = behind(slit, drawn)
-    return Averaged(seen, _note(slit, pitch_mm)) if mends(drawn, seen, drawn_grain) else None
+    return (
+        Averaged(seen, drawn, _note(slit, pitch_mm))
+        if mends(drawn, seen, drawn_grain)
+        else None
+    )
 
 
 def mends(before: Darkness, after: Darkness, grain: float) -> bool:

@@ -105,10 +105,13 @@ def _have_lines(rows: Callable[[int, int], Darkness], high: int) -> bool:
     """Whether most of some rows of so many are inked at places that are evenly apart: to ask that takes no
     time, and most drawings have none.
     """
+    if not high:
+        return False
     missed = 0
     for part in ROWS:
         row = int(part * high)
-        seen = np.sort(rows(row - 3, row + 4), axis=0)[3]
+        beside = rows(max(row - 3, 0), min(row + 4, high))
+        seen = np.sort(beside, axis=0)[len(beside) // 2]
         missed += not any(are_evenly_apart(seen, level) for level in LEVELS)
         if missed > len(ROWS) // 2:
             return False

@@ -79,24 +79,20 @@ def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> Cleared:
     if not found:
         if paper == "auto":
             return Cleared(darkness)
-        raise DrawingFault(
-            f"--paper {paper}, but no printed lines are found: {FEWEST_LINES} or more, straight,"
-            f" {LEAST_PERIOD_MM:g} to {LARGEST_PERIOD_MM:g} mm apart, over half of the sheet or more; leave"
-            " --paper out, or name the line's colour with --ink"
-        )
-    kind = "squared" if len(found) == 2 else "ruled"
-    apart = " and ".join(f"{by * pitch_mm * of[-1].period_px:.2f}" for of in found)
+        raise _none_found(paper)
     printed, ink = _levels(small, [family for of in found for family in of])
     if paper == "auto":
         whole = [of for of in found if of[0].is_whole]
         is_drawn = printed > PALER * ink and min(of[-1].lines for of in found) <= BOARD
-        if not whole and (kind == "ruled" or is_drawn):
+        if not whole and (len(found) == 1 or is_drawn):
+            kind, apart = _in_words(found, by * pitch_mm)
             note = (
                 f"straight lines run over most of the sheet, {apart} mm apart; if the paper is {kind},"
                 f" give --paper {kind}, and they are left out"
             )
             return Cleared(darkness, note=note)
         found = whole or found
+    kind, apart = _in_words(found, by * pitch_mm)
     left = np.asarray(np.asarray(darkness) / ink, np.float32)
     for family in (family for of in found for family in of):
         left = _without(left, family.enlarged(by))
@@ -105,6 +101,21 @@ def left_out(darkness: Kept, pitch_mm: float, paper: PaperKind) -> Cleared:
         " drawing, give --paper plain"
     )
     return Cleared(left, ink, note)
+
+
+def _none_found(paper: PaperKind) -> DrawingFault:
+    """What an operator is told who asked for printed lines that are not there."""
+    return DrawingFault(
+        f"--paper {paper}, but no printed lines are found: {FEWEST_LINES} or more, straight,"
+        f" {LEAST_PERIOD_MM:g} to {LARGEST_PERIOD_MM:g} mm apart, over half of the sheet or more; leave"
+        " --paper out, or name the line's colour with --ink"
+    )
+
+
+def _in_words(found: list[list[Family]], pixel_mm: float) -> tuple[str, str]:
+    """What paper with such printed lines is called, and how far apart they are, mm."""
+    apart = " and ".join(f"{pixel_mm * of[-1].period_px:.2f}" for of in found)
+    return "squared" if len(found) == 2 else "ruled", apart
 
 
 def _small_enough(darkness: Kept) -> tuple[Darkness, int]:

@@ -13,6 +13,7 @@ Source: patent ES 361967, section on use: the operator brings the head over the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -21,6 +22,7 @@ import numpy as np
 
 from morfax.motion.faults import LineFault
 from morfax.motion.long_array import one_in
+from morfax.motion.neighbours import crowds
 from morfax.motion.polyline import evenly
 from morfax.motion.usual import MOTION_RATE_HZ, THINNED
 from morfax.tracer.drawing.drawing import Drawing
@@ -282,13 +284,10 @@ def _ran_all(back: Followed, run: Followed, stance: Stance) -> bool:
 
 def _goes_twice(run: Followed) -> bool:
     """Whether more than `TWICE` of a run goes along what it has followed before."""
-    from scipy.spatial import cKDTree
-
-    step_mm = STEP_WIDTHS * run.view.width_mm
+    step_mm, longer = STEP_WIDTHS * run.view.width_mm, LONGER_WIDTHS / STEP_WIDTHS
     places = evenly(run.positions_mm[::THINNED], step_mm)
-    near = cKDTree(places).query_pairs(2 * step_mm, output_type="ndarray")
-    again = near[np.ptp(near, axis=1) * STEP_WIDTHS > LONGER_WIDTHS] if len(near) else near
-    return len(set(again[:, 1].tolist())) > TWICE * len(places) + LONGER_WIDTHS / STEP_WIDTHS
+    again, _ = crowds(places, 2 * step_mm, math.floor(longer) + 1)
+    return int(np.count_nonzero(again)) > TWICE * len(places) + longer
 
 
 def _kind(put_down: Stance) -> type[Follower]:

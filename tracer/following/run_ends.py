@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import math
 
+from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.tracer.following import lost
+from morfax.tracer.following.faint_corner import TipPose, faint_corner
 from morfax.tracer.following.felt_line import Anchor
 from morfax.tracer.following.followed import Followed, without_repeat
 from morfax.tracer.following.way_home import WayHome
@@ -57,7 +59,21 @@ class RunEnds:
             way = [course.to_end(self.carriage.stands(), incoming, end)]
             self.carriage.run(way, self.settings.speed_mm_s, STATIONS)
             return self._go_home()
+        round_mm = self._round_faint_corner(incoming, end)
+        if round_mm is not None:
+            self.carriage.run(round_mm, leader=STATIONS)
+            return self._done("closed")
         return self._end(incoming, end, joined=choices > 0)
+
+    def _round_faint_corner(self, incoming: Leg, end_mm: float) -> list[Array] | None:
+        """The course by an end of the line and pale ink onto home; None if the line ends here."""
+        if not self._home.stance.at_end or self.carriage.travel_mm < self._home.away_mm:
+            return None
+        tip = TipPose(incoming.at(end_mm), incoming.heading_at(end_mm))
+        onto_home = faint_corner(self.view, tip, self._home.tip)
+        if onto_home is None:
+            return None
+        return [course.to_end(self.carriage.stands(), incoming, end_mm), *onto_home]
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
         """Run to an end of the line; and back, if it is a guide line's end, or a tip where two lines end."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from morfax.motion import curves
 from morfax.motion.arrays import Array
+from morfax.tracer.following.faint_corner import TipPose
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.kernel import HOME_COSINE
 from morfax.tracer.head.stance import Stance
@@ -57,6 +58,11 @@ class WayHome:
             if over_home and near > 0 and math.cos(ahead_rad - heading) > HOME_COSINE:
                 return [*distinct[:k], np.vstack([way[:near], home])]
         return None
+
+    @property
+    def tip(self) -> TipPose:
+        """Home as an end of the line."""
+        return TipPose(self.stance.place_mm, self.stance.heading_rad + math.pi)
 
     def is_across(self, incoming: Leg, end_mm: float, within_mm: float) -> bool:
         """Whether home is an open end that lies across a gap, straight ahead of the end of a leg."""

@@ -49,7 +49,9 @@ class Led:
     @classmethod
     def along(cls, leaders: NDArray[np.int8]) -> Led:
         """The runs of a leader for each position."""
-        firsts = np.flatnonzero(np.diff(leaders, prepend=-1))
+        # bytes are compared: differences of figures would take eight times the room
+        changes = 1 + np.flatnonzero(leaders[1:] != leaders[:-1])
+        firsts = np.append(0, changes)[: len(leaders)]
         return cls(tuple(firsts.tolist()), tuple(leaders[firsts].tolist()))
 
     def turned_round(self, count: int) -> Led:

@@ -56,12 +56,12 @@ class Trail:
         self._boxed = 0
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Trail:
-        """A trail that goes on by itself. The places so far, which are never changed, are shared: it has no
-        room for more, and makes its own.
+        """A trail that goes on by itself. The places so far and their boxes, which are never changed, are
+        shared: it has no room for more, and makes its own.
         """
         copied = Trail(self._places[0], self.step_mm)
         copied._places, copied._count = self._places[: self._count], self._count
-        copied._boxes, copied._boxed = self._boxes.copy(), self._boxed
+        copied._boxes, copied._boxed = self._boxes[: self._boxed], self._boxed
         return copied
 
     def add(self, positions: Array) -> None:
@@ -75,7 +75,7 @@ class Trail:
     def marks(self, room: int) -> Marks:
         """The trail for a kernel, with room for so many more places."""
         while self._count + room > len(self._places):
-            self._places, self._boxes = _longer(self._places), _longer(self._boxes)
+            self._places = _longer(self._places)
         count = np.array([self._count])
         return Marks(self._places, count, self._boxes, self._boxed, self.step_mm)
 
@@ -88,6 +88,8 @@ class Trail:
         """Have a box about each full set of places."""
         full = self._count // BOXED
         groups = self._places[self._boxed * BOXED : full * BOXED].reshape(-1, BOXED, 2)
+        while full > len(self._boxes):
+            self._boxes = _longer(self._boxes)
         if len(groups):
             self._boxes[self._boxed : full, :2] = groups.min(axis=1)
             self._boxes[self._boxed : full, 2:] = groups.max(axis=1)
@@ -152,7 +154,7 @@ class Trail:
 
 def _longer(rows: Array) -> Array:
     """The same rows with room for as many more, which takes no memory before it is used."""
-    longer = np.empty((2 * len(rows), rows.shape[1]))
+    longer = np.empty((max(2 * len(rows), 1), rows.shape[1]))
     longer[: len(rows)] = rows
     return longer
 

@@ -20,11 +20,11 @@ import numpy as np
 
 from morfax.motion.arrays import Array, bounds
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.ink.crossing import Crossing, are_side_by_side
+from morfax.tracer.ink.crossing import Crossing
 from morfax.tracer.ink.felt_lines import end_leg, trimmed, without_waist
 from morfax.tracer.ink.lifted import FARTHEST_WIDTHS
 from morfax.tracer.ink.net import Inner, Net
-from morfax.tracer.ink.partners import Pair
+from morfax.tracer.ink.partners import Pair, are_side_by_side
 from morfax.tracer.ink.swelling import TWO
 from morfax.tracer.limits import LONGER_WIDTHS
 from morfax.tracer.sensing.leg import TURNS_OFF, Leg, turn

@@ -29,8 +29,8 @@ from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
+from morfax.tracer.ink.crossing_ink import WaysOn
 from morfax.tracer.ink.crossing_on_ink import (
-    WaysOn,
     is_explained,
     is_one_with_a_tip,
     told_by_ink,
@@ -41,6 +41,7 @@ from morfax.tracer.ink.net import COVERED, Inner
 from morfax.tracer.ink.partners import (
     CORNERED,
     Pair,
+    are_side_by_side,
     meeting_place,
     partners,
     turnings,
@@ -50,19 +51,18 @@ from morfax.tracer.ink.redrawn_crossing import redrawn
 from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
 from morfax.tracer.junctions.planner import Planner
 from morfax.tracer.limits import WIDER
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.strands import stretches_over
 
 # of a stretch within a crossing, along which ways go; by trial on drawings of nets
 COVERED_SHARE = 0.7
-# two lines that come to a tip side by side are one, or two whose ends are so many widths apart: within one
-# width their pens' rounds overlap, and legs that have felt each other tell ends 1.0 apart
-TIP, APART = math.radians(60), 1.2
+# widths between the ends of two lines that come to a tip: nearer, they are one. Within one width their pens'
+# rounds overlap, and legs that have felt each other tell ends 1.0 apart
+APART = 1.2
 LONG = 15.0  # widths: in ink that reaches further lines run together, and their rims tell them
 NOWHERE = np.empty((0, 2))
-ENDED = 20  # places of the end of a line
 
 
 @dataclass
@@ -79,6 +79,7 @@ class Crossing:
     inked: list[Inner] = field(default_factory=list)
     drawn: WaysOn | None = None  # where it is told by the ink
     _covers: dict[int, bool] = field(default_factory=dict)
+    _drawn: dict[Hashable, Crossing] = field(default_factory=dict)  # as its lines may go on
 
     @property
     def key(self) -> Hashable:
@@ -113,8 +114,19 @@ class Crossing:
         return told_by_ink(self, WaysOn(tuple(self._by_turnings), {}))
 
     def as_drawn(self, drawn: WaysOn) -> Crossing:
-        """The same crossing with its lines going on in another way."""
-        return replace(self, drawn=drawn, _covers={})
+        """The same crossing with its lines going on in another way; one for each way to go on."""
+        corners = tuple((pair, places.tobytes()) for pair, places in drawn.corners.items())
+        key = drawn.pairs, corners
+        if key not in self._drawn:
+            self._drawn[key] = replace(self, drawn=drawn, _covers={}, _drawn={})
+        return self._drawn[key]
+
+    @cached_property
+    def _solved(self) -> Crossing:
+        """The same as it is drawn: its ways and ends were made when they were held against its ink."""
+        solved = self.as_drawn(self.solution)
+        self._drawn.clear()
+        return solved
 
     @cached_property
     def is_explained(self) -> bool:
@@ -209,6 +221,8 @@ class Crossing:
     @cached_property
     def ways_mm(self) -> list[Array]:
         """The ways of the lines that pass, from clean end to clean end, (n, 2) mm."""
+        if self.drawn is None:
+            return self._solved.ways_mm
         return [self.way(pair) for pair in self.pairs]
 
     @cached_property
@@ -221,6 +235,8 @@ class Crossing:
         """How far beyond their clean ends legs without a partner end that come onto others, mm."""
         if not self.pairs:
             return self._tips
+        if self.drawn is None:
+            return self._solved.ends_mm
         paired = {leg for pair in self.pairs for leg in pair}
         alone = [k for k in range(len(self.legs)) if k not in paired]
         loose = [Loose(self.views[k], self.legs[k], self.near[k]) for k in alone]
@@ -236,13 +252,6 @@ class Crossing:
         on_mm = float((meeting_place(self.legs) - leg.end_mm) @ direction(leg.heading_rad))
         inked_mm = reach_of_ink(self.views[k], leg, max(on_mm, 0.0) + leg.width_mm)
         return max(0.0, on_mm if inked_mm is None else min(on_mm, inked_mm))
-
-    @property
-    def ended_mm(self) -> list[Array]:
-        """Places of the lines that end in it, from their clean ends on, (n, 2) mm."""
-        paired = {leg for pair in self.pairs for leg in pair}
-        alone = [k for k in range(len(self.legs)) if k not in paired]
-        return [self.legs[k].at(np.linspace(0.0, self.end_mm(k), ENDED)) for k in alone]
 
     @cached_property
     def _tips(self) -> dict[int, float]:
@@ -286,8 +295,3 @@ class Crossing:
         stands = one.end_mm, one.heading_rad
         planner = Planner(view, stands, Trail(one.end_mm, view.step_mm), self.settings)
         return np.vstack(way_through(planner, (one, other), None, self.ink))
-
-
-def are_side_by_side(one: Leg, other: Leg) -> bool:
-    """Whether two legs come in side by side, so that they may make a tip."""
-    return abs(turn(one.heading_rad, other.heading_rad)) < TIP

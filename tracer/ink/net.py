@@ -18,6 +18,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from morfax.motion.neighbours import pairs_within
+from morfax.tracer.following.faint_corner import TipPose, faint_corner
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.both_lines import strands
 from morfax.tracer.ink.doubled import LEAST_WIDTHS, SWELLS, spread
@@ -27,7 +28,6 @@ from morfax.tracer.ink.graph import RING
 from morfax.tracer.ink.run import LEAST_PLACES, Run
 from morfax.tracer.ink.stretches import FeltSheet, with_width
 from morfax.tracer.sensing.leg import FACING, Leg, turn
-from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on drawings of nets.
@@ -216,7 +216,7 @@ class _Same:
 
 
 def _bridge_gaps(net: Net, settings: Settings) -> None:
-    """Make one junction of two free ends that face each other across a gap."""
+    """Make one junction of two free ends that face each other across a gap, or about a faint corner."""
     ends = [
         (n, last) for n, line in enumerate(net.lines) for last in (False, True)
         if line.junctions[last] in net.free_ends
@@ -227,12 +227,13 @@ def _bridge_gaps(net: Net, settings: Settings) -> None:
     pitch_mm = legs[0].width_mm if not net.lines else net.lines[0].runs[0].view.pitch_mm
     reach_mm = max(settings.gap_mm, 2.5 * pitch_mm) + 4 * max(leg.width_mm for leg in legs)
     near = pairs_within([leg.end_mm for leg in legs], reach_mm).tolist()
-    lifted = [
-        leg.at(end_of(_view_at(net, end), leg) or 0.0)
-        for leg, end in zip(legs, ends, strict=True)
-    ]
+    views = [_view_at(net, end) for end in ends]
+    tips = [TipPose.of(view, leg) for view, leg in zip(views, legs, strict=True)]
     found = sorted(
-        (math.dist(lifted[a], lifted[b]), a, b) for a, b in near if _faces(legs[a], legs[b])
+        (math.dist(tips[a].place_mm, tips[b].place_mm), a, b)
+        for a, b in near
+        if _faces(legs[a], legs[b])
+        or (views[a].grainy and faint_corner(views[a], tips[a], tips[b]) is not None)
     )
     taken = set[int]()
     for apart_mm, a, b in found:

@@ -38,6 +38,7 @@ from morfax.tracer.tangles.strands import stretches_over
 
 # All limits below were chosen by trial on drawings of nets.
 SMOOTHLY = math.radians(22)  # a way that turns by no more between two legs is smooth
+TIP = math.radians(60)  # between two legs that come in side by side: they may make a tip
 # widths from where all legs meet, or of how far apart their ends are: two that meet there may be a corner
 AT_VERTEX, OF_WIDE = 0.6, 0.07
 # a corner counts as turning so much: a smooth way is likelier. How far it turns tells next to nothing of
@@ -99,6 +100,17 @@ def likeliest(costs: Array, count: int) -> list[tuple[Pair, ...]]:
 def partners(costs: Array) -> list[Pair]:
     """The pairs of legs that are one line, by their turnings; of an odd number one is left."""
     return list(likeliest(costs, 1)[0])
+
+
+def are_side_by_side(one: Leg, other: Leg) -> bool:
+    """Whether two legs come in side by side, so that they may make a tip."""
+    return abs(turn(one.heading_rad, other.heading_rad)) < TIP
+
+
+def pairs_cost(pairs: Sequence[Pair], costs: Array) -> float:
+    """What it costs to pair some legs so, and to leave the others without partners, rad²."""
+    alone = len(costs) - 2 * len(pairs)
+    return _cost(tuple(pairs), costs) + 0.5 * NOT_JOINED * alone
 
 
 def meeting_place(legs: Sequence[Leg]) -> Array:

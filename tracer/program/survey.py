@@ -174,7 +174,7 @@ def _of_patch(
     sheet, stroke = setup.sheet, contour.stroke
     ends = list(stances_at(view, stroke.ends_mm(), setup.settings.gap_mm))
     begins_at = [
-        found.place_mm
+        found
         for found in drawn
         if from_reference(found.place_mm, ends) and found.is_sure(sheet, stroke.patch)
     ]
@@ -189,8 +189,18 @@ def _of_patch(
         is_solid=bool(sheet.are_solid[stroke.patch]),
         can_begin=_can_begin(setup, contour, view, starts_mm),
         is_small=contour.reach_mm < selection.LETTER_MM,
-        reference_mm=begins_at[0] if begins_at else None,
+        reference_mm=_begins_at(setup, contour, begins_at[0]) if begins_at else None,
     )
+
+
+def _begins_at(setup: Setup, contour: Contour, drawn: Reference) -> Place | None:
+    """The place of a reference point from which a line begins; None of a ring from which it leads to no
+    contour (see `trace`), so that the ring is a hole.
+    """
+    if drawn.kind != "ring" or setup.sheet.bare_rings:
+        return drawn.place_mm
+    line = followed_from_an_end(setup, contour.stroke, contour.number)
+    return line.reference_mm if line is not None else None
 
 
 def _kind(by_ends: Kind, loops: int) -> Kind:

@@ -14,7 +14,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from morfax.motion.faults import LineFault
+from morfax.tracer.drawing.components import INK
+from morfax.tracer.drawing.deviation import darkness_across
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Stroke
 from morfax.tracer.following.attempts import Attempts, longest_mm
@@ -103,6 +107,8 @@ def followed(
     stances = put_down(setup.sheet, start_mm, setup.settings, setup.operator.reference_mm)
     best, others = best_of(Target(setup, start_mm, number), stances, other_turns)
     assert best is not None  # put_down gives a stance, or raises
+    if _is_from_hole(setup, best):
+        return followed(_without_references(setup), start_mm, number, other_turns)
     if others:
         raise _several_lead([best, *others])
     found = round_ring(setup, best) if best.ending in ("lost", "joined") else None
@@ -115,7 +121,25 @@ def followed_from_an_end(setup: Setup, stroke: Stroke, number: int = 1) -> Line 
     """The head's best run from the open ends of a line; None without open ends, or if lost from each."""
     stances = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
     best, _ = best_of(Target(setup, number=number), iter(stances))
+    if best is not None and _is_from_hole(setup, best):
+        return followed_from_an_end(_without_references(setup), stroke, number)
     return best if best is not None and best.ending != "lost" else None
+
+
+def _is_from_hole(setup: Setup, line: Line) -> bool:
+    """Whether a line begins at a ring that is a hole of the part, and no reference point: it leads to no
+    contour, and nobody says that a program is drawn.
+    """
+    if line.reference_mm is None or line.ending != "ended" or setup.operator.means_program:
+        return False
+    place = np.array([line.reference_mm])
+    middle = darkness_across(setup.sheet.drawing, place, np.zeros(1), np.zeros(1)).item()
+    return bool(middle < INK)  # a cross has ink in its middle
+
+
+def _without_references(setup: Setup) -> Setup:
+    """The set-up on a sheet whose crosses and rings are no reference points."""
+    return replace(setup, sheet=replace(setup.sheet, has_references=False))
 
 
 def followed_through(setup: Setup, stance: Stance) -> list[Followed]:

@@ -70,6 +70,13 @@ def bend(pose, x, y, t):  # type: ignore[no-untyped-def]
     return a * x0 + b * (x0 + reach * c) + d * x, a * y0 + b * (y0 + reach * s) + d * y
 
 
+@njit(cache=True, _nrt=False)
+def bend_at(pose, x, y, shares, places):  # type: ignore[no-untyped-def]
+    """Fill in the places (n, 2) at shares (n,) of a bend."""
+    for k in range(len(shares)):
+        places[k, 0], places[k, 1] = bend(pose, x, y, shares[k])
+
+
 @njit(cache=True)
 def cubic(pose, other, t):  # type: ignore[no-untyped-def]
     """Place at a share t of the cubic between two poses that face each other.

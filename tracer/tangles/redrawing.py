@@ -22,6 +22,9 @@ Pair = tuple[int, int]
 
 # Chosen by trial on the test drawings; VERTEX is a misfit, STROKE and DOUBLED are vertices.
 VERTEX = 0.03  # what a vertex costs: a wrong stretch of 3 % of the line's width
+IN_GRAIN = (
+    5.0  # times as much it costs in ink with grain, which leaves so much more unexplained
+)
 CLEAR = 0.25  # a misfit up to which a redrawing explains the ink
 STROKE = 2.5
 DOUBLED = 4.0  # a vertex at which a strand goes back on itself: a tick

@@ -33,6 +33,7 @@ from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import pen, settling
 from morfax.tracer.tangles.redrawing import (
     DOUBLED,
+    IN_GRAIN,
     NONE,
     STROKE,
     VERTEX,
@@ -85,6 +86,11 @@ class Sketch:
         ink = pen.Ink(tangle.places_mm, tangle.darkness, known, 0.5 * width, softness)
         return cls(view, tangle, np.array(poses), ink, tangle.area_mm2 / len(known) / width**2)
 
+    @property
+    def vertex(self) -> float:
+        """What a vertex costs, as misfit."""
+        return IN_GRAIN * VERTEX if self.view.grainy else VERTEX
+
     def _drawn(self, way: Redrawing) -> tuple[pen.Drawn, Array]:
         """A redrawing as the pen takes it, and its vertices (n, 2)."""
         ends = self.poses[np.array(way.pairs, np.int64).reshape(-1, 2)]
@@ -108,7 +114,7 @@ class Sketch:
         # a leg that is left over has its stroke
         effort = STROKE * (len(way.strokes) - len(self.poses) % 2)
         effort += sum(map(len, way.vertices)) + DOUBLED * tips
-        return way.moved(vertices, misfit, misfit + VERTEX * effort)
+        return way.moved(vertices, misfit, misfit + self.vertex * effort)
 
     def plainest(self, pairs: tuple[Pair, ...]) -> Redrawing:
         """The legs joined with no vertex, with one where they meet, or with those where their ink ends."""
@@ -185,7 +191,7 @@ class Sketch:
         """
         way = self.settled(way)
         for _ in range(MOST_ADDED):
-            found = self._left_over(way) if way.misfit > VERTEX else None
+            found = self._left_over(way) if way.misfit > self.vertex else None
             if found is None:
                 break
             more = with_more(way, *found)

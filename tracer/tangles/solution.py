@@ -27,7 +27,7 @@ from morfax.tracer.limits import LONGER_WIDTHS, TIP_RAD
 from morfax.tracer.marks.marks import longest_mm
 from morfax.tracer.sensing.leg import TURNS_BACK, TURNS_OFF, Leg, goes_straight, turn
 from morfax.tracer.tangles.likeness import Patch, Pen
-from morfax.tracer.tangles.redrawing import CLEAR, NONE, VERTEX, Redrawing
+from morfax.tracer.tangles.redrawing import CLEAR, NONE, Redrawing
 from morfax.tracer.tangles.sketch import Sketch, redrawings
 from morfax.tracer.tangles.strands import as_drawn, aside_mm, same_line, stretches_over
 from morfax.tracer.tangles.uncrossed import uncrossed
@@ -145,7 +145,7 @@ def _by_leg(sketch: Sketch, approach: Approach, planned: float) -> dict[int, Red
         leg = way.partner
         if leg is None or _is_spent(sketch, approach.trail, leg):
             continue
-        laboured = way.effort > FEW * VERTEX and _leads_to(sketch, approach.plan, leg)
+        laboured = way.effort > FEW * sketch.vertex and _leads_to(sketch, approach.plan, leg)
         if way.misfit < (CLEAR if laboured else clear):
             best.setdefault(leg, way)
     return best
@@ -193,7 +193,7 @@ def _stands(sketch: Sketch, way: Redrawing, plan: Plan | None) -> bool:
             return True
         return straight and _leads_to(sketch, plan, 0) and _is_mark(sketch, way, plan, SLACK)
     # 2. any other
-    if planned < way.misfit + VERTEX * (1 + len(way.own)):
+    if planned < way.misfit + sketch.vertex * (1 + len(way.own)):
         return True
     return straight and _is_mark(sketch, way, plan, LEAST_MISFIT)
 
@@ -256,7 +256,7 @@ def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan, slack: float) -> bool:
         return False
     if (sketch.view.darkness_along(np.vstack(plan.stretches)) < sketch.view.level).any():
         return False
-    if way.misfit > CLEAR or _is_scribble(way, beside_mm, _width(sketch)):
+    if way.misfit > CLEAR or _is_scribble(sketch, way, beside_mm):
         return True
     bare = Redrawing(way.pairs, tuple(NONE for _ in way.pairs))
     marked = sketch.improved(bare, marks_only=True)
@@ -267,9 +267,12 @@ def _is_mark(sketch: Sketch, way: Redrawing, plan: Plan, slack: float) -> bool:
     return marked.misfit < way.misfit and marked.cost < way.cost
 
 
-def _is_scribble(way: Redrawing, beside_mm: float, width_mm: float) -> bool:
+def _is_scribble(sketch: Sketch, way: Redrawing, beside_mm: float) -> bool:
     """Whether a redrawing has many vertices that reach nowhere, and leaves ink all the same."""
-    laboured = way.effort > BLOT_VERTICES * VERTEX and way.misfit > WELL_MM2 / width_mm**2
+    width_mm = _width(sketch)
+    laboured = (
+        way.effort > BLOT_VERTICES * sketch.vertex and way.misfit > WELL_MM2 / width_mm**2
+    )
     return laboured and beside_mm < LONGER_WIDTHS * width_mm
 
 

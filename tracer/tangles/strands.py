@@ -93,7 +93,9 @@ def _bend(place: Array, heading: float, vertex: Array) -> Array:
     """Places (n, 2) along the bend from a leg's end to a vertex."""
     pose = np.array([place[0], place[1], heading])
     shares = np.linspace(0, 1, _count(place, vertex))
-    return np.array([pen.bend(pose, vertex[0], vertex[1], t) for t in shares])
+    places = np.empty((len(shares), 2))
+    pen.bend_at(pose, vertex[0], vertex[1], shares, places)
+    return places
 
 
 def _straight(start: Array, end: Array) -> Array:

@@ -51,7 +51,6 @@ class CheckingReader(GcodeReader):
         self.tool = ToolState(machine.tool)
         self.on: list[bool] = []  # for each move, whether the tool runs
         self.working: list[bool] = []  # and is in the work, where there is no Z
-        self.said: list[tuple[int, str]] = []  # words of the tool, before which move
         self.motion: Code | None = None
         self.plane, self.turns = LEVEL, 1
         self.inverse_time = self.absolute_centres = False
@@ -68,8 +67,7 @@ class CheckingReader(GcodeReader):
         self._modes(present, values, words)
         self.tool.obey(values | dict.fromkeys(words.computed & {"S"}, math.inf), present)
         if any(letter == "M" for letter, _ in named):
-            text = " ".join(map("".join, zip(words.letters, words.numbers, strict=True)))
-            self.said.append((first, text))
+            self.note(words.letters, words.numbers)
         try:
             self._obey_places(present, values)
         except ProgramFault as fault:

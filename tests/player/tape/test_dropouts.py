@@ -134,3 +134,23 @@ def test_from_a_fault_one_goes_on_by_hand(tape: Path) -> None:
         play(file, resume_at_s=3.05)
     with pytest.raises(ValueError, match="cannot be resumed at 99"):
         play(file, resume_at_s=99, start_mm=(0, 0))
+
+
+@pytest.mark.parametrize("missing_s", [0.05, 0.2, 1.0])
+def test_a_cut_is_told_as_one(tape: Path, tmp_path: Path, missing_s: float) -> None:
+    """It looks like a dropout as long as the filter, whatever is missing."""
+    frames, rate_hz = soundfile.read(tape, dtype="int16")
+    with soundfile.SoundFile(tape) as sound:
+        text = sound.comment
+    at = len(frames) // 3
+    cut = tmp_path / "cut.wav"
+    with soundfile.SoundFile(cut, "w", rate_hz, frames.shape[1], "PCM_16") as sound:
+        sound.comment = text
+        sound.write(np.concatenate([frames[:at], frames[at + round(missing_s * rate_hz) :]]))
+    with pytest.raises(LockFault, match=r"ms at .* s \(or the tape is cut there"):
+        join(play(cut))
+
+
+def test_a_dropout_longer_than_the_filter_is_no_cut(tape: Path) -> None:
+    with pytest.raises(LockFault, match=r"was lost for 2\d\.\d ms at \d\.\d* s, last"):
+        join(play(holed(tape, 25.0, slice(1, 2))))

@@ -162,6 +162,25 @@ def test_plain_paper_stays_as_it_is_and_a_drawn_grid_is_kept() -> None:
     assert np.mean(kept_squares.darkness > 0.5) > 0.05
 
 
+@pytest.mark.parametrize("rows", [1, 3, 6])
+def test_a_sheet_of_few_rows_has_no_printed_lines(rows: int) -> None:
+    """Of a strip that is lower than what is looked at of other sheets."""
+    darkness = np.zeros((rows, 600), np.float32)
+    darkness[rows // 2, 50:550] = 1.0
+    assert families(darkness, PITCH_MM) == []
+    assert families(np.ascontiguousarray(darkness.T), PITCH_MM) == []
+
+
+def test_of_ruled_paper_with_a_drawn_table_only_what_is_left_out_is_named() -> None:
+    """Lines 8 mm apart go from edge to edge; seven upright ones, 9 mm apart, end before the paper does."""
+    levels = on_paper(LINE, (8.0,), 0.9)
+    low, high = round(5 * TO_PX), round(61 * TO_PX)
+    for mm in np.arange(6.0, 61.0, 9.0):
+        levels[low:high, round(mm * TO_PX) : round(mm * TO_PX) + 3] = 105
+    (note,) = opened(levels).notes
+    assert note.startswith("the paper is ruled, with lines 8.00 mm apart; they are left out")
+
+
 def test_printed_lines_that_are_not_there_are_refused() -> None:
     with pytest.raises(DrawingFault, match="no printed lines are found"):
         opened(on_paper(LINE, (), 0.0), "squared")

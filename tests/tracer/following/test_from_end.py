@@ -59,6 +59,7 @@ def test_the_head_runs_to_the_end_of_the_ink_or_to_where_it_knew_its_line(
         view=None,
         settings=Settings(),
         _home=SimpleNamespace(is_across=lambda *_: False),
+        _round_faint_corner=lambda *_: None,
         _lost=lambda _: None,
         _end=lambda _, at_mm, joined: (at_mm, joined),
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,18 @@ def test_each_leader_has_the_way_to_its_positions() -> None:
     runs = [(leader, places[[0, -1], 0].tolist()) for leader, places in LED.runs(STEPS)]
     assert runs == [(STATIONS, [0, 1]), (CELL, [1, 4]), (MEMORY, [4, 5])]
     assert Led.along(LED.of(6)) == LED
+    assert Led.along(LED.of(0)) == Led()
+
+
+def test_leaders_are_compared_as_bytes() -> None:
+    """Their differences took eight times the room of a coast's leaders, and a quarter of a second."""
+    leaders = np.repeat(np.array([CELL, MEMORY], np.int8), 100_000)
+    tracemalloc.start()
+    led = Led.along(leaders)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert led == Led((0, 100_000), (CELL, MEMORY))
+    assert most < 2 * leaders.nbytes
 
 
 def test_the_way_back_has_the_same_leaders() -> None:

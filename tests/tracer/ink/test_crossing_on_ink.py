@@ -7,8 +7,15 @@ import pytest
 import shapely
 
 from morfax.tracer.following.line import Line
+from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink import crossing
+from morfax.tracer.ink.crossing import Crossing
+from morfax.tracer.ink.lifted import Loose
 from morfax.tracer.program.trace_ink import trace_ink
-from tests.tracer.inked import UM, Points, inked, polyline
+from morfax.tracer.sensing import photocell
+from morfax.tracer.sensing.leg import leg_of
+from morfax.tracer.sensing.view import View
+from tests.tracer.inked import UM, WIDTH_MM, Points, inked, polyline
 
 # a stroke from its line, at most: corners in others' ink are three times as far off as alone
 OFF_MM = 60 * UM
@@ -43,6 +50,15 @@ TIPS = {
         polyline((21.4, 4.1), (18.6, 35.9)),
     ],
     "within": [polyline((33.2, 14.8), (20, 19.6), (31.5, 27.6))],
+    # the ink tells of two ends, or of two lines that bend, as well as of a corner
+    "beside": [
+        polyline((15.7, 33.7), (20, 20.36), (32.4, 26.9)),
+        polyline((18.6, 7.6), (23.6, 33)),
+    ],
+    "below the middle": [
+        polyline((14.5, 32.8), (20, 19.89), (25.4, 32.8)),
+        polyline((20.6, 7.3), (21.4, 33.3)),
+    ],
 }
 
 
@@ -50,6 +66,44 @@ TIPS = {
 @pytest.mark.parametrize("tip", TIPS)
 def test_a_corner_in_the_ink_of_another_line_is_its_lines(tip: str, seed: int) -> None:
     assert max(each_by_a_stroke([ACROSS, *TIPS[tip]], seed)) < OFF_MM
+
+
+def test_where_lines_end_in_ink_is_asked_once_of_each_way_to_go_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A third of all that was asked on a page of gears had been asked before."""
+    asked, ends_in_ink_mm = list[bytes](), crossing.ends_in_ink_mm
+
+    def counted(loose: list[Loose], lines_mm: Points, **rest: bool) -> list[float | None]:
+        legs = [line.leg.end_mm.tobytes() for line in loose]
+        asked.extend([b"".join([*legs, lines_mm.tobytes()])] if loose else [])
+        return ends_in_ink_mm(loose, lines_mm, **rest)
+
+    monkeypatch.setattr(crossing, "ends_in_ink_mm", counted)
+    _strokes([ACROSS, polyline((14, 4), (20, 20))], 1)
+    counts = len(asked), len(set(asked))
+    assert counts == (1, 1)
+
+
+def test_two_corners_across_each_other_are_told_though_no_line_passes() -> None:
+    """All legs turn, and what lies between them is too short to be felt: their corners tell where ink is."""
+    corners = np.array([(21.0, 21.1), (20.0, 20.0)])
+    drawing = inked(
+        polyline((5, 21.1), corners[0], (21, 5)), polyline((36, 20), corners[1], (20, 5))
+    )
+    view = View(photocell.behind_aperture(drawing, 0.1), WIDTH_MM)
+    # each begins so far from where it ends, that is before it comes into another's ink
+    begun = [((10, 21.1), 0.0), ((31, 20), np.pi), ((21, 10), np.pi / 2), ((20, 10), np.pi / 2)]
+    felt = [
+        view.feel(np.array(place, float), heading, long_mm)
+        for (place, heading), long_mm in zip(begun, (10.6, 9.5, 9.5, 10.0), strict=True)
+    ]
+    legs = [leg_of(seen, True, view.leg_mm) for seen in felt]
+    views, near = [view] * len(legs), [seen[:, :2] for seen in felt]
+    told = Crossing(legs, views, Settings(), near).solution
+    assert told.pairs == ((0, 2), (1, 3))
+    vertices = np.vstack([told.corners[pair] for pair in told.pairs])
+    assert np.hypot(*(vertices - corners).T).max() < OFF_MM
 
 
 @pytest.mark.parametrize("phase", [0.3618, 0.3621])

@@ -12,7 +12,7 @@ from morfax.motion.plane import direction, left_of
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.ink import crossing
 from morfax.tracer.ink.crossing import Crossing
-from morfax.tracer.ink.crossing_on_ink import WaysOn
+from morfax.tracer.ink.crossing_ink import WaysOn
 from morfax.tracer.program.trace_ink import trace_ink
 from tests.tracer.inked import Points, inked
 

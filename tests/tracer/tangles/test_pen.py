@@ -30,6 +30,14 @@ def test_a_way_is_as_far_off_as_its_nearest_piece_however_long_it_is(pieces: int
     assert np.abs(pen.away_from(places, way) - true_mm).max() < 0.001 * UM
 
 
+def test_a_bend_is_drawn_place_by_place() -> None:
+    pose, shares = np.array([1.0, 2.0, 0.3]), np.linspace(0, 1, 40)
+    places = np.empty((40, 2))
+    pen.bend_at(pose, 4.0, 2.5, shares, places)
+    assert places.tolist() == [list(pen.bend.py_func(pose, 4.0, 2.5, t)) for t in shares]
+    assert places[[0, -1]].tolist() == [[1.0, 2.0], [4.0, 2.5]]
+
+
 @pytest.mark.parametrize("reach_mm", [0.01, 0.3, 2.0, 100.0])
 def test_places_within_a_reach_are_those_whose_distance_is_less(reach_mm: float) -> None:
     way = spiral(4 * pen.BOXED)

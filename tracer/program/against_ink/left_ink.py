@@ -17,6 +17,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.neighbours import crowds
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.strokes import Stroke
 
@@ -44,7 +45,7 @@ class LeftInk:
         stroke, near = self.stroke, self.away_mm < self.beside_mm
         if others_mm is not None:
             near |= others_mm < self.beside_mm
-        # all of it, as a rule: nothing to weigh, and scipy is not imported
+        # all of it, as a rule: nothing to weigh
         share = 0.0 if near.all() else float(np.average(~near, weights=self._weighed()))
         return replace(
             stroke,
@@ -56,12 +57,6 @@ class LeftInk:
     def _weighed(self) -> Array:
         """What each middle place counts for: a line along the rows has two abreast, a sloping one has one."""
         if self._weights is None:
-            from scipy.spatial import cKDTree
-
-            stroke = self.stroke
-            tree = cKDTree(stroke.middles_mm)
-            crowded = tree.query_ball_point(
-                stroke.middles_mm, stroke.width_mm, return_length=True
-            )
-            self._weights = 1 / np.asarray(crowded, float)
+            lower, higher = crowds(self.stroke.middles_mm, self.stroke.width_mm)
+            self._weights = 1 / (1.0 + lower + higher)
         return self._weights

@@ -63,10 +63,10 @@ def laid(setup: Setup, line: Line, bays: Sequence[Bay], round_mm: float) -> Line
         line = _begun_at(line, begin_mm)
         bays = [bay.moved(-begin_mm, round_mm) for bay in bays]
     # 2. the way from bay to bay, and the runs along their rules
-    at = 0
+    at, come_mm = 0, lengths_mm(line.places_mm)
     ways, leaders = list[Array](), list[NDArray[np.int8]]()
     for bay in sorted(bays, key=lambda bay: bay.first_mm):
-        splice = _run(setup, line, bay)
+        splice = _run(setup, line, bay, come_mm)
         ways += [line.xy_mm[at : splice.first + 1], splice.way_mm]
         leaders.append(line.led.of(splice.first + 1 - at, at))
         leaders.append(np.full(len(splice.way_mm), REDRAWN, np.int8))
@@ -78,14 +78,13 @@ def laid(setup: Setup, line: Line, bays: Sequence[Bay], round_mm: float) -> Line
 
 def _begun_at(line: Line, begin_mm: float) -> Line:
     """A closed line begun at a place along it."""
-    count, at = len(line.xy_mm), _position(line, begin_mm)
+    count, at = len(line.xy_mm), _position(line, lengths_mm(line.places_mm), begin_mm)
     led = Led.along(np.roll(line.led.of(count), -at))
     return replace(line, xy_mm=np.roll(line.xy_mm, -at, axis=0), led=led)
 
 
-def _position(line: Line, at_mm: float) -> int:
-    """The position of a line at a length along its thinned places; not its first one."""
-    come_mm = lengths_mm(line.places_mm)
+def _position(line: Line, come_mm: Array, at_mm: float) -> int:
+    """The position of a line at a length along its thinned places, (n,) mm from its start; not its first."""
     at = round(THINNED * float(np.interp(at_mm, come_mm, np.arange(len(come_mm)))))
     return min(max(at, 1), len(line.xy_mm) - 1)
 
@@ -100,10 +99,12 @@ class Splice(NamedTuple):
     way_mm: Array
 
 
-def _run(setup: Setup, line: Line, bay: Bay) -> Splice:
-    """The head's run along a bay's rule from memory, as fast as it comes and goes on."""
+def _run(setup: Setup, line: Line, bay: Bay, come_mm: Array) -> Splice:
+    """The head's run along a bay's rule from memory, as fast as it comes and goes on; how far it has come at
+    the line's thinned places (n,), mm.
+    """
     xy_mm = line.xy_mm
-    first, last = _position(line, bay.first_mm), _position(line, bay.last_mm)
+    first, last = (_position(line, come_mm, mm) for mm in (bay.first_mm, bay.last_mm))
     aperture_mm, width_mm = setup.settings.aperture_mm, 2 * bay.rule.half_mm
     about, reach_mm = xy_mm[first : first + 1], ABOUT_WIDTHS * width_mm
     view = view_about(setup.sheet, aperture_mm, width_mm, about, reach_mm)
@@ -121,7 +122,8 @@ def _run(setup: Setup, line: Line, bay: Bay) -> Splice:
     end_mm_s = float(np.hypot(*(xy_mm[last] - xy_mm[last - 1]))) * MOTION_RATE_HZ
     carriage.run(bay.rule.stretches(), end_mm_s, REDRAWN)
     way_mm = carriage.positions_mm[1:]
-    after, beyond = (_position(line, bay.last_mm + aside * EVERY_MM) for aside in (-1, 1))
+    about_mm = (bay.last_mm + aside * EVERY_MM for aside in (-1, 1))
+    after, beyond = (_position(line, come_mm, mm) for mm in about_mm)
     after = max(after, first + 1)
     nearest = np.hypot(*(xy_mm[after : beyond + 1] - way_mm[-1]).T)
     return Splice(first, after + int(np.argmin(nearest)) + 1, way_mm)

@@ -185,7 +185,7 @@ class _Corners(WayInk):
     def _along_legs(self, own: Array, leg: int) -> Rule | None:
         """The rule along both legs of a stretch (n, 2) mm to where these meet, if the way leaves them."""
         width_mm = self.line.width_mm
-        corner = _met(own[: leg + 1], own[: -leg - 2 : -1], BENT * width_mm)
+        corner = met(own[: leg + 1], own[: -leg - 2 : -1], BENT * width_mm)
         if corner is None or nearest_mm(corner[None], own)[0] > width_mm:
             return None
         rule = folding_rule.sharp(own[0], own[-1], corner[None], 0.5 * width_mm)
@@ -212,7 +212,7 @@ def _turns(way: Array, half: int) -> list[int]:
     return np.flatnonzero((turn == most) & (turn > STRAIGHT)).tolist()
 
 
-def _met(before: Array, after: Array, bent_mm: float) -> Array | None:
+def met(before: Array, after: Array, bent_mm: float) -> Array | None:
     """Where two legs (n, 2) mm, each towards a corner, meet ahead of both, (x, y) mm; None if one of them is
     bent by more, or both lie in line.
     """

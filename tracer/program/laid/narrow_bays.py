@@ -36,6 +36,7 @@ from morfax.tracer.program.against_ink.unexplained import (
 )
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.cut_corners import with_corners
+from morfax.tracer.program.laid.grain_corners import with_grain_corners
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
     LEGS,
@@ -108,7 +109,7 @@ def _mended(
         own, before = own.mended([relaid.line for relaid in mended]), left
         left = left_by(setup, own)
         news = News.of(mended, before, left)
-    uncut = with_corners(setup, own)
+    uncut = with_grain_corners(setup, with_corners(setup, own))
     if uncut is not own:
         own, left = uncut, left_by(setup, uncut)
     return list(own.lines), tuple(place for place in left if place.is_sure)

@@ -5,8 +5,9 @@ within its own rim.
     ──╱‾‾‾‾‾‾‾╲──      into itself, smoothly. The head may have gone over from one to the other between them
 
 If ways that bend evenly from leg to leg explain the ink better than the head's, the lines are those; or, if
-the head's do not explain it, the ways within the rims. Each line is run along its own way; or, where the head
-went over, two lines out of one, or the same line round one of its lobes the other way.
+the head's do not explain it, or cross within it, the ways within the rims. Each line is run along its own
+way; or, where the head went over, two lines out of one, or the same line round one of its lobes the other
+way.
 
 Signals: the set-up and the closed lines of a patch of ink in; the lines out.
 
@@ -16,6 +17,7 @@ corner in that ink, are taken to touch.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import combinations_with_replacement, product
 from typing import NamedTuple
@@ -164,7 +166,7 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: Touch) -> list[Line] | N
         return None
     # 1. the ways as they are, held against the ink
     ways, longer = (_ways((one, other), touch, more * width_mm, step_mm) for more in (0.0, LEG))
-    if _steepest_rad(ways) > CROSSES:
+    if one is not other and _steepest_rad(ways) > CROSSES:
         return None
     across = evenly(np.array([way[len(way) // 2] for way in ways]), step_mm)
     ink = ink_about(setup.sheet.drawing, np.vstack([*ways, across]), width_mm, REACH)
@@ -179,13 +181,27 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: Touch) -> list[Line] | N
     # 2. the ways as their legs go on, or within the rims
     both = smooth_ways(*longer, LEG, width_mm, left, may_exchange=one is other)
     if both.left > LEAVES or not (both.is_exchanged or both.left < own - GAIN):
-        rims = None if own < LEAVES else _rims(setup, width_mm, ways, left)
-        if rims is None or (LEAVES if touch.turns_back else own) < rims.left:
+        goes_over = one is other and len(crossings(*ways)) % 2 == 1
+        rims = None
+        if goes_over or own > LEAVES:
+            rims = _rims(setup, width_mm, ways, left, goes_over if one is other else None)
+        if rims is None or _most_left(own, touch, rims) < rims.left:
             return None
         both = rims
     if not both.is_exchanged:
         return _laid_each(setup, (one, other), touch, both, whole)
     return _exchanged(setup, one, touch, both) if one is other else None
+
+
+def _most_left(own: float, touch: Touch, rims: BothWays) -> float:
+    """What ways within the rims of a touch may leave for each width, where the head's leave so much.
+
+    The ink of a line that went over to its other side leaves more than both rims do; that of one that was
+    drawn across itself leaves as much.
+    """
+    if own < LEAVES:
+        return own - GAIN if rims.is_exchanged else -math.inf
+    return LEAVES if touch.turns_back else own
 
 
 def _steepest_rad(ways: _Ways) -> float:
@@ -224,11 +240,16 @@ def _rest_mm(
     return np.min([away_from(ink.places_mm, way) for way in ways], axis=0)
 
 
-def _rims(setup: Setup, width_mm: float, ways: _Ways, left: Left) -> BothWays | None:
-    """The ways within the rims that leave least, from either way's beginning to either's end."""
+def _rims(
+    setup: Setup, width_mm: float, ways: _Ways, left: Left, goes_over: bool | None
+) -> BothWays | None:
+    """The ways within the rims that leave least, from either way's beginning to either's end.
+
+    Rims do not cross: of one line that goes over to its other side the ends are exchanged.
+    """
     about = np.vstack(ways)
     best: BothWays | None = None
-    for is_exchanged in (False, True):
+    for is_exchanged in (False, True) if goes_over is None else (goes_over,):
         onto = ways[::-1] if is_exchanged else ways
         found = list[list[LaidWay]]()
         for into, out_of in zip(ways, onto, strict=True):

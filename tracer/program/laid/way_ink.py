@@ -19,12 +19,13 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm, nearest_mm
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines, parts_of, within
 from morfax.tracer.program.against_ink.off_ink import goes_on, ink_about
 from morfax.tracer.program.laid.bay_run import Bay, apart, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import LEGS, OF_LOOP, REACH
+from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH
 from morfax.tracer.program.laid.spline_fit import CORNER_RAD, TURNS_OVER, corners_of, turns_rad
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -60,6 +61,11 @@ class WayInk:
     setup: Setup
     line: Line
     lines: BoxedLines
+
+    @property
+    def drawing(self) -> Drawing:
+        """The drawing whose ink it is."""
+        return self.setup.sheet.drawing
 
     @property
     def is_closed(self) -> bool:
@@ -124,7 +130,7 @@ class WayInk:
         """The places at which the way turns by more than an angle over so many widths, the sharpest first."""
         if not self.is_closed:
             return corners_of(turns_rad(self.way, over_widths), over_widths, least_rad)
-        count, over = len(self.way), round(LEGS[0] / STEP_WIDTHS)
+        count, over = len(self.way), round(over_widths / STEP_WIDTHS)
         on = self.way[np.arange(-over, count + over) % count]
         turned_rad = turns_rad(on, over_widths)[over:-over]
         return corners_of(turned_rad, over_widths, least_rad)
@@ -165,7 +171,7 @@ class WayInk:
         """The ink about some places (n, 2) mm of a way; all but a stretch of it, and all other lines, are
         known.
         """
-        ink = ink_about(self.setup.sheet.drawing, about, self.line.width_mm, REACH)
+        ink = ink_about(self.drawing, about, self.line.width_mm, REACH)
         reach_mm = REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         known_mm = np.full(len(ink.places_mm), pen.NOWHERE_MM)

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from morfax.motion.polyline import nearest_mm
+from morfax.motion.neighbours import Neighbours
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import ends_of
 from morfax.tracer.limits import OWN_WIDTHS
@@ -159,11 +159,11 @@ class NetLines:
 
     def besides(self, line: Line) -> list[Line]:
         """The lines beside one that was followed."""
-        near_mm = OWN_WIDTHS * self._width_mm
+        near_mm, way = OWN_WIDTHS * self._width_mm, Neighbours(line.places_mm)
         followed = {
             n
             for n, felt in enumerate(self._junctions.net.lines)
-            if np.mean(nearest_mm(felt.places_mm, line.places_mm) < near_mm) > NEW
+            if np.mean(way.nearest(felt.places_mm)[0] < near_mm) > NEW
         }
         return self._besides(followed)
 

@@ -18,6 +18,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from morfax.tracer.drawing.strokes import Stroke
+from morfax.tracer.following.faint_corner import TipPose, faint_corner
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.open_ends import stances_at
 from morfax.tracer.following.plain_places import stands_near, view_of
@@ -81,17 +82,21 @@ def can_stand(setup: Setup, contour: Contour) -> bool:
 
 
 def leads_on(junctions: Junctions, gap_mm: float) -> bool:
-    """Whether the head goes on across a gap from any end of a patch."""
+    """Whether the head goes on from any end of a patch, across a gap or over pale ink to another end."""
     from morfax.tracer.ink.net import end_leg
 
-    net = junctions.net
+    net, tips = junctions.net, list[TipPose]()
     for line in net.lines:
         for last in (False, True):
             if line.junctions[last] not in net.free_ends:
                 continue
-            view = line.runs[-1 if last else 0].view
-            if straight_on(view, end_leg(line, last), gap_mm) is not None:
+            view, leg = line.runs[-1 if last else 0].view, end_leg(line, last)
+            if straight_on(view, leg, gap_mm) is not None:
                 return True
+            tip = TipPose.of(view, leg)
+            if any(faint_corner(view, tip, other) is not None for other in tips):
+                return True
+            tips.append(tip)
     return False
 
 

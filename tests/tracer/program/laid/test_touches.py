@@ -137,6 +137,51 @@ def test_a_figure_of_eight_that_was_drawn_is_one_line() -> None:
     assert len(found) == 1 and off_mm(found[0], drawn) < 20 * UM
 
 
+def from_place(outline: shapely.Polygon, first: tuple[float, float]) -> Points:
+    """An outline, counter-clockwise, from the place nearest to another round to that."""
+    ring = shapely.geometry.polygon.orient(outline).exterior
+    places = np.array(ring.segmentize(0.1).coords)[:-1]
+    at = int(np.argmin(np.hypot(*(places - first).T)))
+    return np.vstack([places[at:], places[: at + 1]])
+
+
+def test_a_line_that_steps_over_within_the_ink_of_two_is_two() -> None:
+    """Plates whose sides run together 0.7 widths apart, run as a figure of eight that steps from side to
+    side: it leaves 0.0045 of a square for each width, which explained their ink; their rims leave 0.002.
+    """
+    other_mm = 20 + 0.7 * WIDTH_MM
+    left = from_place(shapely.box(8, 8, 18, 22).buffer(2, quad_segs=60), (20, 14))
+    right = from_place(
+        shapely.box(other_mm + 2, 10, 32, 18).buffer(2, quad_segs=60), (other_mm, 14)
+    )
+    truths = [turned(left), turned(right)]
+    # a step of 1 mm
+    over = [way[np.hypot(*(way - way[0]).T) >= 0.5] for way in (left, right[::-1])]
+    found = touches.touching(
+        Setup(inked(*truths, seed=1).sheet), [run_along(turned(np.vstack(over)))]
+    )
+    assert [line.ending for line in found] == ["closed", "closed"]
+    for line in found:
+        assert min(off_mm(line, truth) for truth in truths) < 30 * UM
+
+
+def test_of_one_line_that_crosses_itself_steeply_in_its_ink_the_rims_are_felt(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In the mouth of a keyhole its sides may be run across each other at 88 degrees; of two lines that cross
+    by more than 60 degrees none goes over to the other.
+    """
+    asked = list[bool | None]()
+    monkeypatch.setattr(touches, "_rims", lambda *told: asked.append(told[-1]))
+    high = math.degrees(math.asin(0.3 / 5))
+    left, right = arc((10, 15), 5, high, 360 - high), arc((30, 15), 5, 180 + high, 540 - high)
+    there, back = polyline((19.8, 14.7), (20.2, 15.3)), polyline((20.2, 14.7), (19.8, 15.3))
+    line = run_along(np.vstack([left, there, right[::-1], back, left[:1]]))
+    truth = np.vstack([left, right, left[:1]])
+    touches.touching(Setup(inked(truth, seed=1).sheet), [line])
+    assert asked and set(asked) == {True}
+
+
 def test_a_hole_that_touches_three_sides_is_a_line_though_half_of_its_way_is_theirs() -> None:
     """A circle of 2.5 mm in a triangle of which each side comes to it; it was missing, and told."""
     angles = np.radians([97, 217, 337, 97])
