@@ -40,7 +40,11 @@ class TipPose(NamedTuple):
 
 
 def faint_corner(view: View, one: TipPose, other: TipPose) -> list[Array] | None:
-    """The course from one tip to another as stretches (n, 2) mm, if pale ink leads there, or None."""
+    """The course from one tip to another as stretches (n, 2) mm, if pale ink with grain leads there, or None:
+    of a scan without grain such ink is a gap's soft edges.
+    """
+    if not view.grainy:
+        return None
     begin, end = one.place_mm, other.place_mm
     way, straight = end - begin, [_straight(begin, end)]
     away_mm = float(np.hypot(*way))

@@ -232,8 +232,7 @@ def _bridge_gaps(net: Net, settings: Settings) -> None:
     found = sorted(
         (math.dist(tips[a].place_mm, tips[b].place_mm), a, b)
         for a, b in near
-        if _faces(legs[a], legs[b])
-        or (views[a].grainy and faint_corner(views[a], tips[a], tips[b]) is not None)
+        if _faces(legs[a], legs[b]) or faint_corner(views[a], tips[a], tips[b]) is not None
     )
     taken = set[int]()
     for apart_mm, a, b in found:

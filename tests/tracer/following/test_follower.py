@@ -15,7 +15,7 @@ import pytest
 from morfax.motion.contour import pointwise
 from morfax.tracer.program.trace import trace
 from tests.tracer.following.followed import LINE_MM, SEEDS, followed
-from tests.tracer.inked import UM, WIDTH_MM, corner, inked, polyline
+from tests.tracer.inked import UM, corner, inked
 
 
 @pytest.mark.parametrize("deflection_deg", [90, 150])
@@ -39,24 +39,6 @@ def test_a_sharp_corner(deflection_deg: float, seed: int | None) -> None:
         followed(corner(deflection_deg), inked(corner(deflection_deg), seed=seed)).ending
         == "ended"
     )
-
-
-@pytest.mark.parametrize(("left", "ending"), [(0.35, "closed"), (0.1, "ended")])
-def test_a_line_comes_round_by_a_corner_that_is_paler_and_not_across_paper(
-    left: float, ending: str
-) -> None:
-    """A pencil's corner, at which the line looks open: a third of its ink is left there, or hardly any."""
-    line = polyline((12, 12), (32, 16), (18, 34), (12, 12))
-    drawing = inked(line, seed=1)
-    high = len(drawing.darkness)
-    rows, columns = np.indices(drawing.darkness.shape)
-    right_mm = (columns + 0.5) * drawing.pitch_mm - 18
-    up_mm = (high - rows - 0.5) * drawing.pitch_mm - 34
-    drawing.darkness[(np.abs(right_mm + 0.25) < 0.3) & (np.abs(up_mm + 0.6) < 0.25)] *= left
-    run = trace(drawing).lines[0]
-    assert run.ending == ending
-    if ending == "closed":
-        assert np.hypot(*(run.xy_mm - line[2]).T).min() < 0.5 * WIDTH_MM
 
 
 @SEEDS

@@ -7,35 +7,17 @@ some millimetres uncertain by 20 um, and so a corner of two by 40 as a rule, and
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import cv2
 import numpy as np
 import pytest
 
 from morfax.motion.polyline import length_mm, nearest_mm
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.scale import Scale
-from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.program.laid import narrow_bays
 from morfax.tracer.program.trace import trace
-from tests.tracer.inked import DPI, UM, Points, arc, inked, polyline
+from tests.tracer.inked import UM, Points, arc, inked, polyline
+from tests.tracer.pencilled import pencilled
 
 CORNERS_MM = [(14.0, 14.0), (34.0, 17.0), (37.0, 33.0), (17.0, 36.0)]
-GRAIN, SPOT_PX = 0.35, 1.2
-
-
-def pencilled(*lines: Points, seed: int = 1) -> Drawing:
-    """The drawing of lines that were drawn with a pencil."""
-    ink = inked(*lines, width_mm=0.45).darkness
-    rng = np.random.default_rng(seed)
-    wave = cv2.GaussianBlur(rng.normal(size=ink.shape), (0, 0), SPOT_PX)
-    left = np.clip(1 + GRAIN * wave / wave.std(), 0, 2)
-    grey = np.clip(np.round(235 - 65 * ink * left + rng.normal(0, 8, ink.shape)), 0, 255)
-    scan = Scan(Path("made.png"), grey.astype(np.uint8), Stated((DPI, DPI)))
-    drawing = Drawing.of(scan, Scale())
-    assert drawing.grainy
-    return drawing
 
 
 def path_of(drawing: Drawing) -> Points:
