@@ -48,9 +48,9 @@ from morfax.tracer.head.plan import Plan
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import CHANGED, HOME, MORE
-from morfax.tracer.junctions.choice import Choice
+from morfax.tracer.junctions.choice import Choice, WayIn, survey
 from morfax.tracer.junctions.felt_corner import corner_ahead, round_corner
-from morfax.tracer.junctions.planner import Planner
+from morfax.tracer.junctions.planner import FAINTER, Planner
 from morfax.tracer.junctions.width_change import of_another_pen
 from morfax.tracer.marks.dots import dot_at_end
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, goes_straight, leg_of
@@ -228,7 +228,7 @@ class Follower(RunEnds):
             plan, explained = self._out_of_tangle(incoming, plan)
         # nothing leads on with this pen
         if plan is None and not choices:
-            plan = self._with_another_pen(incoming)
+            plan = self._with_another_pen(incoming) or self._on_paler_ink(incoming)
             if plan is not None:
                 return plan, choices
         # past what nothing explains
@@ -247,6 +247,15 @@ class Follower(RunEnds):
         if other is not None and plan is not None:
             self.view = other.view
         return plan
+
+    def _on_paler_ink(self, incoming: Leg) -> Plan | None:
+        """The way by a corner of which little ink is left, as of a pencil's line; None without one."""
+        if not self.view.grainy:
+            return None
+        paler = replace(self._planner(), view=self.view.at_level(FAINTER * self.view.level))
+        choice = survey(WayIn(paler.view, incoming, self.carriage.trail))
+        plan = paler.along_legs(incoming, choice)[0] if choice.choices == 1 else None
+        return plan if plan is not None and course.on_ink(self.view, plan.stretches) else None
 
     def _out_of_tangle(self, incoming: Leg, plan: Plan | None) -> tuple[Plan | None, bool]:
         """The way out of a tangle, or the plan if this is none; and whether the tangle explains the way."""
