@@ -15,7 +15,6 @@ from morfax.jobs.settings import correction_settings, flattening
 from morfax.jobs.settings.settings import DrawingFile
 from morfax.jobs.settings.zero import OF_PART, Zero, refuse_of_part, said_by
 from morfax.jobs.wrong_use import WrongUse
-from morfax.motion.usual import RAPID_MM_S
 
 if TYPE_CHECKING:
     from morfax.jobs.figures import Figures
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
 
 # of a program that is compared: the control's servos then stay within 10 um of it
-FASTEST_MM_S = RAPID_MM_S
+FASTEST_MM_S = 20.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -154,11 +154,9 @@ def averaged(
         return None
     drawn = np.asarray(darkness)
     seen = behind(slit, drawn)
-    return (
-        Averaged(seen, drawn, _note(slit, pitch_mm))
-        if mends(drawn, seen, drawn_grain)
-        else None
-    )
+    if not mends(drawn, seen, drawn_grain):
+        return None
+    return Averaged(seen, drawn, _note(slit, pitch_mm))
 
 
 def mends(before: Darkness, after: Darkness, grain: float) -> bool:

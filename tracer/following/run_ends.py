@@ -59,9 +59,9 @@ class RunEnds:
             way = [course.to_end(self.carriage.stands(), incoming, end)]
             self.carriage.run(way, self.settings.speed_mm_s, STATIONS)
             return self._go_home()
-        round_mm = self._round_faint_corner(incoming, end)
-        if round_mm is not None:
-            self.carriage.run(round_mm, leader=STATIONS)
+        onto_home = self._round_faint_corner(incoming, end)
+        if onto_home is not None:
+            self.carriage.run(onto_home, leader=STATIONS)
             return self._done("closed")
         return self._end(incoming, end, joined=choices > 0)
 
@@ -70,10 +70,10 @@ class RunEnds:
         if not self._home.stance.at_end or self.carriage.travel_mm < self._home.away_mm:
             return None
         tip = TipPose(incoming.at(end_mm), incoming.heading_at(end_mm))
-        onto_home = faint_corner(self.view, tip, self._home.tip)
-        if onto_home is None:
+        from_tip = faint_corner(self.view, tip, self._home.tip)
+        if from_tip is None:
             return None
-        return [course.to_end(self.carriage.stands(), incoming, end_mm), *onto_home]
+        return [course.to_end(self.carriage.stands(), incoming, end_mm), *from_tip]
 
     def _end(self, incoming: Leg, end_mm: float, *, joined: bool = False) -> Followed | None:
         """Run to an end of the line; and back, if it is a guide line's end, or a tip where two lines end."""

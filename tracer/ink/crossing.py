@@ -46,6 +46,7 @@ from morfax.tracer.ink.partners import (
     partners,
     turnings,
     way_through,
+    without_partner,
 )
 from morfax.tracer.ink.redrawn_crossing import redrawn
 from morfax.tracer.ink.shared_ink import SharedInk, are_apart_where_they_cross
@@ -237,10 +238,10 @@ class Crossing:
             return self._tips
         if self.drawn is None:
             return self._solved.ends_mm
-        paired = {leg for pair in self.pairs for leg in pair}
-        alone = [k for k in range(len(self.legs)) if k not in paired]
+        alone = without_partner(self.pairs, len(self.legs))
         loose = [Loose(self.views[k], self.legs[k], self.near[k]) for k in alone]
-        lines_mm = np.vstack([self.passing_mm, *(self.near[k] for k in sorted(paired))])
+        passing = (self.near[k] for k in range(len(self.legs)) if k not in alone)
+        lines_mm = np.vstack([self.passing_mm, *passing])
         found = zip(alone, ends_in_ink_mm(loose, lines_mm), strict=True)
         return {k: end_mm for k, end_mm in found if end_mm is not None}
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
 from morfax.tracer.effort import LOOKED_MM
-from morfax.tracer.ink.partners import Pair
+from morfax.tracer.ink.partners import Pair, without_partner
 from morfax.tracer.tangles import pen, settling
 from morfax.tracer.tangles.sketch import ALL, softness_of
 from morfax.tracer.tangles.tangle import DARKEST
@@ -128,8 +128,7 @@ class CrossingInk:
 
 def ended_mm(crossing: Crossing) -> list[Array]:
     """Places of the lines that end in a crossing, from their clean ends on, (n, 2) mm."""
-    paired = {leg for pair in crossing.pairs for leg in pair}
-    alone = [k for k in range(len(crossing.legs)) if k not in paired]
+    alone = without_partner(crossing.pairs, len(crossing.legs))
     return [crossing.legs[k].at(np.linspace(0.0, crossing.end_mm(k), ENDED)) for k in alone]
 
 

@@ -43,6 +43,7 @@ from morfax.tracer.ink.partners import (
     likeliest,
     pairs_cost,
     turnings,
+    without_partner,
 )
 from morfax.tracer.ink.redrawn_crossing import AS_WELL
 from morfax.tracer.junctions.corner import Corner
@@ -132,7 +133,7 @@ def _straightest(now: AsDrawn, told: WaysOn) -> WaysOn:
     if len(crossing.legs) < FEWEST_LEGS:
         return told
     costs = turnings(crossing.legs, crossing.width_mm, crossing.views[0])
-    alone = sorted(set(range(len(crossing.legs))).difference(*told.pairs))
+    alone = without_partner(told.pairs, len(crossing.legs))
     if len(alone) > 1:
         joined = likeliest(costs[np.ix_(alone, alone)], TRIED)
         more = [tuple((alone[a], alone[b]) for a, b in pairs) for pairs in joined]

@@ -102,6 +102,12 @@ def partners(costs: Array) -> list[Pair]:
     return list(likeliest(costs, 1)[0])
 
 
+def without_partner(pairs: Sequence[Pair], legs: int) -> list[int]:
+    """Those of so many legs that are in no pair."""
+    paired = {leg for pair in pairs for leg in pair}
+    return [leg for leg in range(legs) if leg not in paired]
+
+
 def are_side_by_side(one: Leg, other: Leg) -> bool:
     """Whether two legs come in side by side, so that they may make a tip."""
     return abs(turn(one.heading_rad, other.heading_rad)) < TIP
@@ -247,10 +253,8 @@ def _straightest_first(costs: Array) -> list[Pair]:
 
 def _exchanged(pairs: list[Pair], costs: Array) -> list[Pair]:
     """Pairs whose partners were exchanged as long as two of them are the better for it."""
-    paired = {leg for pair in pairs for leg in pair}
-    alone = [leg for leg in range(len(costs)) if leg not in paired]
     # a leg without a partner is a pair with nobody
-    now = [*pairs, *((leg, NOBODY) for leg in alone)]
+    now = [*pairs, *((leg, NOBODY) for leg in without_partner(pairs, len(costs)))]
     is_better = True
     while is_better:
         is_better = False

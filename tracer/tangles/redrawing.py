@@ -23,7 +23,7 @@ Pair = tuple[int, int]
 # Chosen by trial on the test drawings; VERTEX is a misfit, STROKE and DOUBLED are vertices.
 VERTEX = 0.03  # what a vertex costs: a wrong stretch of 3 % of the line's width
 IN_GRAIN = (
-    5.0  # times as much it costs in ink with grain, which leaves so much more unexplained
+    5.0  # times as much in ink with grain: that leaves more unexplained than a vertex gains
 )
 CLEAR = 0.25  # a misfit up to which a redrawing explains the ink
 STROKE = 2.5
