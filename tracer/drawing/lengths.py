@@ -23,7 +23,7 @@ Source: our own. Questions: the ink of a net's junctions counts once, so that a 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,20 +54,27 @@ ASIDE = math.radians(25)
 PARTS = 8  # of a step between two samples of a profile: a sixteenth of a pixel
 
 
+class Told(NamedTuple):
+    """Lengths and widths of a sheet's patches as lines, mm."""
+
+    lengths_mm: Array
+    widths_mm: Array
+
+
 def one_pen_mm(sheet: Sheet) -> Array:
     """Lengths of the patches, mm, by one width for all that one pen may have drawn."""
     return sheet.lengths_mm * sheet.widths_mm / _pens_mm(sheet)
 
 
-def told_mm(sheet: Sheet) -> Array:
-    """Lengths of the patches, mm, as a reader is told them: true to 1.5 %, of three pixels to 2 %."""
+def told(sheet: Sheet) -> Told:
+    """Lengths of the patches as a reader is told them, true to 1.5 % (of three pixels to 2 %); widths."""
     if sheet.drawing.edges_mm:
-        return _of_edges_mm(sheet)
-    pens_mm, pitch_mm = _seen_pens_mm(sheet), sheet.drawing.pitch_mm
+        return Told(_of_edges_mm(sheet), sheet.widths_mm)
+    (pens_mm, widths_mm), pitch_mm = _seen_mm(sheet), sheet.drawing.pitch_mm
     # areas less wide than the line are flaws of its ink
     is_open = sheet.patches.enclosure.loops((sheet.widths_mm / pitch_mm) ** 2) == 0
     lengths_mm = pitch_mm**2 * _areas_px(sheet) / pens_mm - is_open * ROUND * pens_mm
-    return np.maximum(lengths_mm, pens_mm)  # a dot is as long as it is wide
+    return Told(np.maximum(lengths_mm, pens_mm), widths_mm)  # a dot is as long as it is wide
 
 
 def _of_edges_mm(sheet: Sheet) -> Array:
@@ -97,11 +104,14 @@ def _pens_mm(sheet: Sheet) -> Array:
     return np.where(_is_one_pen(sheet.widths_mm, usual_mm), usual_mm, sheet.widths_mm)
 
 
-def _seen_pens_mm(sheet: Sheet) -> Array:
-    """The same where profiles cross the lines: the patch's own width if enough cross it, else of one pen."""
-    pens_mm, profiles = _pens_mm(sheet), profiles_of(sheet.drawing.darkness)
+def _seen_mm(sheet: Sheet) -> tuple[Array, Array]:
+    """The widths of the patches' pens, and of their lines: a patch's own width if enough profiles cross it,
+    else that of one pen, and that by its depths.
+    """
+    pens_mm, widths_mm = _pens_mm(sheet), sheet.widths_mm.copy()
+    profiles = profiles_of(sheet.drawing.darkness)
     if profiles is None:
-        return pens_mm
+        return pens_mm, widths_mm
     wide_mm = _wide_px(sheet.drawing.darkness, profiles) * sheet.drawing.pitch_mm
     usual_mm = _usual_mm(sheet)
     usual = wide_mm[_is_one_pen(wide_mm, usual_mm)]
@@ -110,8 +120,8 @@ def _seen_pens_mm(sheet: Sheet) -> Array:
     patch = _patches_at(sheet, profiles.middles)
     count = np.bincount(patch[patch >= 0])
     for own in np.flatnonzero(count >= FEWEST_PROFILES):
-        pens_mm[own] = median(wide_mm[patch == own])
-    return pens_mm
+        pens_mm[own] = widths_mm[own] = median(wide_mm[patch == own])
+    return pens_mm, widths_mm
 
 
 def _patches_at(sheet: Sheet, places: Array) -> NDArray[np.int64]:

@@ -19,7 +19,7 @@ from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import lengths
 from morfax.tracer.drawing.components import INK, runs_of
 from morfax.tracer.drawing.drawing import Drawing, Reading
-from morfax.tracer.drawing.lengths import told_mm
+from morfax.tracer.drawing.lengths import told as told_of
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.strokes import Sheet
@@ -45,7 +45,7 @@ def told(*drawn: tuple[Points, float]) -> list[float]:
 def told_on(drawing: Drawing, lines: Sequence[Points]) -> list[float]:
     """The lengths that are told of some lines of a drawing, mm."""
     sheet = Sheet.of(drawing)
-    lengths_mm = told_mm(sheet)
+    lengths_mm = told_of(sheet).lengths_mm
     return [float(lengths_mm[sheet.patch_at(line[0])]) for line in lines]
 
 
@@ -59,6 +59,15 @@ def test_lengths_are_true_at_any_angle_width_and_resolution(
     # the ink that both legs of a corner share: 1 % of the pointed one with the broad pen; and noise
     tolerance = 0.015 if width_mm * dpi > 4 * MM_PER_INCH else 0.02
     assert seen == pytest.approx(true_mm, rel=tolerance)
+
+
+@pytest.mark.parametrize("dpi", [200.0, 300.0, 600.0])
+def test_lines_of_one_pen_are_told_alike_wide_at_any_angle(dpi: float) -> None:
+    sheet = Sheet.of(inked(*LINES, width_mm=0.5, dpi=dpi, seed=3))
+    widths_mm = told_of(sheet).widths_mm[[sheet.patch_at(line[0]) for line in LINES]]
+    # by depths they differ by 10 % at 300 dpi
+    assert widths_mm == pytest.approx(np.median(widths_mm), rel=0.01)
+    assert np.median(widths_mm) == pytest.approx(0.5, abs=0.3 * MM_PER_INCH / dpi)
 
 
 def test_a_line_of_a_broad_pen_among_others_is_not_told_longer() -> None:
@@ -82,7 +91,7 @@ def test_the_edges_of_filled_shapes_are_as_long_as_they_are() -> None:
     sheet = Sheet.of(Drawing.of(scan, Scale(), reading=Reading(edge=True)))
     px_mm = MM_PER_INCH / 300
     true_mm = [math.tau * 280.5 * px_mm, 4 * 201 * px_mm]  # to the middles of the pixels' edges
-    assert sorted(told_mm(sheet), reverse=True) == pytest.approx(true_mm, rel=0.005)
+    assert sorted(told_of(sheet).lengths_mm, reverse=True) == pytest.approx(true_mm, rel=0.005)
 
 
 @pytest.mark.parametrize("degrees", [0.0, 20.0, 35.0, 90.0])
