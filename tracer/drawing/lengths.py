@@ -49,6 +49,7 @@ if TYPE_CHECKING:
 
 # lines whose widths are within this share of the usual width are one pen's; by trial
 ONE_PEN = 0.3
+PIXELS_OFF = 0.1  # share by which lengths by whole pixels are off: a line along them is three wide at least
 # two profiles are turned by so much to both sides; by less, and noise is their difference
 ASIDE = math.radians(25)
 PARTS = 8  # of a step between two samples of a profile: a sixteenth of a pixel

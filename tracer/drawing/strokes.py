@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import cv2
@@ -28,10 +29,9 @@ from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
-from morfax.tracer.drawing.lengths import one_pen_mm
+from morfax.tracer.drawing.lengths import PIXELS_OFF, Told, one_pen_mm, told
 from morfax.tracer.drawing.middles import deepest, ink_about
-from morfax.tracer.drawing.numbering import ALIKE, InkSpread, longest_first
-from morfax.tracer.drawing.weighing import Weight, weighed_mm
+from morfax.tracer.drawing.numbering import InkSpread, longest_first
 from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]
@@ -71,7 +71,7 @@ class Stroke:
         return np.array(kept).reshape(-1, 2)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Sheet:
     """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes.
 
@@ -88,7 +88,6 @@ class Sheet:
     has_references: bool = True  # small crosses and rings may be reference points
     bare_rings: bool = False  # rings are, whatever the line from them leads to
     taken: frozenset[int] = frozenset()
-    weights: dict[int, Weight] = field(default_factory=dict, repr=False, compare=False)
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
@@ -113,6 +112,11 @@ class Sheet:
             )
         return sheet
 
+    @cached_property
+    def told(self) -> Told:
+        """Lengths and widths of the patches as lines, mm, as a reader is told them."""
+        return told(self)
+
     def about(self, patch: int, around_mm: float) -> Sheet:
         """The sheet with a window about a patch; itself if that is no small part of it."""
         around_px = math.ceil(around_mm / self.drawing.pitch_mm)
@@ -130,7 +134,7 @@ class Sheet:
         lengths_mm = one_pen_mm(self)
         if are_lines.any():
             lengths_mm = np.where(are_lines, lengths_mm, 0.0)
-        long = np.flatnonzero(lengths_mm >= (1 - 2 * ALIKE) * lengths_mm.max())
+        long = np.flatnonzero(lengths_mm >= (1 - 2 * PIXELS_OFF) * lengths_mm.max())
         return self.stroke(int(self.longest_first(long)[0]))
 
     def longest_first(self, patches: Pixels) -> Pixels:
@@ -142,7 +146,7 @@ class Sheet:
         weights = (runs.end - runs.begin).astype(float)
         sums = [np.bincount(runs.patch, weights * column, runs.count) for column in places_mm.T]
         middles_mm = np.column_stack(sums)[patches] / runs.areas[patches][:, None]
-        lengths_mm = weighed_mm(self, patches, one_pen_mm(self)[patches])
+        lengths_mm = self.told.lengths_mm[patches]
         return patches[longest_first(lengths_mm, middles_mm, InkSpread.of(places_mm, weights))]
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:

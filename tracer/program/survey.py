@@ -28,7 +28,7 @@ import numpy as np
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import APART_MM
 from morfax.tracer.drawing.enclosure import NONE, Enclosure
-from morfax.tracer.drawing.lengths import Told, told
+from morfax.tracer.drawing.lengths import Told
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
@@ -105,7 +105,7 @@ class Survey:
     @property
     def left_out_mm(self) -> float:
         """Length of the patches that have no number, mm."""
-        return float(told(self.sheet).lengths_mm[list(self.left_out)].sum())
+        return float(self.sheet.told.lengths_mm[list(self.left_out)].sum())
 
     @property
     def width_mm(self) -> float | None:
@@ -120,7 +120,7 @@ def survey(setup: Setup) -> Survey:
     contours, _ = selection.plan(sheet, "contours")
     letters = lettering(sheet)
     # 1. patches that are lines
-    drawn, sizes = _references(setup), told(sheet)
+    drawn, sizes = _references(setup), sheet.told
     seen = [
         _of_patch(setup, contour, view, drawn, sizes)
         for contour, view in _viewed(setup, contours)
