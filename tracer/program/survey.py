@@ -33,7 +33,7 @@ from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.open_ends import from_reference, stances_at
-from morfax.tracer.following.plain_places import aperture_for, stance_near, view_of
+from morfax.tracer.following.plain_places import aperture_for, stands_near, view_of
 from morfax.tracer.following.start import put_down
 from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.program.laid.small_lines import small_lines
@@ -215,7 +215,7 @@ def _kind(by_ends: Kind, loops: int) -> Kind:
 def _can_begin(setup: Setup, contour: Contour, view: View, starts_mm: list[Place]) -> bool:
     """Whether the head can be put down on a patch; asked as a run asks where the first looks find nothing."""
     for start_mm in starts_mm[:FIRST_LOOKS]:
-        if stance_near(view, contour.stroke, start_mm) is not None:
+        if stands_near(view, contour.stroke, start_mm):
             return True
     for start_mm in starts_mm:
         try:
