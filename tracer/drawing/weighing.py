@@ -70,12 +70,11 @@ def _ink_of(sheet: Sheet, patch: int) -> Weight:
 
 def _weigh(sheet: Sheet, patch: int) -> Weight:
     """Weigh a patch of ink."""
-    chosen = sheet.patches.alone(patch)
     rows, columns = sheet.drawing.darkness.shape
-    top, bottom, left, right = sheet.patches.box(chosen)
+    top, bottom, left, right = sheet.patches.boxes[patch].tolist()
     top, left = max(0, top - FRINGE_PX), max(0, left - FRINGE_PX)
     bottom, right = min(rows, bottom + FRINGE_PX), min(columns, right + FRINGE_PX)
-    ink = np.asarray(sheet.patches.painted(chosen, top, bottom, left, right), np.uint8)
+    ink = np.asarray(sheet.patches.painted(patch, top, bottom, left, right), np.uint8)
     about = cv2.dilate(ink, np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)) > 0
     dark = np.asarray(sheet.drawing.darkness[top:bottom, left:right])
     weight_mm2 = float(dark[about].sum()) * sheet.drawing.pitch_mm**2
