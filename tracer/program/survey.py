@@ -172,7 +172,7 @@ def _of_patch(
     none.
     """
     sheet, stroke = setup.sheet, contour.stroke
-    ends = list(stances_at(view, stroke.ends_mm(), setup.settings.gap_mm))
+    ends = list(stances_at(view, stroke.ends_mm, setup.settings.gap_mm))
     begins_at = [
         found
         for found in drawn

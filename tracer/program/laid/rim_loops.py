@@ -43,8 +43,8 @@ def narrow_outline(sheet: Sheet, patch: int, pen_mm: float) -> Array | None:
     if sheet.lengths_mm[patch] > LONGEST * pen_mm:
         return None
     top, bottom, left, right = sheet.patches.boxes[patch].tolist()
-    own = sheet.patches.alone(patch)
-    ink = np.pad(sheet.patches.painted(own, top, bottom, left, right), 1)
+    # a pixel of paper all round
+    ink = sheet.patches.painted(patch, top - 1, bottom + 1, left - 1, right + 1)
     outlines, _ = cv2.findContours(ink, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     outline = max(outlines, key=len)
     area_px2, long_px = cv2.contourArea(outline, True), cv2.arcLength(outline, False)

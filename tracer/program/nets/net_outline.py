@@ -172,7 +172,7 @@ def junctions_of(setup: Setup, patch: int) -> Junctions:
         about_mm = ABOUT_MM + settings.gap_mm + ABOUT_WIDTHS * float(sheet.widths_mm[patch])
         window = replace(sheet, window=None).about(patch, about_mm).window
         top, left, bottom, right = window or (0, 0, *sheet.drawing.darkness.shape)
-        ink = sheet.patches.painted(sheet.patches.alone(patch), top, bottom, left, right)
+        ink = sheet.patches.painted(patch, top, bottom, left, right)
         felt = FeltSheet.of(sheet.drawing, settings, ink, window=window)
         setup.newest.clear()
         setup.newest[patch] = solved(felt, _told_of(setup, patch))
