@@ -23,13 +23,14 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.motion.median import median
-from morfax.tracer.drawing.components import Patches, nearest_run
+from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.lengths import one_pen_mm
 from morfax.tracer.drawing.middles import deepest, ink_about
+from morfax.tracer.drawing.nearest_ink import nearest_run
 from morfax.tracer.drawing.numbering import ALIKE, InkSpread, longest_first
 from morfax.tracer.drawing.weighing import Weight, weighed_mm
 from morfax.tracer.effort import MANY
@@ -40,7 +41,6 @@ Window = tuple[int, int, int, int]  # first row and column, row and column after
 TILE_PX = 2048  # the places of a line come tile by tile, so that its size decides where the head begins
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial
-ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
 # areas of paper less than so many widths across are flaws of the ink that goes round them; by trial
 FLAW_WIDTHS = 1.0
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
@@ -187,29 +187,15 @@ class Sheet:
     def _nearest_ink(
         self, place_mm: tuple[float, float], among: NDArray[np.bool_] | None = None
     ) -> tuple[float, Array, int]:
-        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches."""
-        pitch_mm, rows = self.drawing.pitch_mm, self.drawing.darkness.shape[0]
-        row, about_px = rows - 1 - math.floor(place_mm[1] / pitch_mm), ABOUT_PX
-        # all runs of a large sheet take longer than those of the rows about the place
-        while True:
-            runs = self.patches.runs_between(row - about_px, row + about_px + 1)
-            found = self._nearest_of(place_mm, runs, among)
-            is_all = runs == slice(0, len(self.patches.row))
-            if is_all or found[0] < (about_px - 1) * pitch_mm:
-                return found
-            about_px *= 4
-
-    def _nearest_of(
-        self, place_mm: tuple[float, float], some: slice, among: NDArray[np.bool_] | None
-    ) -> tuple[float, Array, int]:
-        """The same of some runs; infinitely far, and no patch, if there is none."""
+        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches.
+        Infinitely far, and no patch, if there is none.
+        """
         runs, sheet = self.patches, (self.drawing.darkness.shape[0], self.drawing.pitch_mm)
-        own = runs.row[some], runs.begin[some], runs.end[some], runs.patch[some]
-        if not len(own[0]):
+        if not len(runs.row):
             return math.inf, np.zeros(2), -1
-        counts = np.ones(runs.count, bool) if among is None else among
-        away_mm, x_mm, y_mm, run = nearest_run(own, place_mm, sheet, counts)
-        return float(away_mm), np.array([x_mm, y_mm]), int(own[3][run])
+        own, counts = (runs.begin, runs.end, runs.patch), runs.every if among is None else among
+        away_mm, x_mm, y_mm, run = nearest_run(own, runs.firsts, place_mm, sheet, counts)
+        return float(away_mm), np.array([x_mm, y_mm]), int(runs.patch[run])
 
     def middles_mm(self, patches: Pixels) -> Array:
         """The middles of the boxes of some patches, (n, 2) sheet mm."""
