@@ -24,13 +24,14 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.motion.median import median
-from morfax.tracer.drawing.components import Patches, nearest_run
+from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.lengths import PIXELS_OFF, Told, one_pen_mm, told
 from morfax.tracer.drawing.middles import deepest, ink_about
+from morfax.tracer.drawing.nearest_ink import nearest_run
 from morfax.tracer.drawing.numbering import InkSpread, longest_first
 from morfax.tracer.effort import MANY
 
@@ -193,13 +194,14 @@ class Sheet:
     def _nearest_ink(
         self, place_mm: tuple[float, float], among: NDArray[np.bool_] | None = None
     ) -> tuple[float, Array, int]:
-        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches."""
+        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches.
+        Infinitely far, and no patch, if there is none.
+        """
         runs, sheet = self.patches, (self.drawing.darkness.shape[0], self.drawing.pitch_mm)
         if not len(runs.row):
             return math.inf, np.zeros(2), -1
-        every = runs.row, runs.begin, runs.end, runs.patch
-        counts = runs.all_of_them if among is None else among
-        away_mm, x_mm, y_mm, run = nearest_run(every, place_mm, sheet, counts)
+        own, counts = (runs.begin, runs.end, runs.patch), runs.every if among is None else among
+        away_mm, x_mm, y_mm, run = nearest_run(own, runs.firsts, place_mm, sheet, counts)
         return float(away_mm), np.array([x_mm, y_mm]), int(runs.patch[run])
 
     def middles_mm(self, patches: Pixels) -> Array:
