@@ -17,7 +17,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,6 +32,7 @@ from morfax.tracer.drawing.lengths import PIXELS_OFF, Told, one_pen_mm, told
 from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.nearest_ink import nearest_run
 from morfax.tracer.drawing.numbering import InkSpread, longest_first
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]
@@ -279,7 +279,6 @@ class Sheet:
         row, begin, end = self.patches.runs_within(patch, *part)
         inner = rows[0] - part[0], rows[1] - part[0], columns[0] - part[2], columns[1] - part[2]
         depth = depth_along(row, begin, end, (part[1] - part[0], part[3] - part[2]))
-        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
         i, j = deepest(row, begin, end, depth, inner)
-        filled = ink_about(row, begin, end, (i, j), disc)
+        filled = ink_about(row, begin, end, (i, j), disc(disc_px))
         return i + part[0], j + part[2], filled
