@@ -33,7 +33,6 @@ from morfax.motion.nesting import lies_inside, size_mm
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing import lettering
 from morfax.tracer.drawing.inner_rings import inner_rings
-from morfax.tracer.drawing.lengths import told_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.effort import SOME_PLACES
 from morfax.tracer.following.line import Line
@@ -163,7 +162,7 @@ def others_than(sheet: Sheet, line: Line) -> Others:
         for number in np.flatnonzero(others):
             others[number] = not are_about(middles_mm[patch == number], [line.reference_mm])
     patches = np.flatnonzero(others)
-    longest_mm = float(told_mm(sheet)[patches].max()) if len(patches) else 0.0
+    longest_mm = float(sheet.told.lengths_mm[patches].max()) if len(patches) else 0.0
     return Others(len(patches), _inside(sheet, patches, line), longest_mm)
 
 
