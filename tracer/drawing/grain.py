@@ -200,8 +200,8 @@ def _tile(slit: Slit, darkness: Darkness) -> Darkness:
             darkness, cv2.CV_32F, _kernel(slit, direction), borderType=cv2.BORDER_REPLICATE
         )
         fit = cv2.dilate(_fit(slit, direction, np.asarray(through, np.float32)), near)
-        better = fit > best
-        best[better], seen[better] = fit[better], through[better]
+        cv2.copyTo(through, cv2.compare(fit, best, cv2.CMP_GT), seen)
+        cv2.max(fit, best, best)
     return seen
 
 
@@ -222,7 +222,7 @@ def _fit(slit: Slit, direction: float, through: Darkness) -> Darkness:
     )
     aside = FLANK_WIDTHS * slit.width_px
     right, down = -aside * math.sin(direction), aside * math.cos(direction)
-    flanks = sum(
+    to_left, to_right = (
         cv2.warpAffine(
             smooth,
             np.array([[1.0, 0.0, side * right], [0.0, 1.0, side * down]]),
@@ -231,4 +231,5 @@ def _fit(slit: Slit, direction: float, through: Darkness) -> Darkness:
         )
         for side in (-1, 1)
     )
-    return np.asarray(smooth - 0.5 * flanks, np.float32)
+    flanks = cv2.add(to_left, to_right)
+    return np.asarray(cv2.scaleAdd(flanks, -0.5, smooth), np.float32)
