@@ -29,6 +29,7 @@ if TYPE_CHECKING:  # they are made of patches
 
 Mask = NDArray[np.uint8]
 Numbers = NDArray[np.int32]
+Chosen = NDArray[np.bool_] | int  # which of all patches, or the number of one
 
 INK = 0.5  # of the darkest: what is darker is ink
 SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
@@ -94,37 +95,49 @@ class Patches:
         tops, bottoms, lefts, rights = self.boxes[chosen].T
         return int(tops.min()), int(bottoms.max()), int(lefts.min()), int(rights.max())
 
-    def runs_between(self, top: int, bottom: int) -> slice:
-        """The runs from a row up to another.
+    @cached_property
+    def _by_patches(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The numbers of all runs, patch by patch and by rows, and where those of each patch begin."""
+        begins = np.zeros(self.count + 1, np.int64)
+        np.cumsum(np.bincount(self.patch, minlength=self.count), out=begins[1:])
+        return np.argsort(self.patch, kind="stable"), begins
 
-        They are sought in the rows' own type: for any other numpy makes a copy of all rows first.
-        """
-        kind = self.row.dtype
-        most = np.iinfo(kind).max
-        between = np.array([min(max(row, 0), most) for row in (top, bottom)], kind)
-        first, last = np.searchsorted(self.row, between)
-        return slice(int(first), int(last))
+    def runs_between(self, top: int, bottom: int) -> slice:
+        """The runs from a row up to another."""
+        begins = self.firsts
+        last = len(begins) - 1
+        return slice(*(int(begins[min(max(row, 0), last)]) for row in (top, bottom)))
+
+    def runs_of(self, patch: int, top: int, bottom: int) -> NDArray[np.int64]:
+        """The numbers of one patch's runs from a row up to another: on a plate of holes most are others'."""
+        numbers, begins = self._by_patches
+        own = numbers[begins[patch] : begins[patch + 1]]
+        first, last = np.searchsorted(self.row[own], (top, bottom)).tolist()
+        return own[first:last]
 
     def alone(self, patch: int) -> NDArray[np.bool_]:
         """One patch as the chosen one of all."""
         return np.asarray(np.arange(self.count) == patch)
 
-    def painted(
-        self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
-    ) -> Mask:
+    def painted(self, chosen: Chosen, top: int, bottom: int, left: int, right: int) -> Mask:
         """Mask (rows, columns) of the chosen patches in a part of the sheet."""
         mask = np.zeros((bottom - top, right - left), np.uint8)
-        rows = self.runs_between(top, bottom)
-        own = rows.start + np.flatnonzero(chosen[self.patch[rows]])
+        own = self._chosen_runs(chosen, top, bottom)
         _paint(mask, self.row[own] - top, self.begin[own] - left, self.end[own] - left)
         return mask
 
+    def _chosen_runs(self, chosen: Chosen, top: int, bottom: int) -> NDArray[np.int64]:
+        """The numbers of the chosen patches' runs from a row up to another."""
+        if not isinstance(chosen, np.ndarray):
+            return self.runs_of(chosen, top, bottom)
+        rows = self.runs_between(top, bottom)
+        return np.asarray(rows.start + np.flatnonzero(chosen[self.patch[rows]]))
+
     def runs_within(
-        self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
+        self, chosen: Chosen, top: int, bottom: int, left: int, right: int
     ) -> tuple[Numbers, Numbers, Numbers]:
         """Row, begin and end of the runs of the chosen patches in a part of the sheet, from its corner."""
-        rows = self.runs_between(top, bottom)
-        own = rows.start + np.flatnonzero(chosen[self.patch[rows]])
+        own = self._chosen_runs(chosen, top, bottom)
         begin = np.maximum(self.begin[own] - np.int32(left), np.int32(0))
         end = np.minimum(self.end[own] - np.int32(left), np.int32(right - left))
         within = begin < end

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.effort import FEW_PX
 from morfax.tracer.limits import PAPER
 
@@ -192,8 +193,7 @@ def _tile(slit: Slit, darkness: Darkness) -> Darkness:
     """The darkness of a tile as the slit sees it in the direction that fits best."""
     best = np.full(darkness.shape, -np.inf, np.float32)
     seen = np.zeros_like(darkness)
-    reach_px = round(REACH_WIDTHS * slit.width_px)
-    near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach_px + 1,) * 2)
+    near = disc(round(REACH_WIDTHS * slit.width_px))
     for k in range(DIRECTIONS):
         direction = math.pi * k / DIRECTIONS
         through = cv2.filter2D(
