@@ -12,7 +12,6 @@ Source: our own; joining runs by a forest of parents is the textbook's way.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -85,11 +84,6 @@ class Patches:
         """First row, last row + 1, first column, last column + 1 of the chosen patches."""
         tops, bottoms, lefts, rights = self.boxes[chosen].T
         return int(tops.min()), int(bottoms.max()), int(lefts.min()), int(rights.max())
-
-    @cached_property
-    def all_of_them(self) -> NDArray[np.bool_]:
-        """All patches as chosen ones."""
-        return np.ones(self.count, np.bool_)
 
     @cached_property
     def _row_begins(self) -> NDArray[np.int64]:
@@ -220,32 +214,6 @@ def _boxes(row, begin, end, patch, count):  # type: ignore[no-untyped-def]
         box[0], box[1] = min(box[0], row[k]), max(box[1], row[k] + 1)
         box[2], box[3] = min(box[2], begin[k]), max(box[3], end[k])
     return boxes
-
-
-@njit(cache=True, _nrt=False)
-def nearest_run(runs, place_mm, sheet, among):  # type: ignore[no-untyped-def]
-    """Distance, mm, of the pixel of some runs that is nearest to a place, its centre (x, y) mm, and the run's
-    number; the first run, infinitely far, if none is `among` the patches that count.
-
-    `runs`: row, begin, end and patch of each; `sheet`: how many rows it has, and the pixels' pitch, mm.
-    """
-    (row, begin, end, patch), (x_mm, y_mm), (rows, pitch_mm) = runs, place_mm, sheet
-    column, best, least_mm = round(x_mm / pitch_mm - 0.5), 0, np.inf
-    x, y = np.nan, np.nan
-    # from the place's row down, then up, as far as a row may be nearer
-    begins = np.searchsorted(row, math.floor(rows - y_mm / pitch_mm))
-    for way, first, stop in ((1, begins, len(row)), (-1, begins - 1, -1)):
-        for k in range(first, stop, way):
-            own_y = (rows - row[k] - 0.5) * pitch_mm
-            if abs(own_y - y_mm) > least_mm:
-                break
-            if not among[patch[k]]:
-                continue
-            own_x = (min(max(column, begin[k]), end[k] - 1) + 0.5) * pitch_mm
-            away_mm = math.hypot(own_x - x_mm, own_y - y_mm)
-            if away_mm < least_mm or (away_mm == least_mm and k < best):
-                best, least_mm, x, y = k, away_mm, own_x, own_y
-    return least_mm, x, y, best
 
 
 @njit(cache=True)

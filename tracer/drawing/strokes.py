@@ -24,13 +24,14 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.motion.median import median
-from morfax.tracer.drawing.components import Patches, nearest_run
+from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.lengths import one_pen_mm
 from morfax.tracer.drawing.middles import deepest, ink_about
+from morfax.tracer.drawing.nearest_run import nearest_run
 from morfax.tracer.drawing.numbering import ALIKE, InkSpread, longest_first
 from morfax.tracer.drawing.weighing import Weight, weighed_mm
 from morfax.tracer.effort import MANY
@@ -91,8 +92,6 @@ class Sheet:
     taken: frozenset[int] = frozenset()
     weights: dict[int, Weight] = field(default_factory=dict, repr=False, compare=False)
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
-    # whether lines of patches may begin at a reference point (see `reference.may_lead`)
-    leads: dict[int, bool] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -195,7 +194,7 @@ class Sheet:
         if not len(runs.row):
             return math.inf, np.zeros(2), -1
         every = runs.row, runs.begin, runs.end, runs.patch
-        counts = runs.all_of_them if among is None else among
+        counts = np.ones(runs.count, np.bool_) if among is None else among
         away_mm, x_mm, y_mm, run = nearest_run(every, place_mm, sheet, counts)
         return float(away_mm), np.array([x_mm, y_mm]), int(runs.patch[run])
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from morfax.tracer.drawing.blocks import runs_in
-from morfax.tracer.drawing.components import Patches, nearest_run
+from morfax.tracer.drawing.components import Patches
+from morfax.tracer.drawing.nearest_run import nearest_run
 from tests.tracer.sensing.kernels import COMPILED_AND_PLAIN, kernel
 
 
@@ -19,6 +20,22 @@ def test_the_runs_of_some_rows_however_far_off_the_sheet_these_are() -> None:
     found = [patches.runs_between(*rows) for rows in asked]
     expected = [(0, 0), (0, 2), (2, 4), (0, 3), (3, 4), (4, 4)]
     assert [(runs.start, runs.stop) for runs in found] == expected
+
+
+def test_one_patch_is_painted_by_its_number_as_by_the_choice_of_it() -> None:
+    patches = blots(4)
+    for patch in range(0, patches.count, 7):
+        for box in ((0, *SHEET[:1], 0, SHEET[1]), (-1, 15, 3, 30), (12, 45, -2, 70)):
+            chosen = patches.painted(patches.alone(patch), *box)
+            assert np.array_equal(patches.painted(patch, *box), chosen)
+            assert all(
+                np.array_equal(one, other)
+                for one, other in zip(
+                    patches.runs_within(patch, *box),
+                    patches.runs_within(patches.alone(patch), *box),
+                    strict=True,
+                )
+            )
 
 
 PITCH_MM = 0.1
