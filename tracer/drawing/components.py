@@ -58,6 +58,16 @@ class Patches:
         return cls(row, begin, end, patch, int(count))
 
     @cached_property
+    def firsts(self) -> NDArray[np.int64]:
+        """The number of the first run of each row, and of the one after the last row with runs."""
+        return np.concatenate([[0], np.cumsum(np.bincount(self.row))])
+
+    @cached_property
+    def every(self) -> NDArray[np.bool_]:
+        """All patches, as those that count."""
+        return np.ones(self.count, bool)
+
+    @cached_property
     def areas(self) -> NDArray[np.float64]:
         """Pixels of each patch."""
         return np.asarray(np.bincount(self.patch, self.end - self.begin, self.count), float)
@@ -86,12 +96,6 @@ class Patches:
         return int(tops.min()), int(bottoms.max()), int(lefts.min()), int(rights.max())
 
     @cached_property
-    def _row_begins(self) -> NDArray[np.int64]:
-        """The number of the first run of each row, and how many runs there are, as of the row after them."""
-        rows = np.arange(int(self.row[-1]) + 2 if len(self.row) else 1, dtype=self.row.dtype)
-        return np.searchsorted(self.row, rows)
-
-    @cached_property
     def _by_patches(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The numbers of all runs, patch by patch and by rows, and where those of each patch begin."""
         begins = np.zeros(self.count + 1, np.int64)
@@ -100,7 +104,7 @@ class Patches:
 
     def runs_between(self, top: int, bottom: int) -> slice:
         """The runs from a row up to another."""
-        begins = self._row_begins
+        begins = self.firsts
         last = len(begins) - 1
         return slice(*(int(begins[min(max(row, 0), last)]) for row in (top, bottom)))
 

@@ -17,7 +17,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,11 +28,11 @@ from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
-from morfax.tracer.drawing.lengths import one_pen_mm
+from morfax.tracer.drawing.lengths import PIXELS_OFF, Told, one_pen_mm, told
 from morfax.tracer.drawing.middles import deepest, ink_about
-from morfax.tracer.drawing.nearest_run import nearest_run
-from morfax.tracer.drawing.numbering import ALIKE, InkSpread, longest_first
-from morfax.tracer.drawing.weighing import Weight, weighed_mm
+from morfax.tracer.drawing.nearest_ink import nearest_run
+from morfax.tracer.drawing.numbering import InkSpread, longest_first
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]
@@ -73,7 +72,7 @@ class Stroke:
         return np.array(kept).reshape(-1, 2)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Sheet:
     """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes.
 
@@ -90,7 +89,6 @@ class Sheet:
     has_references: bool = True  # small crosses and rings may be reference points
     bare_rings: bool = False  # rings are, whatever the line from them leads to
     taken: frozenset[int] = frozenset()
-    weights: dict[int, Weight] = field(default_factory=dict, repr=False, compare=False)
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
@@ -115,6 +113,11 @@ class Sheet:
             )
         return sheet
 
+    @cached_property
+    def told(self) -> Told:
+        """Lengths and widths of the patches as lines, mm, as a reader is told them."""
+        return told(self)
+
     def about(self, patch: int, around_mm: float) -> Sheet:
         """The sheet with a window about a patch; itself if that is no small part of it."""
         around_px = math.ceil(around_mm / self.drawing.pitch_mm)
@@ -132,7 +135,7 @@ class Sheet:
         lengths_mm = one_pen_mm(self)
         if are_lines.any():
             lengths_mm = np.where(are_lines, lengths_mm, 0.0)
-        long = np.flatnonzero(lengths_mm >= (1 - 2 * ALIKE) * lengths_mm.max())
+        long = np.flatnonzero(lengths_mm >= (1 - 2 * PIXELS_OFF) * lengths_mm.max())
         return self.stroke(int(self.longest_first(long)[0]))
 
     def longest_first(self, patches: Pixels) -> Pixels:
@@ -144,7 +147,7 @@ class Sheet:
         weights = (runs.end - runs.begin).astype(float)
         sums = [np.bincount(runs.patch, weights * column, runs.count) for column in places_mm.T]
         middles_mm = np.column_stack(sums)[patches] / runs.areas[patches][:, None]
-        lengths_mm = weighed_mm(self, patches, one_pen_mm(self)[patches])
+        lengths_mm = self.told.lengths_mm[patches]
         return patches[longest_first(lengths_mm, middles_mm, InkSpread.of(places_mm, weights))]
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
@@ -189,13 +192,14 @@ class Sheet:
     def _nearest_ink(
         self, place_mm: tuple[float, float], among: NDArray[np.bool_] | None = None
     ) -> tuple[float, Array, int]:
-        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches."""
+        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches.
+        Infinitely far, and no patch, if there is none.
+        """
         runs, sheet = self.patches, (self.drawing.darkness.shape[0], self.drawing.pitch_mm)
         if not len(runs.row):
             return math.inf, np.zeros(2), -1
-        every = runs.row, runs.begin, runs.end, runs.patch
-        counts = np.ones(runs.count, np.bool_) if among is None else among
-        away_mm, x_mm, y_mm, run = nearest_run(every, place_mm, sheet, counts)
+        own, counts = (runs.begin, runs.end, runs.patch), runs.every if among is None else among
+        away_mm, x_mm, y_mm, run = nearest_run(own, runs.firsts, place_mm, sheet, counts)
         return float(away_mm), np.array([x_mm, y_mm]), int(runs.patch[run])
 
     def middles_mm(self, patches: Pixels) -> Array:
@@ -273,7 +277,6 @@ class Sheet:
         row, begin, end = self.patches.runs_within(patch, *part)
         inner = rows[0] - part[0], rows[1] - part[0], columns[0] - part[2], columns[1] - part[2]
         depth = depth_along(row, begin, end, (part[1] - part[0], part[3] - part[2]))
-        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
         i, j = deepest(row, begin, end, depth, inner)
-        filled = ink_about(row, begin, end, (i, j), disc)
+        filled = ink_about(row, begin, end, (i, j), disc(disc_px))
         return i + part[0], j + part[2], filled

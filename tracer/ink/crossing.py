@@ -21,7 +21,7 @@ from itertools import combinations
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.curves import hermite
+from morfax.motion.curves import bow
 from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import direction
@@ -195,7 +195,7 @@ class Crossing:
     def _hermites(self, pairs: Sequence[Pair]) -> list[Array]:
         """Cubics from legs to their partners, (n, 2) mm."""
         return [
-            hermite(one.end_mm, one.heading_rad, onto.end_mm, onto.heading_rad)
+            bow(one.end_mm, one.heading_rad, onto.end_mm, onto.heading_rad)
             for one, onto in ((self.legs[a], self.legs[b].turned_round()) for a, b in pairs)
         ]
 

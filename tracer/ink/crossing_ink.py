@@ -39,6 +39,26 @@ class WaysOn(NamedTuple):
     corners: Mapping[Pair, Array]
 
 
+class Boxes(NamedTuple):
+    """Rows and columns of some pixels in a window, the shape of that, and from pixel to pixel, mm."""
+
+    pixels: tuple[NDArray[np.int64], NDArray[np.int64]]
+    shape: tuple[int, int]
+    pitch_mm: float
+
+    def worst(self, wrong: Array, width_mm: float) -> float:
+        """The sum of the squares of what is wrong (n,), too dark or too pale, in the worst box as wide as a
+        line, in squares of that width.
+        """
+        side, most = 2 * round(0.5 * width_mm / self.pitch_mm) + 1, 0.0
+        for signed in (wrong, -wrong):
+            squares = np.zeros(self.shape)
+            squares[self.pixels] = np.maximum(signed, 0.0) ** 2
+            sums = cv2.boxFilter(squares, -1, (side, side), normalize=False)
+            most = max(most, float(sums.max()))
+        return most * (self.pitch_mm / width_mm) ** 2
+
+
 @dataclass(frozen=True)
 class CrossingInk:
     """The ink of a crossing: its pixels in a window, with how far each is from the crossing's legs."""
@@ -103,13 +123,7 @@ class CrossingInk:
 
     def worst(self, wrong: Array) -> float:
         """The same of ink that is left, or drawn on paper, in the worst box as wide as a line."""
-        side, most = 2 * round(self.ink.half_mm / self.pitch_mm) + 1, 0.0
-        for signed in (wrong, -wrong):
-            squares = np.zeros(self.shape)
-            squares[self.pixels] = np.maximum(signed, 0.0) ** 2
-            sums = cv2.boxFilter(squares, -1, (side, side), normalize=False)
-            most = max(most, float(sums.max()))
-        return most * (self.pitch_mm / (2 * self.ink.half_mm)) ** 2
+        return Boxes(self.pixels, self.shape, self.pitch_mm).worst(wrong, 2 * self.ink.half_mm)
 
     def settled(self, crossing: Crossing, drawn: WaysOn) -> WaysOn:
         """The same pairs with their corners moved to where they explain the ink best."""

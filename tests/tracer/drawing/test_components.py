@@ -7,7 +7,7 @@ import pytest
 
 from morfax.tracer.drawing.blocks import runs_in
 from morfax.tracer.drawing.components import Patches
-from morfax.tracer.drawing.nearest_run import nearest_run
+from morfax.tracer.drawing.nearest_ink import nearest_run
 from tests.tracer.sensing.kernels import COMPILED_AND_PLAIN, kernel
 
 
@@ -25,17 +25,12 @@ def test_the_runs_of_some_rows_however_far_off_the_sheet_these_are() -> None:
 def test_one_patch_is_painted_by_its_number_as_by_the_choice_of_it() -> None:
     patches = blots(4)
     for patch in range(0, patches.count, 7):
-        for box in ((0, *SHEET[:1], 0, SHEET[1]), (-1, 15, 3, 30), (12, 45, -2, 70)):
+        for box in ((0, SHEET[0], 0, SHEET[1]), (-1, 15, 3, 30), (12, 45, -2, 70)):
             chosen = patches.painted(patches.alone(patch), *box)
             assert np.array_equal(patches.painted(patch, *box), chosen)
-            assert all(
-                np.array_equal(one, other)
-                for one, other in zip(
-                    patches.runs_within(patch, *box),
-                    patches.runs_within(patches.alone(patch), *box),
-                    strict=True,
-                )
-            )
+            by_number = patches.runs_within(patch, *box)
+            by_choice = patches.runs_within(patches.alone(patch), *box)
+            assert all(map(np.array_equal, by_number, by_choice))
 
 
 PITCH_MM = 0.1
@@ -55,15 +50,15 @@ def test_the_nearest_run_of_some_patches_is_that_of_the_nearest_pixel(
     seed: int, plain: bool
 ) -> None:
     patches, rng = blots(seed), np.random.default_rng(seed)
-    find, runs = kernel(nearest_run, plain), (patches.row, patches.begin, patches.end)
+    find, runs = kernel(nearest_run, plain), (patches.begin, patches.end)
     number = np.repeat(np.arange(len(patches.row)), patches.end - patches.begin)
-    columns = np.concatenate([np.arange(a, b) for a, b in zip(*runs[1:], strict=True)])
+    columns = np.concatenate([np.arange(a, b) for a, b in zip(*runs, strict=True)])
     x_mm, y_mm = (columns + 0.5) * PITCH_MM, (SHEET[0] - patches.row[number] - 0.5) * PITCH_MM
     for among in (np.ones(patches.count, bool), rng.random(patches.count) > 0.7):
         for place in rng.uniform(-1.0, 7.0, (20, 2)):
             away_mm = np.hypot(x_mm - place[0], y_mm - place[1])
             away_mm[~among[patches.patch[number]]] = np.inf
-            own = (*runs, patches.patch), (float(place[0]), float(place[1]))
+            own = (*runs, patches.patch), patches.firsts, (float(place[0]), float(place[1]))
             found_mm, x, y, run = find(*own, (SHEET[0], PITCH_MM), among)
             nearest = int(np.argmin(away_mm))
             assert found_mm == pytest.approx(away_mm[nearest], abs=1e-12)  # rounding
