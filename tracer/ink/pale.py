@@ -31,10 +31,10 @@ from morfax.tracer.drawing.paper import disc
 from morfax.tracer.drawing.spots import SPOT_PX, noise_of_spots, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 from morfax.tracer.effort import FEW_PX
+from morfax.tracer.limits import FADES
 
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
-# pixels, and spots of the picture's softness: so near to ink is its own rim
-RIM_PX, SPOTS = 3, 3.0
+RIM_PX = 3  # beyond where ink fades: so near to ink is its own rim
 LEAST_MM = 5.0  # a shorter pale line is a smudge
 # of the length of all its branches that the box about it measures: on a grained paper what is more branched
 # is grain, which thins to a web; by trial on photographs of paper and boards
@@ -62,7 +62,7 @@ def pale_lines(drawing: Drawing) -> list[Pale]:
 def _pale(drawing: Drawing) -> Mask:
     """Where a drawing is darker than its paper's noise, and is no ink, nor its rim."""
     noise = drawing.noise
-    rim_px = RIM_PX + math.ceil(SPOTS * float(np.nan_to_num(noise.softness_px)))
+    rim_px = RIM_PX + math.ceil(FADES * float(np.nan_to_num(noise.softness_px)))
     level = max(LEAST, ABOVE_NOISE * LEFT_OF_NOISE * float(np.nan_to_num(noise.paper)))
     levels = level * times_as_noisy(drawing.darkness)
     if drawing.grainy:  # a slit makes strands of the paper's grain

@@ -48,7 +48,7 @@ from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 NARROW, ROUND_END = 2.6, 6.0
 END = 5.0  # of a stroke: shows whether it ends in a bar
 OTHERS = 0.3  # of the longest stroke: a shorter one is no part of the contour, nor are all those together
-MOST_PARTS, MOST_OTHERS = 4, 40  # strokes; a patch with more is a net
+MOST_PARTS = 4  # strokes that make up the contour; a patch with more is a net
 MOST_PLACES = 6000  # of ink
 
 
@@ -106,8 +106,6 @@ def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> list[Unexp
         (parts if is_part else others).append(stroke)
     others_mm = sum(stroke.length_mm for stroke in others)
     if len(strokes) == 1 or len(parts) > MOST_PARTS or others_mm > least_mm:
-        return None
-    if len(others) > MOST_OTHERS:
         return None
     # 2. the bars that the others lie within, or in which the parts end
     end_mm, short_mm = END * width_mm, THICK[1] * width_mm
