@@ -20,6 +20,7 @@ from morfax.motion.polyline import (
     Nearest,
     area_mm2,
     at_lengths,
+    come_to,
     lengths_mm,
     nearest_mm,
     plain,
@@ -195,3 +196,12 @@ def test_the_area_is_positive_counter_clockwise_wherever_the_line_lies() -> None
     oblong = np.array([[0.0, 0], [3, 0], [3, 2], [0, 2]])
     assert area_mm2(oblong) == 6.0 and area_mm2(oblong[::-1]) == -6.0
     assert area_mm2(oblong + 1e6) == pytest.approx(6.0, abs=1e-6)
+
+
+def test_the_place_to_which_a_line_comes_after_a_length_is_the_first_that_is_so_far() -> None:
+    line = np.cumsum(np.random.default_rng(3).normal(size=(50, 2)), axis=0)
+    come_mm = lengths_mm(line)[1:]
+    for length_mm in (0.0, 1.0, float(come_mm[20]), float(come_mm[-1]), 1e3):
+        wanted = int(np.searchsorted(come_mm, length_mm))
+        assert come_to(line[0], line[1:], length_mm) == wanted
+        assert come_to.py_func(line[0], line[1:], length_mm) == wanted

@@ -90,8 +90,6 @@ class Sheet:
     bare_rings: bool = False  # rings are, whatever the line from them leads to
     taken: frozenset[int] = frozenset()
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
-    # whether lines of patches may begin at a reference point (see `reference.may_lead`)
-    leads: dict[int, bool] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 

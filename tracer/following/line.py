@@ -141,9 +141,7 @@ class Line:
     @property
     def cell_share(self) -> float | None:
         """The share of its way that the swinging cell led the head; None if nothing says who led."""
-        if not self.led.firsts:
-            return None
-        return share_of_cell(self.led.lengths_mm(self.xy_mm))
+        return share_of_cell(self.led.lengths_mm(self.xy_mm)) if self.led.firsts else None
 
     @property
     def start_mm(self) -> tuple[float, float]:
@@ -153,11 +151,10 @@ class Line:
     @property
     def places_mm(self) -> Array:
         """Places along it, (n, 2) mm."""
-        in_memory = self._in_memory
-        return one_in(self.xy_mm, THINNED) if in_memory is None else in_memory
+        return one_in(self.xy_mm, THINNED) if self._thinned is None else self._thinned
 
     @cached_property
-    def _in_memory(self) -> Array | None:
+    def _thinned(self) -> Array | None:
         """The same of a line in memory. Those of a line in a file would take 0.3 MB a metre, and are read."""
         return None if is_mapped(self.xy_mm) else self.xy_mm[::THINNED]
 
@@ -179,9 +176,8 @@ class Line:
     @property
     def loop_mm(self) -> Array:
         """Places along its loop, without the lead line before that, (n, 2) mm."""
-        if not self.loop_from:
-            return self.places_mm
-        return one_in(self.xy_mm[self.loop_from :], THINNED)
+        own = self.loop_from
+        return one_in(self.xy_mm[own:], THINNED) if own else self.places_mm
 
     @property
     def own_mm(self) -> Array:

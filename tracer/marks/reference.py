@@ -103,15 +103,8 @@ def reach_mm(width_mm: float, pitch_mm: float) -> float:
 
 def may_lead(sheet: Sheet, stroke: Stroke) -> bool:
     """Whether a line may begin at a reference point: it has ends, other ink is near it, or it goes round a
-    hole that would do, and further than that; found once.
+    hole that would do, and further than that.
     """
-    if stroke.patch not in sheet.leads:
-        sheet.leads[stroke.patch] = _may_lead(sheet, stroke)
-    return sheet.leads[stroke.patch]
-
-
-def _may_lead(sheet: Sheet, stroke: Stroke) -> bool:
-    """The same, by what is about the line."""
     pitch_mm = sheet.drawing.pitch_mm
     about_px = math.ceil(reach_mm(stroke.width_mm, pitch_mm) / pitch_mm)
     if len(stroke.ends_mm) or not _is_alone(sheet.patches, stroke.patch, about_px):

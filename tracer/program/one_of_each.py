@@ -72,20 +72,18 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
     loops = SmallLoops(setup.sheet, setup.settings)
     others, taken = dict[int, list[Line]](), set[int]()
     letters = lettering(setup.sheet) if may_solve(setup) else set[int]()
+    telling = list[Line]()  # as many of the lines as tell whether marks are read
     for contour in asked:
-        if _is_done(
-            contour, [lines[k] for k in _near(contour, boxes_mm[: len(lines)])], begins_mm
-        ):
-            continue
-        if which == "outer" and _is_inner(contour, lines):
+        near = [lines[k] for k in _near(contour, boxes_mm[: len(lines)])]
+        is_inner = which == "outer" and _is_inner(contour, lines)
+        if is_inner or _is_done(contour, near, begins_mm):
             continue
         if isinstance(which, str) and selection.is_shape(setup.sheet, contour, asked):
             unclear.append(contour)
             continue
         is_letter = contour.stroke.patch in letters
-        reads_marks = setup.operator.reads_marks(lines)
-        here = setup.after(come_mm, total_mm)
-        here = kept_off(here, taken - {contour.stroke.patch})
+        reads_marks = setup.operator.reads_marks(telling)
+        here = kept_off(setup.after(come_mm, total_mm), taken - {contour.stroke.patch})
         found = _found(here, loops, contour, is_letter, reads_marks)
         line = found.line
         if line is not None:
@@ -94,6 +92,8 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
                 others[contour.number] = found.others
             boxes_mm[len(lines)] = line.box_mm
             lines.append(line)
+            if line.reference_mm is not None or not (line.is_dot or telling):
+                telling.append(line)
             begins_mm += references_of([line])
             come_mm += line.length_mm
         elif isinstance(which, str) or contour.number not in which:
@@ -105,7 +105,7 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
 
 
 def references_of(lines: list[Line]) -> list[tuple[float, float]]:
-    """The reference points from which lines, or lead lines, begin, mm."""
+    """Where lines, or lead lines, begin at a reference point, mm."""
     return [line.begin_mm for line in lines if line.is_lead or line.reference_mm is not None]
 
 

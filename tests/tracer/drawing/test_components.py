@@ -22,6 +22,17 @@ def test_the_runs_of_some_rows_however_far_off_the_sheet_these_are() -> None:
     assert [(runs.start, runs.stop) for runs in found] == expected
 
 
+def test_one_patch_is_painted_by_its_number_as_by_the_choice_of_it() -> None:
+    patches = blots(4)
+    for patch in range(0, patches.count, 7):
+        for box in ((0, SHEET[0], 0, SHEET[1]), (-1, 15, 3, 30), (12, 45, -2, 70)):
+            chosen = patches.painted(patches.alone(patch), *box)
+            assert np.array_equal(patches.painted(patch, *box), chosen)
+            by_number = patches.runs_within(patch, *box)
+            by_choice = patches.runs_within(patches.alone(patch), *box)
+            assert all(map(np.array_equal, by_number, by_choice))
+
+
 PITCH_MM = 0.1
 SHEET = (40, 60)  # rows, columns
 

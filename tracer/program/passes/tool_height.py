@@ -85,7 +85,7 @@ def standing(
 ) -> Array:
     """X and Y stand while Z makes its moves, (n, 3) mm."""
     z_mm = z_moves(from_mm, moves, work.acceleration_mm_s2, rate_hz)
-    return _together(xy_mm, z_mm, len(z_mm))
+    return _together(np.asarray(xy_mm), z_mm, len(z_mm))
 
 
 def at_height(xy_mm: Array, z_mm: float | Array) -> Array:
@@ -95,6 +95,6 @@ def at_height(xy_mm: Array, z_mm: float | Array) -> Array:
 
 def _together(xy_mm: Array, z_mm: float | Array, rows: int) -> Array:
     """X, Y and Z beside each other, (rows, 3) mm; to stack them, numpy goes row by row."""
-    positions_mm = np.empty((rows, 3))
-    positions_mm[:, :2], positions_mm[:, 2] = xy_mm, z_mm
+    positions_mm = np.empty((rows, xy_mm.shape[-1] + 1))
+    positions_mm[:, :-1], positions_mm[:, -1] = xy_mm, z_mm
     return positions_mm
