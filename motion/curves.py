@@ -16,7 +16,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.plane import NOTHING_MM, SAME_MM, length_between
+from morfax.motion.plane import NOTHING_MM, SAME_MM, heading_of, length_between
 from morfax.motion.polyline import APART_MM
 from morfax.motion.speed_limits import braked
 
@@ -28,6 +28,21 @@ def hermite(start: Array, heading: float, end: Array, end_heading: float) -> Arr
     chord = float(np.hypot(*(end - start)))
     leaving = chord * math.cos(heading), chord * math.sin(heading)
     arriving = chord * math.cos(end_heading), chord * math.sin(end_heading)
+    return cubic(start, leaving, end, arriving, max(2, math.ceil(chord / APART_MM) + 1))
+
+
+def bow(start: Array, heading: float, end: Array, end_heading: float) -> Array:
+    """The cubic from one place and heading to another that is an arc, to 2e-4 of its radius up to a quarter
+    turn, where an arc would have these headings, (n, 2) mm.
+
+    At angles a to the chord an arc's slopes are 1 / cos²(a/2) times as long as the chord.
+    """
+    chord, along = float(np.hypot(*(end - start))), heading_of(end - start)
+    slopes = list[tuple[float, float]]()
+    for at in (heading, end_heading):
+        long = chord / max(math.cos(0.5 * (at - along)) ** 2, 0.5)
+        slopes.append((long * math.cos(at), long * math.sin(at)))
+    leaving, arriving = slopes
     return cubic(start, leaving, end, arriving, max(2, math.ceil(chord / APART_MM) + 1))
 
 

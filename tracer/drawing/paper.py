@@ -4,19 +4,23 @@ Signals: a grey picture (0..255), or a channel of a coloured one, in; the paper'
 
 The paper is the picture with its dark strokes narrower than a few mm closed (a grey closing), smoothed.
 Whether the strokes are dark on light or light on dark is read off the skew of the grey levels about their
-local mean: strokes are the smaller part, so they stand out further.
+local mean: strokes are the smaller part, so they stand out further. Bold outlines are no smaller part of what
+is about them, and a picture may hold light and dark strokes: where neither stands out clearly, what takes
+most of the sheet is its paper, and light lines are only believed on dark paper.
 
 Source: our own; the patent takes the drawing for granted.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.median import median
 from morfax.tracer.drawing.blocks import Blocks
 from morfax.tracer.drawing.lighting import Lighting, from_beside
 
@@ -26,6 +30,8 @@ SHARP_MM = 1.5  # a shape's edge is no broader, most shadows' are; by trial
 DARK = 0.5  # of the ink's contrast: what is darker than the paper by more is ink
 BLACK = 0.8  # of the ink's contrast: a paler area is a panel, or in shadow; by trial
 ALIKE = 0.02  # of the ink's contrast: levels that differ by less are one
+# skew of two levels of which one takes a quarter of the sheet: strokes take less of it
+CLEAR = 1.155
 FEW = 0.01  # of a spot: so little bare paper in it tells no level
 REDUCED_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least
 
@@ -62,9 +68,7 @@ class Paper:
     def of_reduced(cls, small: Levels, by: int, columns: int, pitch_mm: float) -> Paper:
         """The paper of a picture of so many columns that was reduced already."""
         across = _stroke_px(by, pitch_mm)
-        relief = small - cv2.blur(small, (across, across))
-        # strokes take less room than paper: the few stand out further
-        is_light = float((relief * relief * relief).sum()) <= 0
+        is_light = _is_light(small, across)
         level = _closed(small, is_light, across)
         smooth = np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32)
         return cls(smooth, level, by, columns, is_light, by * pitch_mm)
@@ -92,7 +96,7 @@ class Paper:
         beside = 2 * round(3 * WIDEST_STROKE_MM / self.pitch_mm) + 1
         brightest = cv2.erode(level, np.ones((beside, beside), np.uint8))
         dark = (level - brightest > SHAPE * contrast).view(np.uint8)
-        grown = cv2.dilate(dark, _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
+        grown = cv2.dilate(dark, disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
         return np.asarray(grown, bool)
 
     def lighting(self, small: Levels) -> Lighting | None:
@@ -114,7 +118,7 @@ class Paper:
         `small` is the reduced picture. A shape is uncovered from its edges inwards, as far each time as
         `shapes` sees.
         """
-        paper, about = self, _disc(round(WIDEST_STROKE_MM / self.pitch_mm))
+        paper, about = self, disc(round(WIDEST_STROKE_MM / self.pitch_mm))
         uncovered = np.zeros(self.reduced.shape, np.uint8)
         while True:
             uncovered |= paper.shapes(contrast).view(np.uint8)
@@ -150,6 +154,17 @@ class Paper:
         return np.asarray(np.where(among > FEW, level, about), np.float32)
 
 
+def _is_light(small: Levels, across: int) -> bool:
+    """Whether the paper of a reduced picture is lighter than its strokes, of which none is broader."""
+    relief = small - cv2.blur(small, (across, across))
+    # strokes take less room than paper: the few stand out further
+    third = float((relief * relief * relief).sum())
+    if third <= 0:
+        return True
+    is_clear = third * math.sqrt(relief.size) >= CLEAR * float((relief * relief).sum()) ** 1.5
+    return not is_clear and median(small.ravel()) > float(small.mean())
+
+
 def _stroke_px(by: int, pitch_mm: float) -> int:
     """How broad the widest stroke is on a picture of a pitch that was reduced; an odd number."""
     return 2 * (max(24, round(WIDEST_STROKE_MM / pitch_mm)) // (2 * by)) + 1
@@ -158,10 +173,10 @@ def _stroke_px(by: int, pitch_mm: float) -> int:
 def _closed(small: Levels, is_light: bool, across: int) -> Levels:
     """A reduced picture without its strokes."""
     closing = cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN
-    return np.asarray(cv2.morphologyEx(small, closing, _disc(across // 2)), np.float32)
+    return np.asarray(cv2.morphologyEx(small, closing, disc(across // 2)), np.float32)
 
 
-def _disc(radius_px: int) -> NDArray[np.uint8]:
+def disc(radius_px: int) -> NDArray[np.uint8]:
     """Mask of a disc."""
     across = 2 * radius_px + 1
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)

@@ -21,7 +21,7 @@ from itertools import combinations
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.curves import hermite
+from morfax.motion.curves import bow, hermite
 from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import direction
@@ -175,7 +175,7 @@ class Crossing:
         now = list(pairs)
         for one, other in combinations(range(len(now)) if self.inked else (), 2):
             (a, b), (c, d) = now[one], now[other]
-            way, onto = self._hermites([now[one], now[other]])
+            way, onto = self._bows([now[one], now[other]])
             tried = [
                 (max(costs[pair] for pair in two), two)
                 for two in (((a, c), (b, d)), ((a, d), (b, c)))
@@ -192,10 +192,10 @@ class Crossing:
         """What was felt within it."""
         return SharedInk([inner.run for inner in self.inked])
 
-    def _hermites(self, pairs: Sequence[Pair]) -> list[Array]:
+    def _bows(self, pairs: Sequence[Pair]) -> list[Array]:
         """Cubics from legs to their partners, (n, 2) mm."""
         return [
-            hermite(one.end_mm, one.heading_rad, onto.end_mm, onto.heading_rad)
+            bow(one.end_mm, one.heading_rad, onto.end_mm, onto.heading_rad)
             for one, onto in ((self.legs[a], self.legs[b].turned_round()) for a, b in pairs)
         ]
 
@@ -206,17 +206,18 @@ class Crossing:
             return None
         vertices = [self.solution.corners.get(pair) for pair in self.pairs]
         ways = [
-            self._over(pair, NOWHERE if places is None else places)
-            for pair, places in zip(self.pairs, vertices, strict=True)
+            self._over(pair, places) for pair, places in zip(self.pairs, vertices, strict=True)
         ]
         return replace(self._inked, ways=ways, vertices=vertices)
 
-    def _over(self, pair: Pair, vertices: Array) -> Array:
-        """The way from a leg over vertices to its partner, (n, 2) mm."""
-        if not len(vertices):
-            return self._hermites([pair])[0]
+    def _over(self, pair: Pair, vertices: Array | None) -> Array:
+        """The way from a leg over vertices to its partner, (n, 2) mm; without any as it is redrawn."""
+        if vertices is None:
+            return self._bows([pair])[0]
         one, onto = self.legs[pair[0]], self.legs[pair[1]].turned_round()
         stands = one.end_mm, one.heading_rad
+        if not len(vertices):
+            return hermite(*stands, onto.end_mm, onto.heading_rad)
         return np.vstack(stretches_over(stands, one, vertices, onto))
 
     @cached_property

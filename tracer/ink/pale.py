@@ -27,13 +27,14 @@ from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
 from morfax.tracer.drawing.deepening import LEAST, shaded
 from morfax.tracer.drawing.depth import depth_at
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.drawing.spots import SPOT_PX, noise_of_spots, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 from morfax.tracer.effort import FEW_PX
+from morfax.tracer.limits import FADES
 
 LEFT_OF_NOISE = 0.5 / (math.sqrt(math.pi) * SPOT_PX)  # what it leaves of white noise
-# pixels, and spots of the picture's softness: so near to ink is its own rim
-RIM_PX, SPOTS = 3, 3.0
+RIM_PX = 3  # beyond where ink fades: so near to ink is its own rim
 LEAST_MM = 5.0  # a shorter pale line is a smudge
 # of the length of all its branches that the box about it measures: on a grained paper what is more branched
 # is grain, which thins to a web; by trial on photographs of paper and boards
@@ -61,18 +62,17 @@ def pale_lines(drawing: Drawing) -> list[Pale]:
 def _pale(drawing: Drawing) -> Mask:
     """Where a drawing is darker than its paper's noise, and is no ink, nor its rim."""
     noise = drawing.noise
-    rim_px = RIM_PX + math.ceil(SPOTS * float(np.nan_to_num(noise.softness_px)))
+    rim_px = RIM_PX + math.ceil(FADES * float(np.nan_to_num(noise.softness_px)))
     level = max(LEAST, ABOVE_NOISE * LEFT_OF_NOISE * float(np.nan_to_num(noise.paper)))
     levels = level * times_as_noisy(drawing.darkness)
     if drawing.grainy:  # a slit makes strands of the paper's grain
         levels[:] = max(level, STANDS_OUT * noise_of_spots(drawing.darkness, stains=True))
-    rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim_px + 1,) * 2)
     pale = np.zeros(drawing.darkness.shape, np.uint8)
     for top, bottom, rows in strips(
         pale.shape, halo=rim_px + math.ceil(4 * SPOT_PX), pixels=FEW_PX
     ):
         soft = cv2.GaussianBlur(drawing.darkness[rows], (0, 0), SPOT_PX)
-        inked = cv2.dilate((soft > INK).view(np.uint8), rim)
+        inked = cv2.dilate((soft > INK).view(np.uint8), disc(rim_px))
         own = slice(top - rows.start, bottom - rows.start)
         pale[top:bottom] = (inked == 0)[own]
         pale[top:bottom] &= soft[own] > of_pixels(levels, top, bottom, soft.shape[1])

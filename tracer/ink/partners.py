@@ -26,7 +26,7 @@ from itertools import combinations
 import numpy as np
 
 from morfax.motion.arrays import ROUNDED, Array
-from morfax.motion.curves import hermite
+from morfax.motion.curves import bow, hermite
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.head.course import ON_INK, SMOOTH, on_ink, through_nodes
 from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink, off_rims_mm
@@ -142,13 +142,15 @@ def way_through(
     """
     incoming, outgoing = legs
     onto = outgoing.end_mm, outgoing.heading_rad
-    straight = hermite(*planner.stands, *onto)
+    straight = bow(*planner.stands, *onto)
     smooth, others = [straight], list[Array]()
     if ink is not None:
         ends = np.vstack([incoming.end_mm, outgoing.end_mm])
         others, vertices = ink.besides(ends), ink.turns_at(ends)
         if vertices is not None and len(vertices):
             return stretches_over(planner.stands, incoming, vertices, outgoing)
+        if vertices is not None:  # as it was held against the ink
+            straight = hermite(*planner.stands, *onto)
         smooth = [kept_in_ink(straight, ink, planner.view.width_mm, others)]
         if vertices is not None:
             return smooth

@@ -26,6 +26,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.plane import cross, direction, left_of_headings, meeting
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.ink.run import parabolas
+from morfax.tracer.limits import NEARLY_PARALLEL
 from morfax.tracer.sensing.ray import SPECK_MM, SPECK_PX, Ray, crossing_mm
 from morfax.tracer.sensing.view import View
 
@@ -37,7 +38,6 @@ PARABOLA = 0.4
 TIGHT = 1.0  # radius: where the rim turns so towards the ink, the line has a corner
 BEYOND = 0.25  # before and after such a corner the parabolas are bent by it
 LONGEST_MITRE = 3.0
-SLIGHT = 0.3  # sine of the turn: a corner that turns by less is left round
 FEWEST = 20  # places of a rim
 TIMES = 2  # it is felt: across the steps of pixels, and across what was felt
 
@@ -133,7 +133,7 @@ def _mitred(way: Array, headings: Array, corners: NDArray[np.int64], most_mm: fl
     parts, at = list[Array](), 0
     for before, after in np.minimum(corners, len(way) - 1).tolist():
         into, out_of = direction(headings[before]), direction(headings[after])
-        if before < at or abs(cross(into, out_of)) < SLIGHT:
+        if before < at or abs(cross(into, out_of)) < NEARLY_PARALLEL:
             continue
         corner = meeting(way[before], into, way[after], out_of)
         if 0 < (corner - way[before]) @ into < most_mm:

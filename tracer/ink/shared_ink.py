@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.neighbours import Neighbours, those_near
-from morfax.motion.plane import CORNER_RAD, SAME_MM, left_of, left_of_headings, unit
+from morfax.motion.plane import CORNER_RAD, left_of, left_of_headings, unit
 from morfax.motion.polyline import at_lengths, lengths_mm
 from morfax.tracer.effort import EVERY_MM, ROUNDS
 from morfax.tracer.ink.beside import LONG
@@ -81,15 +81,17 @@ class SharedInk:
         return np.array([way[[0, -1]] for way in self.ways]).reshape(-1, 2, 2)
 
     def besides(self, way: Array) -> list[Array]:
-        """The ways of the other lines: those that begin and end elsewhere."""
-        others = np.flatnonzero(np.minimum(*self._off_ends_mm(way)) > SAME_MM)
+        """The ways of the other lines: those that begin and end elsewhere. Where a closed line is cut open
+        its leg is felt anew, and may end 0.05 um off.
+        """
+        others = np.flatnonzero(np.minimum(*self._off_ends_mm(way)) > EVERY_MM)
         return [self.ways[k] for k in others.tolist()]
 
     def turns_at(self, ends: Array) -> Array | None:
         """Where the way between two ends (2, 2) mm turns, (m, 2) mm; None if the ink has not told that."""
         there, back = self._off_ends_mm(ends)
         for vertices, on_mm, round_mm in zip(self.vertices, there, back, strict=False):
-            if vertices is not None and min(on_mm, round_mm) < SAME_MM:
+            if vertices is not None and min(on_mm, round_mm) < EVERY_MM:
                 return vertices if on_mm < round_mm else vertices[::-1]
         return None
 

@@ -29,6 +29,7 @@ from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.drawing.sharpening import PutBack, corners_of
+from morfax.tracer.drawing.tips import TURNED
 from morfax.tracer.effort import FINE_PX
 from morfax.tracer.head.course import FELT_LEGS, NODES
 from morfax.tracer.head.leaders import MEMORY, STATIONS
@@ -41,8 +42,7 @@ from morfax.tracer.sensing.view import View
 # that the edge may turn within half of the length over which stations are averaged
 AVERAGED_RAD = 0.36
 LEAST_AVERAGED_PX = 1.6  # half of that length at least
-# stations to either side of a tip, that turn by so much
-TIP_STATIONS, TIP_RAD = 4, math.radians(100)
+TIP_STATIONS = 4  # to either side of a tip, between which the edge turns by `TURNED`
 STEEPEST = 0.55  # of the fundamental: no edge is steeper behind an aperture
 
 
@@ -112,7 +112,7 @@ class EdgeAhead:
             taken[max(0, corner.first - half) : corner.last + half] = True
         for k in np.argsort(-turned):
             at = int(k) + half
-            if turned[k] < TIP_RAD:
+            if turned[k] < TURNED:
                 break
             if taken[at]:
                 continue

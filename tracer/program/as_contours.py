@@ -23,6 +23,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
@@ -47,7 +48,7 @@ from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 NARROW, ROUND_END = 2.6, 6.0
 END = 5.0  # of a stroke: shows whether it ends in a bar
 OTHERS = 0.3  # of the longest stroke: a shorter one is no part of the contour, nor are all those together
-MOST_PARTS, MOST_OTHERS = 4, 40  # strokes; a patch with more is a net
+MOST_PARTS = 4  # strokes that make up the contour; a patch with more is a net
 MOST_PLACES = 6000  # of ink
 
 
@@ -106,8 +107,6 @@ def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> list[Unexp
     others_mm = sum(stroke.length_mm for stroke in others)
     if len(strokes) == 1 or len(parts) > MOST_PARTS or others_mm > least_mm:
         return None
-    if len(others) > MOST_OTHERS:
-        return None
     # 2. the bars that the others lie within, or in which the parts end
     end_mm, short_mm = END * width_mm, THICK[1] * width_mm
     ways = [stroke.places_mm for stroke in parts]
@@ -163,9 +162,7 @@ def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     last = np.array(window.shape) - 1  # a place on the sheet's very edge is in its last pixel
     row, column = np.clip(window.pixels(places)[:, ::-1], 0, last).T
     near[row, column] = 1
-    across_px = 2 * round(reach_mm / drawing.pitch_mm) + 1
-    reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across_px,) * 2)
-    i, j = np.nonzero(cv2.dilate(near, reach))
+    i, j = np.nonzero(cv2.dilate(near, disc(round(reach_mm / drawing.pitch_mm))))
     every = 1 + len(i) // MOST_PLACES
     i, j = i[::every] + window.top, j[::every] + window.left
     nothing_mm = np.full(len(i), NOWHERE_MM)

@@ -19,8 +19,9 @@ from morfax.tracer.drawing.blocks import BLOCK_PX
 from morfax.tracer.drawing.contrast import FAINT
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.strokes import Window
+from morfax.tracer.sensing.aperture import SPREADS
 
-HALO_SPREADS = 5.0  # standard deviations of a spot that OpenCV looks at, and one more
+HALO_SPREADS = SPREADS + 1  # standard deviations of a spot that OpenCV looks at, and one more
 # from what is drawn: no cell that is held against a level looks further; by trial
 ABOUT_MM = 4.0
 TILE_BLOCKS = 16  # blocks of a sheet to the side of a tile that is seen behind a spot at a time

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.drawing.contrast import BARE_FROM_MM, FAINT, Contrast
+from morfax.tracer.drawing.paper import Paper
 
 PITCH_MM = 25.4 / 600  # the paper is reduced by 8
 
@@ -28,6 +29,16 @@ def test_contrast_is_that_against_the_interpolated_paper(is_light: bool) -> None
     # where OpenCV was built without fused products it rounds once more: a bit of 255
     assert np.abs(contrast.everywhere() - expected).max() <= 2**-15
     assert np.array_equal(contrast.pixels(3), contrast.everywhere()[::3, ::3])
+
+
+@pytest.mark.parametrize("wide_mm", [0.5, 2.0, 4.0, 5.0, 8.0])
+def test_a_bold_outline_is_dark_on_light(wide_mm: float) -> None:
+    """Of a fetched icon the paper between its outlines was followed, as light lines on a dark sheet."""
+    grey, pitch_mm = np.full((1000, 1000), 255, np.uint8), 0.1
+    cv2.rectangle(grey, (150, 150), (850, 850), 0, round(wide_mm / pitch_mm))
+    assert Paper.of(grey, pitch_mm).is_light
+    if wide_mm < 5.0:
+        assert not Paper.of(255 - grey, pitch_mm).is_light
 
 
 def test_paper_far_from_anything_dark_is_bare_and_all_else_is_the_contrast() -> None:

@@ -10,6 +10,7 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink import crossing
 from morfax.tracer.ink.crossing import Crossing
+from morfax.tracer.ink.crossing_ink import WaysOn
 from morfax.tracer.ink.lifted import Loose
 from morfax.tracer.program.trace_ink import trace_ink
 from morfax.tracer.sensing import photocell
@@ -19,6 +20,7 @@ from tests.tracer.inked import UM, WIDTH_MM, Points, inked, polyline
 
 # a stroke from its line, at most: corners in others' ink are three times as far off as alone
 OFF_MM = 60 * UM
+LEG_MM = 4.0  # legs of a wide junction are as long: they tell how a line bends
 
 
 def each_by_a_stroke(lines: list[Points], seed: int) -> list[float]:
@@ -104,6 +106,18 @@ def test_two_corners_across_each_other_are_told_though_no_line_passes() -> None:
     assert told.pairs == ((0, 2), (1, 3))
     vertices = np.vstack([told.corners[pair] for pair in told.pairs])
     assert np.hypot(*(vertices - corners).T).max() < OFF_MM
+
+
+def test_a_line_goes_on_through_a_wide_junction_on_the_arc_on_which_it_comes_in() -> None:
+    """Nothing was felt between its legs; over a quarter turn its way was 0.43 mm within the circle."""
+    turns = np.linspace(-0.5, 0.5 * np.pi + 0.5, 600)
+    arc = 20 + 10 * np.column_stack([np.cos(turns), np.sin(turns)])
+    view = View(photocell.behind_aperture(inked(arc), 0.1), WIDTH_MM)
+    ends = [(arc[0], 0.5 * np.pi - 0.5), (arc[-1], 0.5)]
+    legs = [leg_of(view.feel(*end, LEG_MM), True, LEG_MM) for end in ends]
+    ways = Crossing(legs, [view] * 2, Settings()).as_drawn(WaysOn(((0, 1),), {})).ways_mm
+    off_mm = np.abs(np.hypot(*(ways[0] - 20).T) - 10).max()
+    assert off_mm < OFF_MM
 
 
 @pytest.mark.parametrize("phase", [0.3618, 0.3621])

@@ -168,3 +168,14 @@ def test_moves_are_averaged_as_scipy_does_to_the_last_bit() -> None:
         moves = random.normal(size=(40, 2))
         theirs = uniform_filter1d(moves, max(1, round(places)), axis=0, mode="nearest")
         assert np.array_equal(_averaged(moves, places), theirs)
+
+
+def test_a_way_whose_leg_was_felt_anew_is_the_same_line() -> None:
+    """Where a closed line is cut open its leg is: the corners of such a line were left out, 1.5 mm of it were
+    off, and it kept aside of itself.
+    """
+    way, corners = np.array([(0.0, 0.0), (4.0, 0.0), (4.0, 3.0)]), np.array([(4.0, 0.0)])
+    ink = SharedInk(ways=[way, way + 5.0], vertices=[corners, None])
+    felt_anew = way[[0, -1]] + ((0.0, 0.0), (5e-5, 0.0))
+    assert ink.turns_at(felt_anew) is corners
+    assert [other[0, 0] for other in ink.besides(felt_anew)] == [5.0]

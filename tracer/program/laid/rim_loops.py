@@ -65,8 +65,8 @@ def outlines_of(sheet: Sheet, patch: int) -> list[Array]:
 
 def _contours(sheet: Sheet, patch: int, mode: int) -> list[NDArray[np.int32]]:
     """The contours (n, 1, 2) of a patch of ink, columns and rows in its box and a pixel more."""
-    edges, own = sheet.patches.boxes[patch].tolist(), sheet.patches.alone(patch)
-    ink = np.pad(sheet.patches.painted(own, *edges), 1)
+    top, bottom, left, right = sheet.patches.boxes[patch].tolist()
+    ink = sheet.patches.painted(patch, top - 1, bottom + 1, left - 1, right + 1)
     found, _ = cv2.findContours(ink, mode, cv2.CHAIN_APPROX_NONE)
     return [np.asarray(contour, np.int32) for contour in found]
 

@@ -26,11 +26,12 @@ from morfax.tracer.drawing.inner_rings import LEAST_PX, LEAST_WIDTHS
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.limits import WIDER
+from morfax.tracer.marks.sizes import DOT_FULL
 from morfax.tracer.program.lines.selection import Contour, lines_of
 
 BROAD = 1.4  # of a line's width: two lines whose ink runs together
-FILLED = 0.65  # of the square about it: a dot fills 0.79
-# the same of what may be a slot, if its ink shows the seam between its sides
+# of the square about it: a dot fills more than `DOT_FULL`; what may be a slot, and is one if its ink shows
+# the seam between its sides, fills less than this
 MAYBE_FILLED = 0.75
 MOST_RINGS = 500  # patches that are looked at, the largest first: sheets of text have thousands
 
@@ -78,7 +79,7 @@ def filled_up(sheet: Sheet) -> list[int]:
     most likely slots whose sides run together. The largest first.
     """
     small = _small_inside(sheet)
-    chosen: list[int] = small[_are_filled_up(sheet, small, BROAD, FILLED)].tolist()
+    chosen: list[int] = small[_are_filled_up(sheet, small, BROAD, DOT_FULL)].tolist()
     return chosen
 
 

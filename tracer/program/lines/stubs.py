@@ -21,13 +21,12 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, steps_mm
 from morfax.tracer.following.line import Line
-from morfax.tracer.limits import NEAR
+from morfax.tracer.limits import LONGER_WIDTHS, NEAR
 from morfax.tracer.sensing.view import STEP_WIDTHS
 
 # All limits below were chosen by trial on lines with ticks, and on outlines with tips. In widths of the line:
 CLOSE = 0.75  # out and back are no further apart
-LEAST_OUT = 0.8  # a way that goes out less is a bump
-MOST_OUT = 4.0  # one that goes out further is a line
+LEAST_OUT = 0.8  # a way that goes out less is a bump; for more than `LONGER_WIDTHS`, a line
 APPROACH = 1.5  # before and after it show whether the line goes straight on, ...
 STRAIGHT_ON = math.radians(50)  # ... within this, ...
 CORNER = math.radians(125)  # ... or turns a corner that is no tip
@@ -42,7 +41,7 @@ class Stub(NamedTuple):
 
 def stubs(line: Line) -> list[Stub]:
     """The stubs on a line's way; of an open line but for those at its ends."""
-    reach = round(2 * (MOST_OUT + APPROACH) / STEP_WIDTHS)
+    reach = round(2 * (LONGER_WIDTHS + APPROACH) / STEP_WIDTHS)
     way = evenly(line.loop_mm, STEP_WIDTHS * line.width_mm)
     if len(way) < reach:
         return []
@@ -55,7 +54,7 @@ def _found(way: Array, width_mm: float) -> Iterator[Stub]:
     """The stubs of a way at even steps; the same one more than once."""
     near, next_out = round(APPROACH / STEP_WIDTHS), 0
     step = steps_mm(way).max() / width_mm
-    for out in range(round(LEAST_OUT / STEP_WIDTHS), round(MOST_OUT / STEP_WIDTHS) + 1):
+    for out in range(round(LEAST_OUT / STEP_WIDTHS), round(LONGER_WIDTHS / STEP_WIDTHS) + 1):
         if out < next_out:
             continue
         feet = len(way) - 2 * out
@@ -91,7 +90,8 @@ def _apart(found: Iterator[Stub], width_mm: float) -> Iterator[Stub]:
     kept = list[Stub]()
     for stub in sorted(found, key=lambda stub: -stub.out_mm):
         if all(
-            math.dist(stub.place_mm, other.place_mm) > MOST_OUT * width_mm for other in kept
+            math.dist(stub.place_mm, other.place_mm) > LONGER_WIDTHS * width_mm
+            for other in kept
         ):
             kept.append(stub)
             yield stub
