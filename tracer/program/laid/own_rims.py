@@ -19,7 +19,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations, product
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -44,11 +44,11 @@ from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.ink.crossing_on_ink import OFF
 from morfax.tracer.ink.rim import Rim, RimCorners, felt_rim
-from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, LONGER_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE, CLEAR_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.program.against_ink.window import view_about
 from morfax.tracer.program.laid.line_parts import is_bare, is_clear
 from morfax.tracer.program.laid.patch_ink import PatchInk
-from morfax.tracer.program.laid.rim_loops import DISTINCT, felt_pen_mm, outlines_of
+from morfax.tracer.program.laid.rim_loops import DISTINCT, LONGEST, felt_pen_mm, outlines_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 
@@ -106,7 +106,8 @@ class _OwnRims:
             return False
         if operator.reads_marks(self.lines) or self.patch in lettering(sheet):
             return False
-        return 2 < len(self.outlines) <= MOST_AREAS
+        is_long = float(sheet.lengths_mm[self.patch]) > LONGEST * self.pen_mm
+        return not is_long and 2 < len(self.outlines) <= MOST_AREAS
 
     @cached_property
     def outlines(self) -> list[Array]:
@@ -139,48 +140,68 @@ class _OwnRims:
 
     def lines_told(self) -> list[Line]:
         """The lines as they were found, or those within the rims that explain the ink."""
-        ways = self._fewest_turns()
-        if not ways or not self._are_better(ways):
+        own_rad = sum(map(self._turned_rad, self.lines)) + LEFT_RAD * self.ink.left(
+            self._own_mm
+        )
+        ways = self._fewest_turns(own_rad - LESS_RAD + END_RAD)
+        if not ways or self._are_as_found(ways) or not self._are_better(ways, own_rad):
             return list(self.lines)
         longest_first = sorted(ways, key=lambda way: -length_mm(closed_up(way.way)))
         return [self._run(way.way) for way in longest_first]
 
-    def _are_better(self, ways: Sequence[_Way]) -> bool:
-        """Whether some ways within the rims are rather the lines than those that were found."""
-        own, ink = self._own_mm, self.ink
+    def _are_as_found(self, ways: Sequence[_Way]) -> bool:
+        """Whether some ways are the lines that were found."""
+        near_mm, loops = AS_WIDE * self.pen_mm, [line.loop_mm for line in self.lines]
+        return len(ways) == len(loops) and all(
+            any(
+                nearest_mm(way.even, loop).max() < near_mm
+                and nearest_mm(loop, way.even).max() < near_mm
+                for loop in loops
+            )
+            for way in ways
+        )
+
+    def _are_better(self, ways: Sequence[_Way], own_rad: float) -> bool:
+        """Whether some ways within the rims turn and leave less than the lines that were found; one that
+        crosses itself counts as one with an end, if it leaves much more.
+        """
+        own_mm, ink = self._own_mm, self.ink
         away_mm = np.min([way.away_mm for way in ways], axis=0)
-        own_left, left = ink.left(own), ink.left(away_mm)
-        is_likelier = left < BETTER * own_left and ink.worst(away_mm) < BETTER * ink.worst(own)
-        turned_rad = sum(map(self._turned_rad, self.lines))
-        if is_likelier and any(map(self._crosses_itself, self.lines)):
-            turned_rad += END_RAD
-        now_rad = sum(way.turned_rad for way in ways)
-        return now_rad + LEFT_RAD * left < turned_rad + LEFT_RAD * own_left - LESS_RAD
+        left = ink.left(away_mm)
+        leave_less = left < BETTER * ink.left(own_mm)
+        if leave_less and ink.worst(away_mm) < BETTER * ink.worst(own_mm):
+            own_rad += END_RAD * any(map(self._crosses_itself, self.lines))
+        return sum(way.turned_rad for way in ways) + LEFT_RAD * left < own_rad - LESS_RAD
 
     def _turned_rad(self, line: Line) -> float:
         """By how much a line turns; an end of an open one counts as a corner."""
         polygon = plain(line.places_mm if line.is_open else line.loop_mm, ON * self.pen_mm)
         return _turned_rad(polygon, is_closed=not line.is_open) + 2 * END_RAD * line.is_open
 
-    def _fewest_turns(self) -> Sequence[_Way]:
-        """Those of the ways within the rims that explain the ink, and turn least; none if all do not."""
-        ways = list(self._ways())
-        sets = [some for n in range(len(ways)) for some in combinations(ways, n + 1)]
-        sets.sort(key=lambda some: sum(way.turned_rad for way in some))
-        for some in sets:
-            if (
-                self._go_straight_on(some)
-                and self.ink.worst(np.min([way.away_mm for way in some], axis=0)) < OFF
-            ):
-                return some
-        return ()
+    def _fewest_turns(self, most_rad: float) -> list[_Way]:
+        """Those of the ways within the rims that explain the ink, and turn least, and by less than that; none
+        if all do not.
 
-    def _go_straight_on(self, ways: Sequence[_Way]) -> bool:
-        """Whether no way has a kink where it lies on another: there lines end, or cross."""
+        No way has a kink where it lies on another: there lines end, or cross.
+        """
         near_mm, beyond = ON * self.pen_mm, round(LONGER_WIDTHS / STEP_WIDTHS)
-        return not any(
-            one.has_kink_on(other, near_mm, beyond) for one, other in product(ways, ways)
+        ways = [way for way in self._ways() if way.turned_rad < most_rad]
+        are_kinked = np.array(
+            [[one.has_kink_on(other, near_mm, beyond) for other in ways] for one in ways]
         )
+        numbers = range(len(ways))
+        sets = [
+            (sum(ways[k].turned_rad for k in some), some)
+            for count in numbers
+            for some in combinations(numbers, count + 1)
+            if not are_kinked[np.ix_(some, some)].any()
+        ]
+        for turned_rad, some in sorted(sets):
+            if turned_rad > most_rad:
+                break
+            if self.ink.worst(np.min([ways[k].away_mm for k in some], axis=0)) < OFF:
+                return [ways[k] for k in some]
+        return []
 
     def _ways(self) -> Iterator[_Way]:
         """The ways within the rims."""
@@ -253,7 +274,7 @@ def _kinks(even: Array) -> NDArray[np.int64]:
     turns = turns - np.roll(turns, over)
     turns -= math.tau * np.round(turns / math.tau)
     about = 0.5 * (np.roll(turns, -2 * over) + np.roll(turns, 2 * over))
-    return np.flatnonzero(np.abs(turns - about) > BEND_RAD)
+    return np.flatnonzero(np.abs(turns) - np.abs(about) > BEND_RAD)
 
 
 def _turned_rad(polygon: Array, *, is_closed: bool) -> float:

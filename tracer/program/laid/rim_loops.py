@@ -33,7 +33,7 @@ from morfax.tracer.tangles.compass import Core
 # of the ink and what lies within it, in widths of the pen: one line is 1 broad, two that touch are 2; sides
 # that are further apart the head follows as any line
 BROAD = 1.6, 4.2
-LONGEST = 800.0  # widths round; chosen
+LONGEST = 800.0  # widths of ink of a patch, or round it; chosen
 DISTINCT = 0.2  # of a step: places nearer to each other are one corner
 FELT_PLACES = 9  # the pen's width is the middle one of so many of the plainest places
 

@@ -7,9 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from morfax.motion.polyline import nearest_mm, with_places
+from morfax.motion.polyline import evenly, nearest_mm, with_places
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.trace_lines import trace_lines
+from morfax.tracer.program.laid import own_rims
+from morfax.tracer.program.laid.own_rims import within_own_rims
+from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace_lines import found_lines, trace_lines
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 
 WIDTH_MM = 0.45
@@ -45,3 +48,78 @@ def test_a_circle_and_the_triangle_whose_sides_it_touches_are_both_traced(
     assert off_mm(outer, triangle) < 60 * UM
     assert off_mm(inner, circle) < 60 * UM
     assert not trace.unexplained
+
+
+def lines_of(*drawn: Points, seed: int = 1) -> list[Line]:
+    """The contours of a scan of some lines."""
+    return list(trace_lines(inked(*drawn, width_mm=WIDTH_MM, seed=seed), "contours").lines)
+
+
+def test_a_bar_across_an_outline_makes_no_rooms_of_it() -> None:
+    """Ways round both rooms explain all the ink, too, but turn sharply on each other where the bar ends."""
+    outline = polyline((5, 5), (25, 5), (25, 17), (5, 17), (5, 5))
+    (line, *others) = lines_of(outline, polyline((13, 5), (13, 17)))
+    assert off_mm(line, outline) < 60 * UM
+    assert not [other for other in others if other.ending == "closed"]
+
+
+def test_circles_that_cross_are_not_the_way_round_both_and_that_between() -> None:
+    """Those turn sharply where the circles cross."""
+    circles = [arc((10, 10), 5.0), arc((16, 10), 4.0)]
+    lines = lines_of(*circles)
+    assert len(lines) == 2
+    for circle in circles:
+        assert min(off_mm(line, circle) for line in lines) < 60 * UM
+
+
+def test_plates_beside_each_other_are_each_one_line() -> None:
+    """Half a line apart, the shorter with rounded corners: both within 60 um."""
+    apart_mm, r = 0.5 * WIDTH_MM, 1.5
+    first = polyline((5, 5), (17, 5), (17, 19), (5, 19), (5, 5))
+    x, y = 17 + apart_mm, 8.0
+    second = np.vstack(
+        [
+            arc((x + r, y + r), r, 180, 270),
+            arc((x + 9 - r, y + r), r, 270, 360),
+            arc((x + 9 - r, y + 7 - r), r, 0, 90),
+            arc((x + r, y + 7 - r), r, 90, 180),
+            [(x, y + r)],
+        ]
+    )
+    lines = lines_of(first, second)
+    assert [line.ending for line in lines] == ["closed", "closed"]
+    for plate in (first, second):
+        assert min(off_mm(line, plate) for line in lines) < 60 * UM
+
+
+def test_a_right_line_is_kept_to_the_byte() -> None:
+    """A ring whose hole a chain of touches does not reach is run as the head ran along it."""
+    circles = [arc((8, 10), 3.0), arc((14.2, 10), 3.0)]
+    drawing = inked(*circles, width_mm=WIDTH_MM, seed=1)
+    setup = Setup(drawing.sheet)
+    found = found_lines(setup, "contours").lines
+    assert len(found) == 2
+    kept = within_own_rims(setup, setup.sheet.patch_at(found[0].xy_mm[0]), found)
+    assert [one is other for one, other in zip(kept, found, strict=True)] == [True, True]
+
+
+def test_lines_that_leave_ink_go_and_a_way_within_the_rim_comes() -> None:
+    """Given but one of two circles that touch, both are told, and the longer comes first."""
+    circles = [arc((8, 10), 3.0), arc((15.2, 10), 4.0)]
+    setup = Setup(inked(*circles, width_mm=WIDTH_MM, seed=1).sheet)
+    one = max(found_lines(setup, "contours").lines, key=lambda line: -line.length_mm)
+    lines = within_own_rims(setup, setup.sheet.patch_at(one.xy_mm[0]), [one])
+    assert len(lines) == 2
+    assert off_mm(lines[0], circles[1]) < 60 * UM
+    assert off_mm(lines[1], circles[0]) < 60 * UM
+
+
+def test_kinks_are_where_a_way_turns_more_than_about_them() -> None:
+    """A square's corners, and no place of a circle."""
+    square = polyline((0, 0), (4, 0), (4, 4), (0, 4), (0, 0))
+    even = evenly(square, 0.05)
+    kinks = own_rims._kinks(even)
+    corners = np.array([(0, 0), (4, 0), (4, 4), (0, 4)], float)
+    assert nearest_mm(corners, even[kinks]).max() < 0.1
+    assert nearest_mm(even[kinks], corners).max() < 1.0
+    assert not len(own_rims._kinks(evenly(arc((0, 0), 2.0), 0.05)))
