@@ -31,6 +31,7 @@ from morfax.tracer.sensing.leg import FACING, Leg, turn
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on drawings of nets.
+INNER_WIDTHS = 40.0  # a stretch between forks that is no longer may lie within a junction
 CLEAN_SHARE = 0.5  # of its length: more of it is clean line of its own
 # of a stretch: two lines run together along more of it (0.24 and more, of a letter's 0.15 and less); by trial
 STILL_SHARE = 0.2
@@ -130,6 +131,8 @@ def _add_beside(net: Net, sheet: FeltSheet, n: int, same: _Same) -> None:
 def _is_inner(sheet: FeltSheet, number: int, fewest: int) -> bool:
     """Whether a stretch lies within a junction; `fewest` stretches meet at one of its ends."""
     length_mm, width_mm = sheet.measured[number].length_mm, sheet.widths_mm[number]
+    if length_mm > INNER_WIDTHS * width_mm:
+        return False
     clean_mm = sheet.taken(number).clean_mm
     # a short stretch of two lines tells too little of either
     is_two = number in sheet.together and length_mm < LEAST_WIDTHS * width_mm
