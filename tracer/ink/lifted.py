@@ -25,16 +25,15 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
-from morfax.motion.compiled import njit
 from morfax.motion.neighbours import Neighbours, those_near
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.effort import EVERY_MM, ROUNDS
-from morfax.tracer.limits import FADES, LONGER_WIDTHS, NEAR
+from morfax.tracer.ink.ends_on_ink import misfits_of, reach_mm_of
+from morfax.tracer.limits import LONGER_WIDTHS, NEAR
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.probe import reach_of_ink
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.pen import ink_at
 from morfax.tracer.tangles.sketch import softness_of
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -53,7 +52,6 @@ ASIDE_WIDTHS = 1.0  # to either side the ink of the line is looked at
 EVERY_PX = 0.7  # a place is looked at
 # of the line's darkness: no pen leaves its ink more exactly; and deviations, for places share what they see
 INEXACT, DEVIATIONS = 0.05, 5.0
-PAPER = 1.0  # place that is paper, and inked by the line: it does not go on
 
 
 class Loose(NamedTuple):
@@ -178,12 +176,12 @@ def _possible(line: Loose, others: _Others, ends_mm: Array) -> tuple[int, int]:
 def _held_against_ink(
     line: Loose, others: _Others, pen: tuple[float, float], ends_mm: Array, count: int
 ) -> Array:
-    """How far the first of some ends are from explaining the ink about the line, see `_misfits`; infinite for
-    those beyond paper. The pen: half its width, softness, mm.
+    """How far the first of some ends are from explaining the ink about the line, see `ends_on_ink`; infinite
+    for those beyond paper. The pen: half its width, softness, mm.
     """
     view, leg = line.view, line.leg
     # 1. places along the line, in its own directions, as far as they tell of these ends
-    some, reach_mm = ends_mm[:count], _reach_mm(pen)
+    some, reach_mm = ends_mm[:count], reach_mm_of(pen)
     until_mm = min(ends_mm[-1], some[-1] + reach_mm) + leg.width_mm
     every_mm, beside_mm = EVERY_PX * view.pitch_mm, ASIDE_WIDTHS * leg.width_mm
     s, u = (
@@ -202,76 +200,5 @@ def _held_against_ink(
     off = (places - nearest_mm) / np.maximum(away_mm, NOT_ZERO)[:, None]
     off_s = off[:, 0] * np.cos(heading) + off[:, 1] * np.sin(heading)
     off_u = off[:, 1] * np.cos(heading) - off[:, 0] * np.sin(heading)
-    columns, misfits = (
-        np.column_stack([s, u, away_mm, off_s, off_u, seen]),
-        np.full(len(some), math.inf),
-    )
-    _misfits(columns, pen, some, np.empty((3, len(s) + 1)), misfits)
-    return misfits
-
-
-@njit(cache=True)
-def _reach_mm(pen):  # type: ignore[no-untyped-def]
-    """How far beyond its end a pen may leave ink: half its width, and the softness of that."""
-    return pen[0] + math.sqrt(2.0) * FADES * pen[1]
-
-
-@njit(cache=True, _nrt=False)
-def _misfits(places, pen, ends_mm, sums, out):  # type: ignore[no-untyped-def]
-    """The sums of the squares of what is drawn less what is seen, for each end up to where the line would
-    cross paper.
-
-    Places, in order: along the line, beside it, distance from the others, mm, the direction from them, in the
-    line's own, and what is seen; (n, 6). The pen: half its width, softness, mm. `sums` is room: (3, n + 1).
-    """
-    reach_mm, least = _reach_mm(pen), math.inf
-    # 1. what all places come to that the line has passed, or has not come to
-    count = len(places)
-    passed, left, others = sums
-    passed[0] = left[0] = 0.0
-    for k in range(count):
-        others[k] = 1.0 - ink_at(places[k, 2], pen[0], pen[1])
-        passed[k + 1] = passed[k] + _misfit(places[k], others[k], pen, places[k, 0])
-        left[k + 1] = left[k] + _misfit(places[k], others[k], pen, places[k, 0] - reach_mm)
-    # 2. those about each end by themselves
-    first = last = 0
-    for n in range(len(ends_mm)):
-        while first < count and places[first, 0] <= ends_mm[n]:
-            first += 1
-        while last < count and places[last, 0] < ends_mm[n] + reach_mm:
-            last += 1
-        total = passed[first] + left[count] - left[last]
-        for k in range(first, last):
-            total += _misfit(places[k], others[k], pen, ends_mm[n])
-        if total > least + PAPER:
-            return
-        least = min(least, total)
-        out[n] = total
-
-
-@njit(cache=True)
-def _misfit(place, other, pen, end_mm):  # type: ignore[no-untyped-def]
-    """The square of what is drawn less what is seen at a place, if the line ends there; `other`: how much
-    paper the other lines leave.
-    """
-    if other == 0.0:  # the line leaves none either
-        return (1.0 - place[5]) ** 2
-    half_mm, softness_mm = pen
-    beyond, aside = max(place[0] - end_mm, 0.0), place[1]
-    away = math.hypot(beyond, aside)
-    paper = 1.0 - ink_at(away, half_mm, softness_mm)
-    alike = (beyond * place[3] + aside * place[4]) / max(away, NOT_ZERO)
-    return (1.0 - _bare(paper, other, alike) - place[5]) ** 2
-
-
-@njit(cache=True)
-def _bare(one, other, alike):  # type: ignore[no-untyped-def]
-    """How much paper shows where two pens leave some each; `alike` is the cosine between their rims.
-
-    Softened rims at right angles leave the product, rims on one side the lesser, rims that face each other
-    what their inks together leave.
-    """
-    product = one * other
-    if alike > 0:
-        return product + alike * (min(one, other) - product)
-    return product - alike * (max(one + other - 1.0, 0.0) - product)
+    columns = np.column_stack([s, u, away_mm, off_s, off_u, seen])
+    return misfits_of(columns, pen, some)

@@ -48,9 +48,8 @@ def bar_at(drawing: Drawing, lines: BoxedLines, place: Unexplained, width_mm: fl
     wide_px = max(1, round(OF_WIDTH * width_mm / drawing.pitch_mm))
     reach_mm = about_mm + (wide_px + 3) * drawing.pitch_mm
     low_mm, high_mm = place_mm[0] - reach_mm, place_mm[0] + reach_mm
-    for line in lines.reaching(low_mm, high_mm):
-        way_px = window.pixels(line.places_mm).reshape(-1, 1, 2)
-        cv2.polylines(bare, [way_px], line.comes_round, 0, wide_px)
+    for way in lines.stretches(low_mm, high_mm):
+        cv2.polylines(bare, [window.pixels(way).reshape(-1, 1, 2)], False, 0, wide_px)
     # 3. what is joined to the place
     _, label = cv2.connectedComponents(bare, connectivity=4)
     i, j = np.nonzero(label)

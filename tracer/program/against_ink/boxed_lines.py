@@ -45,6 +45,14 @@ class BoxedLines(NamedTuple):
             if self.lines[k] is not but:
                 yield self.lines[k]
 
+    def stretches(self, low_mm: Array, high_mm: Array) -> Iterator[Array]:
+        """The stretches (n, 2) mm of the lines, from place to place, that reach into a box."""
+        for k in np.flatnonzero(self.reach(low_mm, high_mm)).tolist():
+            way, comes_round = self.places_mm[k], self.lines[k].comes_round
+            yield from reaching(
+                np.vstack([way, way[:1]]) if comes_round else way, low_mm, high_mm
+            )
+
     def parts(
         self, low_mm: Array, high_mm: Array, but: Line | None = None, around_mm: float = 0.0
     ) -> Iterator[tuple[Line, Array]]:
@@ -78,3 +86,13 @@ def reaches(places_mm: Array, low_mm: Array, high_mm: Array) -> bool:
     """Whether the box about some places (n, 2) mm reaches into another."""
     first_mm, last_mm = bounds(places_mm)
     return bool(np.all(first_mm < high_mm) and np.all(last_mm > low_mm))
+
+
+def reaching(way: Array, low_mm: Array, high_mm: Array) -> Iterator[Array]:
+    """The stretches of a way (n, 2) mm, from place to place, whose boxes reach into another."""
+    reach = np.ones(max(len(way) - 1, 0), bool)
+    for at, low, high in zip(way.T, low_mm.tolist(), high_mm.tolist(), strict=True):
+        reach &= (np.minimum(at[:-1], at[1:]) < high) & (np.maximum(at[:-1], at[1:]) > low)
+    edges = np.flatnonzero(np.diff(np.r_[False, reach, False].astype(np.int8)))
+    for first, last in edges.reshape(-1, 2).tolist():
+        yield way[first : last + 1]

@@ -26,7 +26,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.arrays import Array, bounds
+from morfax.motion.arrays import ROUNDED, Array, bounds
 from morfax.motion.faults import LineFault
 from morfax.motion.median import median
 from morfax.motion.nesting import lies_inside, size_mm
@@ -86,7 +86,13 @@ class Contour:
         within = (places > low - BESIDE_MM) & (places < high + BESIDE_MM)
         if within.all(axis=1).mean() < COVERED:
             return False
-        return bool(np.mean(nearest_mm(places, line_mm) < self.stroke.width_mm) > COVERED)
+        # of a long line only what is near decides
+        width_mm, (x, y) = self.stroke.width_mm, line_mm.T
+        reach_mm = (1 + ROUNDED) * width_mm
+        (left, lowest), (right, highest) = bounds(places)
+        near = (x >= left - reach_mm) & (x <= right + reach_mm)
+        near &= (y >= lowest - reach_mm) & (y <= highest + reach_mm)
+        return bool(np.mean(nearest_mm(places, line_mm[near]) < width_mm) > COVERED)
 
     def lies_in(self, line_mm: Array) -> bool:
         """Whether this stroke lies inside a followed line (n, 2) mm."""

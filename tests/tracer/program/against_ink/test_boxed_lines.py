@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
+import pytest
 
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from tests.tracer.inked import polyline
@@ -28,3 +30,27 @@ def test_of_lines_that_reach_into_a_box_the_parts_within_it_are_found() -> None:
     around = [part for line, part in lines.parts(low, high, around_mm=1.0) if line is bay]
     about = (bay.places_mm > low - 1.0) & (bay.places_mm < high + 1.0)
     assert sum(map(len, around)) == np.count_nonzero(about.all(axis=1))
+
+
+@pytest.mark.parametrize("ending", ["ended", "closed"])
+def test_the_stretches_that_reach_into_a_box_draw_there_what_the_whole_line_does(
+    ending: str,
+) -> None:
+    """Lines go in and out of the box, past a corner of it too, and one comes round through it."""
+    rng = np.random.default_rng(3)
+    ways = [np.cumsum(rng.normal(0, 2.0, (60, 2)), axis=0) + 20 for _ in range(6)]
+    lines = BoxedLines.of([run_along(way, ending) for way in ways])
+    low, high = np.array([12.0, 14.0]), np.array([26.0, 24.0])
+    whole, some, wide_px = np.zeros((120, 160), np.uint8), np.zeros((120, 160), np.uint8), 5
+    reach = 0.5  # of the pen, and of rounding, in tenths of mm
+    for line in lines.lines:
+        way_px = ((line.places_mm - low) * 10).astype(np.int32).reshape(-1, 1, 2)
+        cv2.polylines(whole, [way_px], line.comes_round, 1, wide_px)
+    found = list(lines.stretches(low - reach, high + 2 + reach))
+    for way in found:
+        cv2.polylines(
+            some, [((way - low) * 10).astype(np.int32).reshape(-1, 1, 2)], False, 1, 5
+        )
+    assert whole.any() and not whole.all()
+    assert np.array_equal(whole, some)
+    assert sum(map(len, found)) < sum(len(line.places_mm) for line in lines.lines)

@@ -10,13 +10,14 @@ import pytest
 from morfax.motion.contour import distance
 from morfax.motion.faults import LineFault
 from morfax.motion.motion import MOTION_RATE_HZ, join, thin
-from morfax.tracer.drawing.strokes import Sheet
+from morfax.motion.polyline import evenly
+from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import one_of_each
 from morfax.tracer.program.joined_lines import joined_to
-from morfax.tracer.program.lines.selection import plan
+from morfax.tracer.program.lines.selection import Contour, plan
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
@@ -36,6 +37,21 @@ def truth_of(line: Line) -> Points:
 
 
 # which lines
+
+
+@pytest.mark.parametrize("off_mm", [0.0, 0.4, 0.49, 0.51, 3.0])
+def test_a_stroke_lies_on_a_line_that_runs_along_most_of_it_within_its_width(
+    off_mm: float,
+) -> None:
+    """The line goes on far beyond the stroke, which is 0.5 mm wide, and comes by it again."""
+    middles = evenly(polyline((10, 10), (14, 10)), 0.1)
+    stroke = Stroke(4.0, 0.5, middles, np.ones(len(middles)), 0)
+    corners = (0, 10 + off_mm), (40, 10 + off_mm), (40, 30), (12, 30), (12, 25)
+    line = evenly(polyline(*corners), 0.05)
+    away_mm = np.hypot(*(middles[:, None] - line).transpose(2, 0, 1)).min(axis=1)
+    assert Contour(1, stroke, 4.0).lies_on(line) == bool((away_mm < 0.5).mean() > 0.8)
+    assert Contour(1, stroke, 4.0).lies_on(line) == (off_mm < 0.5)
+    assert not Contour(1, stroke, 4.0).lies_on(line[line[:, 0] < 12])  # along half of it
 
 
 def test_specks_letters_and_burrs_are_counted_and_left_out() -> None:
