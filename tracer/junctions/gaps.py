@@ -19,7 +19,7 @@ from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.motion.plane import heading_of
 from morfax.tracer.effort import LOOKED_MM
-from morfax.tracer.junctions.line_ahead import Ahead
+from morfax.tracer.junctions.line_ahead import AheadOfLeg
 from morfax.tracer.sensing.leg import ABOUT_LEGS, leg_of
 from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.probe import END_WIDTHS
@@ -52,7 +52,7 @@ def _gap_mm(view: View, way_mm: Array) -> float | None:
     seen = view.feel(place, heading_of(along), felt_mm)
     if len(seen) < FEWEST:
         return None
-    ahead = Ahead(view, leg_of(seen, True, view.leg_mm))
+    ahead = AheadOfLeg(view, leg_of(seen, True, view.leg_mm))
     most_mm = END_WIDTHS * view.width_mm
     if ahead.over(most_mm) is None:
         return None

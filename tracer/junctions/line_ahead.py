@@ -37,7 +37,7 @@ LOOKS_BACK = 2.0  # gaps: so much of the line shows on what circle it goes on
 OFF_CIRCLE = 0.1
 
 
-class Ahead:
+class AheadOfLeg:
     """What lies straight ahead of a leg: each place is looked at once, however many gaps are asked for."""
 
     def __init__(self, view: View, incoming: Leg) -> None:
@@ -62,8 +62,8 @@ class Ahead:
 
 
 def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
-    """The clean line straight ahead of a leg (see `Ahead`); None if there is none."""
-    return Ahead(view, incoming).over(gap_mm)
+    """The clean line straight ahead of a leg (see `AheadOfLeg`); None if there is none."""
+    return AheadOfLeg(view, incoming).over(gap_mm)
 
 
 def looks_mm(view: View, gap_mm: float) -> float:

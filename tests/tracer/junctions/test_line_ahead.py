@@ -10,7 +10,7 @@ import pytest
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.line_ahead import Ahead, caught_again, looks_mm, straight_on
+from morfax.tracer.junctions.line_ahead import AheadOfLeg, caught_again, looks_mm, straight_on
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.photocell import behind_aperture
 from morfax.tracer.sensing.view import View
@@ -97,7 +97,7 @@ def test_however_many_gaps_are_asked_for_no_place_is_looked_at_twice(
         return dark(view, place)
 
     monkeypatch.setattr(View, "dark", counted)
-    ahead = Ahead(view, incoming)
+    ahead = AheadOfLeg(view, incoming)
     found = [ahead.over(gap_mm) for gap_mm in gaps_mm]
     assert looked and max(looked.values()) <= 2
     assert each[0] is None and each[-1] is not None
