@@ -103,13 +103,24 @@ class CrossingInk:
 
     def worst(self, wrong: Array) -> float:
         """The same of ink that is left, or drawn on paper, in the worst box as wide as a line."""
-        side, most = 2 * round(self.ink.half_mm / self.pitch_mm) + 1, 0.0
+        most = float(self._in_boxes(wrong).max())
+        return most * (self.pitch_mm / (2 * self.ink.half_mm)) ** 2
+
+    def worst_at_mm(self, wrong: Array) -> Array:
+        """The place, (x, y) mm, at the middle of that box, or the nearest that is looked at."""
+        worst = int(np.argmax(self._in_boxes(wrong)[self.pixels]))
+        return self.ink.places_mm[worst]
+
+    def _in_boxes(self, wrong: Array) -> Array:
+        """The sum of the squares of what is wrong, too dark or too light, in a box about each pixel."""
+        side, most = 2 * round(self.ink.half_mm / self.pitch_mm) + 1, np.zeros(self.shape)
         for signed in (wrong, -wrong):
             squares = np.zeros(self.shape)
             squares[self.pixels] = np.maximum(signed, 0.0) ** 2
-            sums = cv2.boxFilter(squares, -1, (side, side), normalize=False)
-            most = max(most, float(sums.max()))
-        return most * (self.pitch_mm / (2 * self.ink.half_mm)) ** 2
+            np.maximum(
+                most, cv2.boxFilter(squares, -1, (side, side), normalize=False), out=most
+            )
+        return most
 
     def settled(self, crossing: Crossing, drawn: WaysOn) -> WaysOn:
         """The same pairs with their corners moved to where they explain the ink best."""
