@@ -15,14 +15,28 @@ ROUNDED = 1e-9  # share of a figure, or of a step, that rounding adds at the mos
 def bounds(rows: NDArray[np.floating]) -> tuple[Array, Array]:
     """The lowest and the highest of each column of rows (n, columns).
 
-    Column by column: along the rows of two columns numpy takes thirty times as long.
+    Row by row in a kernel: along the rows of two columns numpy takes thirty times as long. Raises ValueError
+    if there is none.
     """
-    low = np.empty(rows.shape[1])
-    high = np.empty(rows.shape[1])
-    for column, values in enumerate(rows.T):
-        low[column] = values.min()
-        high[column] = values.max()
-    return low, high
+    if not len(rows):
+        raise ValueError("no rows have no lowest and no highest; there must be one at least")
+    ends = np.empty((2, rows.shape[1]))
+    _ends(np.ascontiguousarray(rows, float), ends)
+    return ends[0], ends[1]
+
+
+@njit(cache=True, _nrt=False)
+def _ends(rows, ends):  # type: ignore[no-untyped-def]
+    """Fill in the lowest and the highest of each column; nan where one of it is."""
+    for column in range(rows.shape[1]):
+        low = high = rows[0, column]
+        for k in range(len(rows)):
+            value = rows[k, column]
+            if np.isnan(value):
+                low = high = value
+                break
+            low, high = min(low, value), max(high, value)
+        ends[0, column], ends[1, column] = low, high
 
 
 def between(values: Array, at: float) -> float:

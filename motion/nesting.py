@@ -24,14 +24,15 @@ def nested(lines_mm: Sequence[Array], round_about: Sequence[bool]) -> NDArray[np
         return inside
     # a line can only lie in one that reaches further, and whose box its first place is in
     firsts = np.array([line[0] for line in lines_mm], np.float32)
-    sizes_mm = np.array([size_mm(line) for line in lines_mm])
+    wide_mm, high_mm = np.array([size_mm(line) for line in lines_mm]).T.copy()
+    x_mm, y_mm = firsts.T.copy()
     outlines = [np.asarray(line, np.float32) for line in lines_mm]
     for j, outline in enumerate(outlines):
         if not round_about[j]:
             continue
-        may = (sizes_mm < sizes_mm[j]).all(axis=1)
-        low, high = bounds(outline)
-        may &= ((firsts >= low) & (firsts <= high)).all(axis=1)
+        (left_mm, low_mm), (right_mm, top_mm) = bounds(outline)
+        may = (wide_mm < wide_mm[j]) & (high_mm < high_mm[j])
+        may &= (x_mm >= left_mm) & (x_mm <= right_mm) & (y_mm >= low_mm) & (y_mm <= top_mm)
         for i in np.flatnonzero(may):
             inside[i, j] = lies_inside(lines_mm[int(i)], lines_mm[j])
     return inside

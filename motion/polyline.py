@@ -54,6 +54,19 @@ def _add_up(line_mm, lengths):  # type: ignore[no-untyped-def]
         lengths[k] = lengths[k - 1] + math.hypot(dx, dy)
 
 
+@njit(cache=True, _nrt=False)
+def come_to(place_mm, line_mm, length_mm):  # type: ignore[no-untyped-def]
+    """The first place of a line so far from a place before it, along the line; their count if none is."""
+    x, y = place_mm[0], place_mm[1]
+    come_mm = 0.0
+    for k in range(len(line_mm)):
+        come_mm += math.hypot(line_mm[k, 0] - x, line_mm[k, 1] - y)
+        if come_mm >= length_mm:
+            return k
+        x, y = line_mm[k, 0], line_mm[k, 1]
+    return len(line_mm)
+
+
 def lengths_by_blocks(line_mm: Array) -> Iterator[tuple[int, Array, Array]]:
     """The number of a block's first place, its places, and the length up to each, mm; one block of a line
     that is in memory. Each block begins with the last place of the one before.
@@ -130,9 +143,14 @@ def at_lengths(line_mm: Array, at_mm: Array) -> Array:
     """Where a polyline is at some lengths from its start, (n, 2) mm; raises ValueError if it has no place."""
     if not len(line_mm):
         raise ValueError("a polyline without places is nowhere; it must have one at least")
-    line_mm, at_mm = np.ascontiguousarray(line_mm, float), np.ascontiguousarray(at_mm, float)
+    return _placed(line_mm, lengths_mm(line_mm), at_mm)
+
+
+def _placed(line_mm: Array, lengths: Array, at_mm: Array) -> Array:
+    """The same with the length up to each of its places."""
     places = np.empty((len(at_mm), 2))
-    _at_lengths(line_mm, lengths_mm(line_mm), at_mm, places)
+    line_mm, at_mm = np.ascontiguousarray(line_mm, float), np.ascontiguousarray(at_mm, float)
+    _at_lengths(line_mm, lengths, at_mm, places)
     return places
 
 
@@ -157,7 +175,8 @@ def _at_lengths(line_mm, lengths, at_mm, places):  # type: ignore[no-untyped-def
 
 def evenly(line_mm: Array, apart_mm: float) -> Array:
     """Places of a polyline from its start on, this far from each to the next along it, (n, 2) mm."""
-    return at_lengths(line_mm, np.arange(0.0, lengths_mm(line_mm)[-1], apart_mm))
+    lengths = lengths_mm(line_mm)
+    return _placed(line_mm, lengths, np.arange(0.0, lengths[-1], apart_mm))
 
 
 def with_places(line_mm: Array, apart_mm: float) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -141,6 +142,9 @@ def command(
     tally = Tally(total, job.limits.workers)
     count_all(job.rows(desk), tally, desk)
     desk.figures({**tally.figures(), "manifest": str(job.folder / MANIFEST)})
+    if job.scheduler is None:
+        page = shlex.join(["morfax", "batch", "--report", out or ""])
+        desk.note(f"{page} shows all drawings on a page, those that need a person's eye first")
     ctx.exit(SOME_FAILED if tally.failed else 0)
 
 

@@ -50,8 +50,9 @@ def of_open(trace: Trace) -> Iterator[str]:
     """Open lines among closed ones, which run along with them as if they were contours of a part."""
     numbers = [number for number in _cut_open(trace) if number not in trace.letters]
     if numbers and any(line.ending == "closed" for line in trace.lines):
+        run = "runs" if len(numbers) == 1 else "run"
         yield (
-            f"{numbered('line', numbers)} open, and run from end to end with the closed ones; to leave out "
+            f"{numbered('line', numbers)} open, and {run} from end to end with the closed ones; to leave out "
             "what is no outline, such as large letters, give the numbers of the others after --lines; "
             f"{CLOSE}"
         )

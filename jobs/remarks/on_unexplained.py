@@ -40,6 +40,13 @@ SAID: dict[Kind, tuple[tuple[str, str], str]] = {
         "the path cuts {many} of the shape short, by up to {mm:.2f} mm at {at}; printed twice as large, and "
         "with --scale 0.5, by half of that",
     ),
+    # a way beside the edge of a filled shape
+    "aside": (
+        ("place", "places"),
+        "the path is a part of a pixel beside the edge at {many}, the longest {mm:.1f} mm at {at}: pixels so "
+        "large or hard draw it there; scan at a higher resolution, or save the picture with twice as many "
+        "pixels",
+    ),
     # ink that is joined to the line, and beside its way
     "ink": (
         ("piece of ink", "pieces of ink"),

@@ -135,8 +135,9 @@ def _of_gaps(trace: Trace, allowed_mm: float) -> Iterator[str]:
     for line in trace.lines:
         if line.gap_mm is not None and line.gap_mm <= allowed_mm:
             x, y = line.place(len(line.xy_mm) - 1)
+            wide = f"{line.gap_mm:.1f}" if line.gap_mm >= 0.1 else "less than 0.1"
             yield (
-                f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm before a gap of {line.gap_mm:.1f} mm that"
+                f"{_named(line, trace)} ends at {x:.1f},{y:.1f} mm before a gap of {wide} mm that"
                 f" --gap {allowed_mm:.3g}mm allows, but the line behind the gap lies neither straight ahead"
                 " nor along the bend: close the gap on the drawing"
             )
@@ -193,11 +194,13 @@ def _of_open(trace: Trace) -> Iterator[str]:
 
 def _of_stems(trace: Trace) -> Iterator[str]:
     """Lines that lead to a loop and are cut with it, because nothing marks them as lead lines."""
-    stems = [line for line in trace.lines if line.loop_from is not None and not line.is_lead]
+    lines = [line for line in trace.lines if line.loop_from is not None and not line.is_lead]
+    stems = [(line, line.place(line.loop_from or 0)) for line in lines]
+    # what is as short as it is wide is no line
+    stems = [stem for stem in stems if math.dist(stem[0].start_mm, stem[1]) > stem[0].width_mm]
     if not stems:
         return
-    x, y = stems[0].start_mm
-    u, v = stems[0].place(stems[0].loop_from or 0)
+    (x, y), (u, v) = stems[0][0].start_mm, stems[0][1]
     others = f", and {len(stems) - 1} more such lines" if len(stems) > 1 else ""
     yield (
         f"the line from {x:.1f},{y:.1f} to the contour at {u:.1f},{v:.1f} mm is cut too{others}; to have a "

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 UNEXPLAINED: dict[Kind, str] = {
     "ink": "ink beside the way",
     "tip": "tip cut short",
+    "aside": "way beside the edge",
     "bare": "way without ink",
     "beside": "way beside its ink",
     "crossed": "way that crosses itself",

@@ -74,6 +74,7 @@ def test_every_drawing_has_its_folder_and_is_not_done_again(
     answer = morfax(*call)
     assert answer.exit_code == 1, answer.err
     assert (answer.figures["done"], answer.figures["failed"]) == (2, 2)
+    assert "morfax batch --report out shows all drawings on a page" in answer.err
     rows = {Path(row["file"]).name: row for row in rows_of(Path("out"))}
     assert {name: row["ending"] for name, row in rows.items()} == {
         **{"small.png": "done", "large.png": "done"},
@@ -98,7 +99,8 @@ def test_every_drawing_has_its_folder_and_is_not_done_again(
     assert again["there_already"] == 3 and again["drawings"] == 4
     assert {f: f.stat().st_mtime_ns for f in Path("out").rglob("*.csv") if f in whole} == whole
     assert len(rows_of(Path("out"))) == 5
-    # the page shows each drawing once, those without a result first
+    # the page, by the command that was told, shows each drawing once, those without a result first
+    assert morfax("batch", "--report", "out").exit_code == 0
     page, count = write_page(Path("out"))
     text = page.read_text()
     assert count == 4 and text.count("<img") == 3

@@ -14,8 +14,8 @@ from tests.console.conftest import SAMPLES, Morfax
 DPI = (300, 300)
 PX_PER_MM = 300 / 25.4
 # share: a length by the ink of hard pixels is so much off the way along its middle, ...
-AREA_OVER_WIDTH = 0.045
-ENDS_MM = 1.2  # ... and an open one has its pen's width at both ends more, and corners
+AREA_OVER_WIDTH = 0.01
+ENDS_MM = 0.5  # ... and an open one by its pen's width at its ends and corners
 
 
 @pytest.fixture

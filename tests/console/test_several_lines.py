@@ -77,7 +77,7 @@ def test_open_lines_among_contours_are_told_with_how_each_ended(
     told = morfax("trace", "sign.png", "--lines", "contours", "-o", "a.csv", "--json")
     assert told.figures["ending"] == "1 closed, 1 ended"
     assert "line 1 is open" not in told.err
-    assert "line 2 is open, and run from end to end with the closed ones" in told.err
+    assert "line 2 is open, and runs from end to end with the closed ones" in told.err
     alone = morfax("trace", "sign.png", "--lines", "1", "-o", "b.csv", "--json")
     assert alone.figures["ending"] == "closed" and "is open" not in alone.err
     asked = morfax("trace", "sign.png", "--lines", "contours", "--climb", "-o", "c.csv")

@@ -12,6 +12,7 @@ import pytest
 from morfax.jobs.listener import Silent
 from morfax.jobs.remarks.on_ink import of_ink
 from morfax.jobs.remarks.on_unexplained import of_unexplained
+from morfax.jobs.remarks.remarks import remarks
 from morfax.jobs.settings.line_settings import LineSettings
 from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.tracing.tracing import Tracing
@@ -69,6 +70,19 @@ def test_the_ink_beyond_the_end_of_a_line_is_told(
     line = replace(line, ending=ending, ink_mm=line.length_mm / share)
     said = of_ink(replace(drawn, lines=(line,)), several=False)
     assert any("joined to the line was not followed" in text for text in said) == is_told
+
+
+@pytest.mark.parametrize(("stem_mm", "is_told"), [(0.1, False), (5.0, True)])
+def test_a_line_that_leads_to_a_contour_is_told_and_a_touch_is_none(
+    stem_mm: float, is_told: bool
+) -> None:
+    """On a sewing pattern "the line from 188.3,48.3 to the contour at 188.3,48.3 mm" was told."""
+    drawn = trace(inked(arc((20.0, 20.0), 10.0), seed=1))
+    (line,) = drawn.lines
+    away_mm = np.hypot(*(line.xy_mm - line.xy_mm[0]).T)
+    line = replace(line, loop_from=int(np.argmax(away_mm > stem_mm)))
+    said = remarks(replace(drawn, lines=(line,)), TraceSettings(LineSettings()), 0.5, 1.0)
+    assert any("is cut too" in text for text in said) == is_told
 
 
 def test_a_hole_in_pieces_is_told_and_the_advice_follows_it() -> None:

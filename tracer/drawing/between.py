@@ -34,8 +34,10 @@ def between(
     return between_at(darkness, at, edge_goes_on=edge_goes_on).reshape(np.shape(rows))
 
 
-def between_at(darkness: NDArray[Any], places: Array, *, edge_goes_on: bool) -> Array:
+def between_at(darkness: NDArray[Any] | Tiles, places: Array, *, edge_goes_on: bool) -> Array:
     """The same at places (…, 2), rows and columns, which lie together."""
+    if isinstance(darkness, Tiles):
+        return darkness.between(places[..., 0], places[..., 1])
     out = np.empty(places.shape[:-1])
     at = places.reshape(-1, 2)
     _read(np.ascontiguousarray(darkness), at, edge_goes_on, out.reshape(-1))

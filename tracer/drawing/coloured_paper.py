@@ -7,8 +7,12 @@ does: the lines would be taken for light ones on dark paper, and the ink left ou
       ───┴───┐    ┌───                                                    each channel times 207 over its own
              └────┘    0          blue   ink  60 below the paper of  95   paper: ink is as dark in all of them
 
+On a blueprint the lines are lighter than the paper, and blue is the lightest channel by far: brought up to
+it, red and green would be noise. So what stands out further in the paper's lightest channel has to be darker
+than the paper; a white label can hardly stand out there.
+
 Signals: an image in; levels (768,), 256 for each of red, green and blue, out, or None on paper that is grey,
-white or dark.
+white or dark, or bears light lines.
 
 Source: our own.
 """
@@ -17,14 +21,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
 SAMPLES = 200  # columns and rows of the pixels that are looked at, at the most
-# grey levels of 255: half; paper whose lightest channel is darker bears light lines, as a blueprint does
-LIGHT = 128
+LIGHT = (
+    128  # grey levels of 255: half; paper whose lightest channel is darker bears light lines
+)
+ABOUT = SAMPLES // 10  # samples: a tenth of the sheet, across which its light hardly changes
 EVEN = 0.75  # of its lightest channel, chosen: paper that is hardly yellowed stays as it is
 
 
@@ -33,9 +41,18 @@ def levels_on_white(image: Image) -> list[int] | None:
     from PIL import Image as Images
 
     columns, rows = (min(pixels, SAMPLES) for pixels in image.size)
-    some = image.resize((columns, rows), Images.Resampling.NEAREST).convert("RGB")
-    paper = np.median(np.asarray(some).reshape(-1, 3), axis=0)
+    some = np.asarray(image.resize((columns, rows), Images.Resampling.NEAREST).convert("RGB"))
+    paper = np.median(some.reshape(-1, 3), axis=0)
     if paper.max() < LIGHT or paper.min() > EVEN * paper.max() or not paper.all():
+        return None
+    if _bears_light_lines(some[:, :, paper.argmax()]):
         return None
     levels = np.arange(256)[:, None] * paper.max() / paper
     return np.minimum(np.rint(levels.T), 255).astype(int).ravel().tolist()
+
+
+def _bears_light_lines(samples: NDArray[np.uint8]) -> bool:
+    """Whether what is lighter than the samples about it stands out further than what is darker."""
+    level = samples.astype(np.float32)
+    relief = level - cv2.blur(level, (ABOUT, ABOUT))
+    return float((relief * relief * relief).sum()) > 0

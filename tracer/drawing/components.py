@@ -12,7 +12,6 @@ Source: our own; joining runs by a forest of parents is the textbook's way.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -30,6 +29,7 @@ if TYPE_CHECKING:  # they are made of patches
 
 Mask = NDArray[np.uint8]
 Numbers = NDArray[np.int32]
+Chosen = NDArray[np.bool_] | int  # which of all patches, or the number of one
 
 INK = 0.5  # of the darkest: what is darker is ink
 SOFTENED_PX = 0.7  # standard deviation of the spot behind which ink is told
@@ -56,6 +56,16 @@ class Patches:
         row, begin, end = (np.concatenate(part) for part in zip(*runs, strict=True))
         patch, count = joined(row, begin, end, True)
         return cls(row, begin, end, patch, int(count))
+
+    @cached_property
+    def firsts(self) -> NDArray[np.int64]:
+        """The number of the first run of each row, and of the one after the last row with runs."""
+        return np.concatenate([[0], np.cumsum(np.bincount(self.row))])
+
+    @cached_property
+    def every(self) -> NDArray[np.bool_]:
+        """All patches, as those that count."""
+        return np.ones(self.count, bool)
 
     @cached_property
     def areas(self) -> NDArray[np.float64]:
@@ -85,37 +95,49 @@ class Patches:
         tops, bottoms, lefts, rights = self.boxes[chosen].T
         return int(tops.min()), int(bottoms.max()), int(lefts.min()), int(rights.max())
 
-    def runs_between(self, top: int, bottom: int) -> slice:
-        """The runs from a row up to another.
+    @cached_property
+    def _by_patches(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The numbers of all runs, patch by patch and by rows, and where those of each patch begin."""
+        begins = np.zeros(self.count + 1, np.int64)
+        np.cumsum(np.bincount(self.patch, minlength=self.count), out=begins[1:])
+        return np.argsort(self.patch, kind="stable"), begins
 
-        They are sought in the rows' own type: for any other numpy makes a copy of all rows first.
-        """
-        kind = self.row.dtype
-        most = np.iinfo(kind).max
-        between = np.array([min(max(row, 0), most) for row in (top, bottom)], kind)
-        first, last = np.searchsorted(self.row, between)
-        return slice(int(first), int(last))
+    def runs_between(self, top: int, bottom: int) -> slice:
+        """The runs from a row up to another."""
+        begins = self.firsts
+        last = len(begins) - 1
+        return slice(*(int(begins[min(max(row, 0), last)]) for row in (top, bottom)))
+
+    def runs_of(self, patch: int, top: int, bottom: int) -> NDArray[np.int64]:
+        """The numbers of one patch's runs from a row up to another: on a plate of holes most are others'."""
+        numbers, begins = self._by_patches
+        own = numbers[begins[patch] : begins[patch + 1]]
+        first, last = np.searchsorted(self.row[own], (top, bottom)).tolist()
+        return own[first:last]
 
     def alone(self, patch: int) -> NDArray[np.bool_]:
         """One patch as the chosen one of all."""
         return np.asarray(np.arange(self.count) == patch)
 
-    def painted(
-        self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
-    ) -> Mask:
+    def painted(self, chosen: Chosen, top: int, bottom: int, left: int, right: int) -> Mask:
         """Mask (rows, columns) of the chosen patches in a part of the sheet."""
         mask = np.zeros((bottom - top, right - left), np.uint8)
-        rows = self.runs_between(top, bottom)
-        own = rows.start + np.flatnonzero(chosen[self.patch[rows]])
+        own = self._chosen_runs(chosen, top, bottom)
         _paint(mask, self.row[own] - top, self.begin[own] - left, self.end[own] - left)
         return mask
 
+    def _chosen_runs(self, chosen: Chosen, top: int, bottom: int) -> NDArray[np.int64]:
+        """The numbers of the chosen patches' runs from a row up to another."""
+        if not isinstance(chosen, np.ndarray):
+            return self.runs_of(chosen, top, bottom)
+        rows = self.runs_between(top, bottom)
+        return np.asarray(rows.start + np.flatnonzero(chosen[self.patch[rows]]))
+
     def runs_within(
-        self, chosen: NDArray[np.bool_], top: int, bottom: int, left: int, right: int
+        self, chosen: Chosen, top: int, bottom: int, left: int, right: int
     ) -> tuple[Numbers, Numbers, Numbers]:
         """Row, begin and end of the runs of the chosen patches in a part of the sheet, from its corner."""
-        rows = self.runs_between(top, bottom)
-        own = rows.start + np.flatnonzero(chosen[self.patch[rows]])
+        own = self._chosen_runs(chosen, top, bottom)
         begin = np.maximum(self.begin[own] - np.int32(left), np.int32(0))
         end = np.minimum(self.end[own] - np.int32(left), np.int32(right - left))
         within = begin < end
@@ -196,27 +218,6 @@ def _boxes(row, begin, end, patch, count):  # type: ignore[no-untyped-def]
         box[0], box[1] = min(box[0], row[k]), max(box[1], row[k] + 1)
         box[2], box[3] = min(box[2], begin[k]), max(box[3], end[k])
     return boxes
-
-
-@njit(cache=True, _nrt=False)
-def nearest_run(runs, place_mm, sheet, among):  # type: ignore[no-untyped-def]
-    """Distance, mm, of the pixel of some runs that is nearest to a place, its centre (x, y) mm, and the run's
-    number; the first run, infinitely far, if none is `among` the patches that count.
-
-    `runs`: row, begin, end and patch of each; `sheet`: how many rows it has, and the pixels' pitch, mm.
-    """
-    (row, begin, end, patch), (x_mm, y_mm), (rows, pitch_mm) = runs, place_mm, sheet
-    column, best, least_mm = round(x_mm / pitch_mm - 0.5), 0, np.inf
-    x, y = np.nan, np.nan
-    for k in range(len(row)):
-        own_y = (rows - row[k] - 0.5) * pitch_mm
-        if abs(own_y - y_mm) > least_mm or not among[patch[k]]:
-            continue
-        own_x = (min(max(column, begin[k]), end[k] - 1) + 0.5) * pitch_mm
-        away_mm = math.hypot(own_x - x_mm, own_y - y_mm)
-        if away_mm < least_mm:
-            best, least_mm, x, y = k, away_mm, own_x, own_y
-    return least_mm, x, y, best
 
 
 @njit(cache=True)

@@ -24,11 +24,12 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.motion.compiled import njit
 from morfax.motion.faults import MotionFault
 from morfax.motion.motion import Path
 from morfax.motion.plane import left_of_headings
 from morfax.motion.polyline import APART_MM, lengths_mm
-from morfax.tracer.drawing.between import between
+from morfax.tracer.drawing.between import between_at
 from morfax.tracer.drawing.components import (
     INK,
     SOFTENED_PX,
@@ -172,11 +173,24 @@ def _places(run: Array, every_mm: float = LOOKED_MM) -> tuple[Array, Array]:
 
 def darkness_across(drawing: Drawing, points: Array, headings: Array, across: Array) -> Array:
     """Darkness (places, across) at distances to the left of a path."""
-    x = points[:, :1] - np.sin(headings)[:, None] * across
-    y = points[:, 1:] + np.cos(headings)[:, None] * across
-    columns = x / drawing.pitch_mm - 0.5
-    rows = drawing.darkness.shape[0] - y / drawing.pitch_mm - 0.5
-    return between(drawing.darkness, rows, columns, edge_goes_on=False)
+    ways = np.column_stack([np.cos(headings), np.sin(headings)])
+    at = np.empty((len(points), len(across), 2))
+    sheet = float(drawing.darkness.shape[0]), float(drawing.pitch_mm)
+    _beside(np.ascontiguousarray(points, float), ways, np.asarray(across, float), sheet, at)
+    return between_at(drawing.darkness, at, edge_goes_on=False)
+
+
+@njit(cache=True, _nrt=False)
+def _beside(points, ways, across, sheet, at):  # type: ignore[no-untyped-def]
+    """Fill in row and column, from the middle of the first pixel, of places to the left of others (n, 2) mm,
+    by the unit vectors of the ways there. `sheet`: its rows, and the pixels' pitch, mm.
+    """
+    rows, pitch_mm = sheet
+    for k in range(len(points)):
+        for n in range(len(across)):
+            x = points[k, 0] - ways[k, 1] * across[n]
+            y = points[k, 1] + ways[k, 0] * across[n]
+            at[k, n, 0], at[k, n, 1] = rows - y / pitch_mm - 0.5, x / pitch_mm - 0.5
 
 
 def _line_width(drawing: Drawing, places: list[tuple[Array, Array]]) -> float:

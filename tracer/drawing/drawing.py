@@ -30,7 +30,7 @@ from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.cleared import cleared
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import deepened, deepened_note
-from morfax.tracer.drawing.levelling import Levelled, levelled
+from morfax.tracer.drawing.levelling import LIGHT_LINES, Levelled, levelled
 from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.ruling import PaperKind
@@ -245,7 +245,7 @@ class Drawing:
     ) -> Drawing:
         """The lines in grey levels on square pixels."""
         # 1. darkness, without what is printed and the scan's border
-        darkness, shapes, paper_noise, has_shapes = _levelled(grey, pitch_mm, reading)
+        darkness, shapes, paper_noise, has_shapes, is_light = _levelled(grey, pitch_mm, reading)
         darkness, ink, told = cleared(darkness, pitch_mm, reading.printed, reading.pale_is_ink)
         paper_noise /= ink
         lines, pale_mm = within(darkness, paper_noise), 0.0
@@ -254,6 +254,7 @@ class Drawing:
             notes = (*notes, speckled.note(times, pitch_mm))
             larger = speckled.on_larger_pixels(np.asarray(grey), times)
             return cls._of_lines(file, larger, times * pitch_mm, notes, reading)
+        notes = notes if is_light else (*notes, LIGHT_LINES)
         # 2. pale lines
         drawn_grain = lines.grain
         is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.effort import FEW_PX
 from morfax.tracer.limits import PAPER
 
@@ -192,16 +193,15 @@ def _tile(slit: Slit, darkness: Darkness) -> Darkness:
     """The darkness of a tile as the slit sees it in the direction that fits best."""
     best = np.full(darkness.shape, -np.inf, np.float32)
     seen = np.zeros_like(darkness)
-    reach_px = round(REACH_WIDTHS * slit.width_px)
-    near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach_px + 1,) * 2)
+    near = disc(round(REACH_WIDTHS * slit.width_px))
     for k in range(DIRECTIONS):
         direction = math.pi * k / DIRECTIONS
         through = cv2.filter2D(
             darkness, cv2.CV_32F, _kernel(slit, direction), borderType=cv2.BORDER_REPLICATE
         )
         fit = cv2.dilate(_fit(slit, direction, np.asarray(through, np.float32)), near)
-        better = fit > best
-        best[better], seen[better] = fit[better], through[better]
+        cv2.copyTo(through, cv2.compare(fit, best, cv2.CMP_GT), seen)
+        cv2.max(fit, best, best)
     return seen
 
 
@@ -222,7 +222,7 @@ def _fit(slit: Slit, direction: float, through: Darkness) -> Darkness:
     )
     aside = FLANK_WIDTHS * slit.width_px
     right, down = -aside * math.sin(direction), aside * math.cos(direction)
-    flanks = sum(
+    to_left, to_right = (
         cv2.warpAffine(
             smooth,
             np.array([[1.0, 0.0, side * right], [0.0, 1.0, side * down]]),
@@ -231,4 +231,5 @@ def _fit(slit: Slit, direction: float, through: Darkness) -> Darkness:
         )
         for side in (-1, 1)
     )
-    return np.asarray(smooth - 0.5 * flanks, np.float32)
+    flanks = cv2.add(to_left, to_right)
+    return np.asarray(cv2.scaleAdd(flanks, -0.5, smooth), np.float32)

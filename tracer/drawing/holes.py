@@ -48,6 +48,6 @@ def holes_in(patches: Patches, patch: int) -> list[Hole]:
     """The holes of one of some patches; looked for once, as several ask for them."""
     if patch not in patches.known_holes:
         top, bottom, left, right = patches.boxes[patch].tolist()
-        ink = patches.painted(patches.alone(patch), top, bottom, left, right)
+        ink = patches.painted(patch, top, bottom, left, right)
         patches.known_holes[patch] = holes(ink)
     return patches.known_holes[patch]

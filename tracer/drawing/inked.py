@@ -82,7 +82,7 @@ def _falls_slowly(drawing: Drawing, patches: Patches, patch: int) -> bool:
     top, bottom, left, right = patches.boxes[patch].tolist()
     rows = max(0, top - halo), min(shape[0], bottom + halo)
     columns = max(0, left - halo), min(shape[1], right + halo)
-    ink = patches.painted(patches.alone(patch), *rows, *columns)
+    ink = patches.painted(patch, *rows, *columns)
     away_px = cv2.distanceTransform(1 - ink, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     about = np.abs(away_px - beyond_px) < 0.5
     darkness = drawing.darkness[slice(*rows), slice(*columns)]

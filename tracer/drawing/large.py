@@ -82,7 +82,8 @@ def levelled(grey: Any, pitch_mm: float) -> Levelled:
     )
     noise_of_paper = paper_noise(sample / np.float32(ink))
     shapes = paper.shapes(ink)
-    return Levelled(replace(tiles, unit=1 / ink), shapes, noise_of_paper, bool(shapes.any()))
+    kept, has_shapes = replace(tiles, unit=1 / ink), bool(shapes.any())
+    return Levelled(kept, shapes, noise_of_paper, has_shapes, paper.is_light)
 
 
 def _look(grey: Any, by: int) -> _Look:

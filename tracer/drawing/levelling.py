@@ -39,6 +39,10 @@ from morfax.tracer.effort import FEW_PX
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 # of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen
 STEP = 0.1
+LIGHT_LINES = (
+    "the lines that are followed are lighter than the sheet about them; if yours are the dark ones, name"
+    " their colour, such as --ink black"
+)
 
 Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
@@ -46,13 +50,15 @@ Shapes = NDArray[np.bool_]
 
 class Levelled(NamedTuple):
     """A sheet as darkness, paper 0, the strokes 1, or tiles of it; where filled shapes are that are no ink,
-    on a picture reduced by a whole number; the noise of the paper; and whether there are filled shapes.
+    on a picture reduced by a whole number; the noise of the paper; whether there are filled shapes; and
+    whether the strokes are darker than the paper.
     """
 
     darkness: Darkness | Tiles
     shapes: Shapes
     paper_noise: float
     has_shapes: bool
+    is_light: bool
 
 
 def levelled(grey: Grey, pitch_mm: float, shapes_are_ink: bool = False) -> Levelled:
@@ -68,13 +74,12 @@ def levelled(grey: Grey, pitch_mm: float, shapes_are_ink: bool = False) -> Level
         shapes = contrast.paper.shapes(ink)
     every = every_px(grey.size)
     sample = contrast.pixels(every) if everywhere is None else everywhere[::every, ::every]
-    noise_of_paper = paper_noise(sample / np.float32(ink))
+    told = shapes, paper_noise(sample / np.float32(ink)), has_shapes, contrast.paper.is_light
     if everywhere is None:
-        return Levelled(contrast.darkness(ink), shapes, noise_of_paper, has_shapes)
+        return Levelled(contrast.darkness(ink), *told)
     if everywhere.nbytes > SHEET_BYTES:
         give_back()
-    darkness = contrast.in_parts_of(ink, everywhere)
-    return Levelled(darkness, shapes, noise_of_paper, has_shapes)
+    return Levelled(contrast.in_parts_of(ink, everywhere), *told)
 
 
 def _in_even_light(contrast: Contrast, pitch_mm: float) -> Contrast:

@@ -92,7 +92,7 @@ class Paper:
         beside = 2 * round(3 * WIDEST_STROKE_MM / self.pitch_mm) + 1
         brightest = cv2.erode(level, np.ones((beside, beside), np.uint8))
         dark = (level - brightest > SHAPE * contrast).view(np.uint8)
-        grown = cv2.dilate(dark, _disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
+        grown = cv2.dilate(dark, disc(round(WIDEST_STROKE_MM / 2 / self.pitch_mm)))
         return np.asarray(grown, bool)
 
     def lighting(self, small: Levels) -> Lighting | None:
@@ -114,7 +114,7 @@ class Paper:
         `small` is the reduced picture. A shape is uncovered from its edges inwards, as far each time as
         `shapes` sees.
         """
-        paper, about = self, _disc(round(WIDEST_STROKE_MM / self.pitch_mm))
+        paper, about = self, disc(round(WIDEST_STROKE_MM / self.pitch_mm))
         uncovered = np.zeros(self.reduced.shape, np.uint8)
         while True:
             uncovered |= paper.shapes(contrast).view(np.uint8)
@@ -158,10 +158,10 @@ def _stroke_px(by: int, pitch_mm: float) -> int:
 def _closed(small: Levels, is_light: bool, across: int) -> Levels:
     """A reduced picture without its strokes."""
     closing = cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN
-    return np.asarray(cv2.morphologyEx(small, closing, _disc(across // 2)), np.float32)
+    return np.asarray(cv2.morphologyEx(small, closing, disc(across // 2)), np.float32)
 
 
-def _disc(radius_px: int) -> NDArray[np.uint8]:
+def disc(radius_px: int) -> NDArray[np.uint8]:
     """Mask of a disc."""
     across = 2 * radius_px + 1
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)

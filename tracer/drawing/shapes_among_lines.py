@@ -26,6 +26,7 @@ from morfax.tracer.drawing.depth import depth_px
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
 from morfax.tracer.drawing.inks import Colour, covered
 from morfax.tracer.drawing.lengths import ONE_PEN
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
@@ -106,8 +107,7 @@ def edges_of(drawing: Drawing, solid: Mask | None = None) -> Drawing:
 
 def _only(darkness: Darkness, solid: Mask) -> Darkness:
     """The darkness of solid areas with their soft rims, and without the lines that end at them."""
-    reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * FRINGE_PX + 1,) * 2)
-    about = np.asarray(cv2.dilate(solid, reach), np.uint8)
+    about = np.asarray(cv2.dilate(solid, disc(FRINGE_PX)), np.uint8)
     lines = (darkness > INK).view(np.uint8) & about & (1 - solid)
     lines = np.asarray(cv2.dilate(lines, np.ones((3, 3), np.uint8)), np.uint8)
     kept = (about & (1 - lines)) | solid

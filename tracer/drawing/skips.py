@@ -63,7 +63,7 @@ def skips_mm(sheet: Sheet) -> list[float]:
 
 def _ends(stroke: Stroke, drawing: Drawing) -> list[End]:
     """The two ends of a piece of line; none if it has not two."""
-    places = stroke.ends_mm()
+    places = stroke.ends_mm
     if not 2 <= len(places) <= MOST_ENDS:
         return []
     ends = []

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.median import MIDDLE, ONE_BELOW, TWO_BELOW, percentile
-from morfax.tracer.drawing.components import INK, Mask
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.contrast import EVERY_COLUMN
+from morfax.tracer.drawing.paper import disc
 
 Darkness = NDArray[np.float32]
 
@@ -86,9 +87,3 @@ def _is_paper(strip: Darkness, soft: Darkness) -> NDArray[np.bool_]:
     """Where a strip of a sheet, and behind a spot, is paper with noise; bare paper is made 0."""
     inked = cv2.dilate((soft > INK).view(np.uint8), disc(FAR_PX))
     return (strip != 0) & (inked == 0)
-
-
-def disc(radius_px: int) -> Mask:
-    """Mask of a disc."""
-    across = 2 * radius_px + 1
-    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)

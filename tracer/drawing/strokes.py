@@ -14,24 +14,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault, LineFault
 from morfax.motion.median import median
-from morfax.tracer.drawing.components import Patches, nearest_run
+from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
-from morfax.tracer.drawing.lengths import one_pen_mm
+from morfax.tracer.drawing.lengths import PIXELS_OFF, Told, one_pen_mm, told
 from morfax.tracer.drawing.middles import deepest, ink_about
-from morfax.tracer.drawing.numbering import ALIKE, InkSpread, longest_first
-from morfax.tracer.drawing.weighing import Weight, weighed_mm
+from morfax.tracer.drawing.nearest_ink import nearest_run
+from morfax.tracer.drawing.numbering import InkSpread, longest_first
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]
@@ -40,13 +41,12 @@ Window = tuple[int, int, int, int]  # first row and column, row and column after
 TILE_PX = 2048  # the places of a line come tile by tile, so that its size decides where the head begins
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial
-ABOUT_PX = 64  # rows above and below a place in which the nearest ink is sought first; by trial
 # areas of paper less than so many widths across are flaws of the ink that goes round them; by trial
 FLAW_WIDTHS = 1.0
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Stroke:
     """A connected patch of ink: places near the middle of its line (n, 2) mm, and the ink about each."""
 
@@ -60,6 +60,7 @@ class Stroke:
         """Whether a place is on this line."""
         return bool(np.hypot(*(self.middles_mm - place_mm).T).min() < self.width_mm)
 
+    @cached_property
     def ends_mm(self) -> Array:
         """Places that may be ends of the line, most likely first, two widths apart or more; (n, 2) mm."""
         order = np.argsort(self.filled)
@@ -71,7 +72,7 @@ class Stroke:
         return np.array(kept).reshape(-1, 2)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Sheet:
     """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes.
 
@@ -88,8 +89,9 @@ class Sheet:
     has_references: bool = True  # small crosses and rings may be reference points
     bare_rings: bool = False  # rings are, whatever the line from them leads to
     taken: frozenset[int] = frozenset()
-    weights: dict[int, Weight] = field(default_factory=dict, repr=False, compare=False)
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
+    # whether lines of patches may begin at a reference point (see `reference.may_lead`)
+    leads: dict[int, bool] = field(default_factory=dict, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -113,6 +115,11 @@ class Sheet:
             )
         return sheet
 
+    @cached_property
+    def told(self) -> Told:
+        """Lengths and widths of the patches as lines, mm, as a reader is told them."""
+        return told(self)
+
     def about(self, patch: int, around_mm: float) -> Sheet:
         """The sheet with a window about a patch; itself if that is no small part of it."""
         around_px = math.ceil(around_mm / self.drawing.pitch_mm)
@@ -130,7 +137,7 @@ class Sheet:
         lengths_mm = one_pen_mm(self)
         if are_lines.any():
             lengths_mm = np.where(are_lines, lengths_mm, 0.0)
-        long = np.flatnonzero(lengths_mm >= (1 - 2 * ALIKE) * lengths_mm.max())
+        long = np.flatnonzero(lengths_mm >= (1 - 2 * PIXELS_OFF) * lengths_mm.max())
         return self.stroke(int(self.longest_first(long)[0]))
 
     def longest_first(self, patches: Pixels) -> Pixels:
@@ -142,7 +149,7 @@ class Sheet:
         weights = (runs.end - runs.begin).astype(float)
         sums = [np.bincount(runs.patch, weights * column, runs.count) for column in places_mm.T]
         middles_mm = np.column_stack(sums)[patches] / runs.areas[patches][:, None]
-        lengths_mm = weighed_mm(self, patches, one_pen_mm(self)[patches])
+        lengths_mm = self.told.lengths_mm[patches]
         return patches[longest_first(lengths_mm, middles_mm, InkSpread.of(places_mm, weights))]
 
     def nearest(self, place_mm: tuple[float, float], within_mm: float) -> Stroke:
@@ -187,29 +194,15 @@ class Sheet:
     def _nearest_ink(
         self, place_mm: tuple[float, float], among: NDArray[np.bool_] | None = None
     ) -> tuple[float, Array, int]:
-        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches."""
-        pitch_mm, rows = self.drawing.pitch_mm, self.drawing.darkness.shape[0]
-        row, about_px = rows - 1 - math.floor(place_mm[1] / pitch_mm), ABOUT_PX
-        # all runs of a large sheet take longer than those of the rows about the place
-        while True:
-            runs = self.patches.runs_between(row - about_px, row + about_px + 1)
-            found = self._nearest_of(place_mm, runs, among)
-            is_all = runs == slice(0, len(self.patches.row))
-            if is_all or found[0] < (about_px - 1) * pitch_mm:
-                return found
-            about_px *= 4
-
-    def _nearest_of(
-        self, place_mm: tuple[float, float], some: slice, among: NDArray[np.bool_] | None
-    ) -> tuple[float, Array, int]:
-        """The same of some runs; infinitely far, and no patch, if there is none."""
+        """Distance of the ink nearest to a place, mm, where it is, and its patch; among some patches.
+        Infinitely far, and no patch, if there is none.
+        """
         runs, sheet = self.patches, (self.drawing.darkness.shape[0], self.drawing.pitch_mm)
-        own = runs.row[some], runs.begin[some], runs.end[some], runs.patch[some]
-        if not len(own[0]):
+        if not len(runs.row):
             return math.inf, np.zeros(2), -1
-        counts = np.ones(runs.count, bool) if among is None else among
-        away_mm, x_mm, y_mm, run = nearest_run(own, place_mm, sheet, counts)
-        return float(away_mm), np.array([x_mm, y_mm]), int(own[3][run])
+        own, counts = (runs.begin, runs.end, runs.patch), runs.every if among is None else among
+        away_mm, x_mm, y_mm, run = nearest_run(own, runs.firsts, place_mm, sheet, counts)
+        return float(away_mm), np.array([x_mm, y_mm]), int(runs.patch[run])
 
     def middles_mm(self, patches: Pixels) -> Array:
         """The middles of the boxes of some patches, (n, 2) sheet mm."""
@@ -248,13 +241,12 @@ class Sheet:
 
     def _stroke(self, patch: int) -> Stroke:
         """A patch as a line, looked for on its ink."""
-        chosen = self.patches.alone(patch)
         disc_px = max(4, round(1.5 * self.widths_mm[patch] / self.drawing.pitch_mm))
-        top, bottom, left, right = self.patches.box(chosen)
+        top, bottom, left, right = self.patches.boxes[patch].tolist()
         halo_px = max(disc_px, min(DEEPEST_PX, bottom - top, right - left)) + 1
         tiles = [
             self._middles(
-                chosen,
+                patch,
                 (disc_px, halo_px),
                 (row, min(row + TILE_PX, bottom)),
                 (column, min(column + TILE_PX, right)),
@@ -273,7 +265,7 @@ class Sheet:
 
     def _middles(
         self,
-        chosen: NDArray[np.bool_],
+        patch: int,
         disc_and_halo_px: tuple[int, int],
         rows: tuple[int, int],
         columns: tuple[int, int],
@@ -284,10 +276,9 @@ class Sheet:
             edge for (a, b), size in zip((rows, columns), self.drawing.darkness.shape, strict=True)
             for edge in (max(0, a - halo), min(size, b + halo))
         ]  # fmt: skip
-        row, begin, end = self.patches.runs_within(chosen, *part)
+        row, begin, end = self.patches.runs_within(patch, *part)
         inner = rows[0] - part[0], rows[1] - part[0], columns[0] - part[2], columns[1] - part[2]
         depth = depth_along(row, begin, end, (part[1] - part[0], part[3] - part[2]))
-        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * disc_px + 1,) * 2)
         i, j = deepest(row, begin, end, depth, inner)
-        filled = ink_about(row, begin, end, (i, j), disc)
+        filled = ink_about(row, begin, end, (i, j), disc(disc_px))
         return i + part[0], j + part[2], filled

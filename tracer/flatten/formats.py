@@ -24,11 +24,6 @@ class Format(NamedTuple):
         """The same paper, a quarter turned."""
         return Format(self.name, self.height_mm, self.width_mm)
 
-    @property
-    def stretch(self) -> float:
-        """Its longer side over its shorter one."""
-        return max(self[1:]) / min(self[1:])
-
 
 FORMATS = {
     each.name: each

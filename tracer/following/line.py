@@ -14,12 +14,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from morfax.motion.arrays import Array, between
+from morfax.motion.arrays import Array, between, bounds
 from morfax.motion.faults import LineFault
-from morfax.motion.long_array import one_in
+from morfax.motion.long_array import is_mapped, one_in
 from morfax.motion.polyline import lengths_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.corrections.on_sheet import StopAt
@@ -56,7 +57,7 @@ class Leads:
     out_mm: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Line:
     """One line as it was followed: positions (n, 2) mm at the motion rate, how it ended ("closed", "ended",
     "joined", "lost"), its number on the drawing.
@@ -152,7 +153,18 @@ class Line:
     @property
     def places_mm(self) -> Array:
         """Places along it, (n, 2) mm."""
-        return one_in(self.xy_mm, THINNED)
+        in_memory = self._in_memory
+        return one_in(self.xy_mm, THINNED) if in_memory is None else in_memory
+
+    @cached_property
+    def _in_memory(self) -> Array | None:
+        """The same of a line in memory. Those of a line in a file would take 0.3 MB a metre, and are read."""
+        return None if is_mapped(self.xy_mm) else self.xy_mm[::THINNED]
+
+    @cached_property
+    def box_mm(self) -> tuple[Array, Array]:
+        """The lowest and the highest of these places, mm; not to be changed."""
+        return bounds(self.places_mm)
 
     def passes_its_end(self, within_mm: float, beyond_mm: float) -> Array | None:
         """An end (x, y) that its own way comes as near to, more than so far on; None if it passes neither."""
@@ -167,7 +179,9 @@ class Line:
     @property
     def loop_mm(self) -> Array:
         """Places along its loop, without the lead line before that, (n, 2) mm."""
-        return one_in(self.xy_mm[self.loop_from or 0 :], THINNED)
+        if not self.loop_from:
+            return self.places_mm
+        return one_in(self.xy_mm[self.loop_from :], THINNED)
 
     @property
     def own_mm(self) -> Array:

@@ -51,7 +51,7 @@ def at_ends(
     reference_mm: tuple[float, float] | None,
 ) -> list[Stance]:
     """Stances at the open ends of a line, or only that which comes from a reference point."""
-    ends = list(stances_at(view, stroke.ends_mm(), gap_mm))
+    ends = list(stances_at(view, stroke.ends_mm, gap_mm))
     # 1. from the reference point that the operator names
     if reference_mm is not None:
         named = from_reference(reference_mm, ends)

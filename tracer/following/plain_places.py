@@ -27,7 +27,14 @@ from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import ABOUT_LEGS, FACING, Leg, centre_at, turn
 from morfax.tracer.sensing.parabola import bend_at
-from morfax.tracer.sensing.photocell import LEVEL, Cells, darkness_at, ring
+from morfax.tracer.sensing.photocell import (
+    LEVEL,
+    Cells,
+    darkness_at,
+    looks_round,
+    ring_along,
+    ways_round,
+)
 from morfax.tracer.sensing.ray import edges
 from morfax.tracer.sensing.scout import felt, leg_mm
 from morfax.tracer.sensing.view import OtherInk, View
@@ -196,19 +203,23 @@ def _score(cells, places, sizes_mm, out):  # type: ignore[no-untyped-def]
     """Fill `out` with how far the line is felt to the shorter side of each place, mm, and its bend there,
     1/mm; 0 where it is not clean. `sizes_mm`: the line's width, and the distance of stations.
     """
+    radius_mm = max(RING_WIDTHS * sizes_mm[0], RING_PX * cells.pitch_mm)
+    ways = ways_round(looks_round(cells, radius_mm))
     for k in range(len(places)):
         x, y = places[k, 0], places[k, 1]
         level = LEVEL * max(darkness_at(cells, x, y), FAINTEST)
         now = Cells(cells.darkness, cells.pitch_mm, level, cells.tiles, cells.beyond)
-        out[k, 0], out[k, 1] = _felt_about(now, places[k], sizes_mm)
+        arcs = ring_along(now, places[k], radius_mm, ways)
+        out[k, 0], out[k, 1] = _felt_about(now, places[k], arcs, sizes_mm)
 
 
 @njit(cache=True)
-def _felt_about(cells, place, sizes_mm):  # type: ignore[no-untyped-def]
-    """The same of one place, with the steps of `_heading` and `_both_ways`."""
+def _felt_about(cells, place, arcs, sizes_mm):  # type: ignore[no-untyped-def]
+    """The same of one place and the arcs of a ring about it, with the steps of `_heading` and
+    `_both_ways`.
+    """
     (usual_mm, step_mm), pitch_mm = sizes_mm, cells.pitch_mm
     # 1. two arcs of ink opposite each other
-    arcs = ring(cells, place, max(RING_WIDTHS * usual_mm, RING_PX * pitch_mm))
     if len(arcs) != 2:
         return 0.0, 0.0
     there, back = 0.5 * (arcs[0, 0] + arcs[0, 1]), 0.5 * (arcs[1, 0] + arcs[1, 1])

@@ -182,7 +182,7 @@ def _ends_near(
     view: View, stroke: Stroke, start_mm: tuple[float, float], gap_mm: float
 ) -> list[Stance]:
     """Stances at the open ends near a place."""
-    ends = stroke.ends_mm()
+    ends = stroke.ends_mm
     near_mm = max(AT_END_MM, ABOUT_WIDTHS * view.width_mm)
     near = ends[np.hypot(*(ends - np.asarray(start_mm)).T) < near_mm]
     return list(stances_at(view, near, gap_mm))

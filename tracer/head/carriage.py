@@ -17,7 +17,7 @@ from morfax.motion import curves
 from morfax.motion.arrays import Array
 from morfax.motion.long_array import LongArray
 from morfax.motion.plane import direction, heading_of
-from morfax.motion.polyline import lengths_mm
+from morfax.motion.polyline import come_to, lengths_mm
 from morfax.motion.usual import MOTION_RATE_HZ
 from morfax.tracer.head import kernel, mount, screws, slow_cell, swinging, watched
 from morfax.tracer.head.leaders import CELL, MEMORY, STATIONS, Led, Log
@@ -194,8 +194,7 @@ class Carriage:
         """Log who led to positions, by the drum: the cell to those after what it held of stations."""
         first, felt_mm = 0, self._cell_from_mm - from_mm
         if felt_mm > 0:
-            come_mm = lengths_mm(np.vstack([self._positions.last, positions]))[1:]
-            first = int(np.searchsorted(come_mm, felt_mm))
+            first = int(come_to(self._positions.last, positions, felt_mm))
         if first < len(positions):
             self._log.add(self.count + first, CELL)
         self.cell_led_mm += max(self.travel_mm - max(from_mm, self._cell_from_mm), 0.0)

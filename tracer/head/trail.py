@@ -74,8 +74,8 @@ class Trail:
 
     def marks(self, room: int) -> Marks:
         """The trail for a kernel, with room for so many more places."""
-        while self._count + room > len(self._places):
-            self._places = _longer(self._places)
+        if self._count + room > len(self._places):
+            self._places = _longer(self._places, self._count + room)
         count = np.array([self._count])
         return Marks(self._places, count, self._boxes, self._boxed, self.step_mm)
 
@@ -88,8 +88,8 @@ class Trail:
         """Have a box about each full set of places."""
         full = self._count // BOXED
         groups = self._places[self._boxed * BOXED : full * BOXED].reshape(-1, BOXED, 2)
-        while full > len(self._boxes):
-            self._boxes = _longer(self._boxes)
+        if full > len(self._boxes):
+            self._boxes = _longer(self._boxes, full)
         if len(groups):
             self._boxes[self._boxed : full, :2] = groups.min(axis=1)
             self._boxes[self._boxed : full, 2:] = groups.max(axis=1)
@@ -152,9 +152,9 @@ class Trail:
         return bool(np.mean(near) > MOSTLY)
 
 
-def _longer(rows: Array) -> Array:
-    """The same rows with room for as many more, which takes no memory before it is used."""
-    longer = np.empty((max(2 * len(rows), 1), rows.shape[1]))
+def _longer(rows: Array, room: int) -> Array:
+    """The same rows with room for so many, and as many more; it takes no memory before it is used."""
+    longer = np.empty((max(2 * len(rows), room), rows.shape[1]))
     longer[: len(rows)] = rows
     return longer
 

@@ -14,6 +14,7 @@ with the cube of the window.
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -136,6 +137,7 @@ def _steering_gain(lag_s: float, rate_hz: float) -> float:
     return 1 - math.exp(-1 / rate_hz / lag_s) if lag_s > 0 else 1.0
 
 
+@cache
 def _pin(periods: int) -> Array:
     """Where the eccentric pin stands in each period of a sweep: sine and cosine of its phase, (n, 2)."""
     phases = [TWO_PI * (period + 0.5) / periods for period in range(periods)]

@@ -39,6 +39,30 @@ class WaysOn(NamedTuple):
     corners: Mapping[Pair, Array]
 
 
+class Boxes(NamedTuple):
+    """Rows and columns of some pixels in a window, the shape of that, and from pixel to pixel, mm."""
+
+    pixels: tuple[NDArray[np.int64], NDArray[np.int64]]
+    shape: tuple[int, int]
+    pitch_mm: float
+
+    def worst(self, wrong: Array, width_mm: float) -> float:
+        """The sum of the squares of what is wrong (n,), too dark or too pale, in the worst box as wide as a
+        line, in squares of that width.
+        """
+        return float(self.sums(wrong, width_mm).max()) * (self.pitch_mm / width_mm) ** 2
+
+    def sums(self, wrong: Array, width_mm: float) -> Array:
+        """The larger of both sums in a box about each pixel of the window."""
+        side, most = 2 * round(0.5 * width_mm / self.pitch_mm) + 1, np.zeros(self.shape)
+        for signed in (wrong, -wrong):
+            squares = np.zeros(self.shape)
+            squares[self.pixels] = np.maximum(signed, 0.0) ** 2
+            sums = cv2.boxFilter(squares, -1, (side, side), normalize=False)
+            most = np.maximum(most, sums)
+        return most
+
+
 @dataclass(frozen=True)
 class CrossingInk:
     """The ink of a crossing: its pixels in a window, with how far each is from the crossing's legs."""
@@ -103,24 +127,16 @@ class CrossingInk:
 
     def worst(self, wrong: Array) -> float:
         """The same of ink that is left, or drawn on paper, in the worst box as wide as a line."""
-        most = float(self._in_boxes(wrong).max())
-        return most * (self.pitch_mm / (2 * self.ink.half_mm)) ** 2
+        return self._boxes.worst(wrong, 2 * self.ink.half_mm)
 
     def worst_at_mm(self, wrong: Array) -> Array:
         """The place, (x, y) mm, at the middle of that box, or the nearest that is looked at."""
-        worst = int(np.argmax(self._in_boxes(wrong)[self.pixels]))
-        return self.ink.places_mm[worst]
+        sums = self._boxes.sums(wrong, 2 * self.ink.half_mm)
+        return self.ink.places_mm[int(np.argmax(sums[self.pixels]))]
 
-    def _in_boxes(self, wrong: Array) -> Array:
-        """The sum of the squares of what is wrong, too dark or too light, in a box about each pixel."""
-        side, most = 2 * round(self.ink.half_mm / self.pitch_mm) + 1, np.zeros(self.shape)
-        for signed in (wrong, -wrong):
-            squares = np.zeros(self.shape)
-            squares[self.pixels] = np.maximum(signed, 0.0) ** 2
-            np.maximum(
-                most, cv2.boxFilter(squares, -1, (side, side), normalize=False), out=most
-            )
-        return most
+    @property
+    def _boxes(self) -> Boxes:
+        return Boxes(self.pixels, self.shape, self.pitch_mm)
 
     def settled(self, crossing: Crossing, drawn: WaysOn) -> WaysOn:
         """The same pairs with their corners moved to where they explain the ink best."""

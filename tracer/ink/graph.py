@@ -15,6 +15,7 @@ Source: our own.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import count
 from typing import NamedTuple
 
 import numpy as np
@@ -134,14 +135,17 @@ class Graph:
         return bool(beyond_px < BURR_DEPTHS * self.depths_px[fork] + BURR_PX)
 
     def _join_pairs(self) -> None:
-        """Make one stretch of two that are alone at a node."""
-        for node, numbers in self.at_nodes().items():
+        """Make one stretch of two that are alone at a node; those that are made come last."""
+        at, left = self.at_nodes(), dict(enumerate(self.stretches))
+        numbered_on = count(len(left))
+        for node, numbers in at.items():
             if len(numbers) != 2:
                 continue
-            # the numbers may have changed
-            two = [s for s in self.stretches if node in s.nodes]
-            self.stretches[:] = [s for s in self.stretches if node not in s.nodes]
-            self.stretches.append(_joined(two, node))
+            old, new = set(numbers), next(numbered_on)
+            joined = left[new] = _joined([left.pop(n) for n in sorted(old)], node)
+            for end in joined.nodes if joined.nodes[0] != RING else ():
+                at[end][:] = [new if n in old else n for n in at[end]]
+        self.stretches[:] = left.values()
 
 
 def _joined(two: list[Stretch], node: int) -> Stretch:

@@ -27,6 +27,7 @@ from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
 from morfax.tracer.drawing.deepening import LEAST, shaded
 from morfax.tracer.drawing.depth import depth_at
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.drawing.spots import SPOT_PX, noise_of_spots, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 from morfax.tracer.effort import FEW_PX
@@ -66,13 +67,12 @@ def _pale(drawing: Drawing) -> Mask:
     levels = level * times_as_noisy(drawing.darkness)
     if drawing.grainy:  # a slit makes strands of the paper's grain
         levels[:] = max(level, STANDS_OUT * noise_of_spots(drawing.darkness, stains=True))
-    rim = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim_px + 1,) * 2)
     pale = np.zeros(drawing.darkness.shape, np.uint8)
     for top, bottom, rows in strips(
         pale.shape, halo=rim_px + math.ceil(4 * SPOT_PX), pixels=FEW_PX
     ):
         soft = cv2.GaussianBlur(drawing.darkness[rows], (0, 0), SPOT_PX)
-        inked = cv2.dilate((soft > INK).view(np.uint8), rim)
+        inked = cv2.dilate((soft > INK).view(np.uint8), disc(rim_px))
         own = slice(top - rows.start, bottom - rows.start)
         pale[top:bottom] = (inked == 0)[own]
         pale[top:bottom] &= soft[own] > of_pixels(levels, top, bottom, soft.shape[1])

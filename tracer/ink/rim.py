@@ -50,12 +50,17 @@ class Rim(NamedTuple):
     bends_per_mm: Array
 
     def way(self, within_mm: float) -> Array:
-        """The closed way (n, 2) mm, not closed up, that lies so far within the rim."""
+        """The closed way (n, 2) mm, not closed up, that lies so far within the rim, as sharp as it may be."""
+        return self.corners(within_mm).mitred()
+
+    def corners(self, within_mm: float) -> RimCorners:
+        """The way that lies so far within the rim, and where the line may have sharp corners."""
         way = self.places_mm + within_mm * left_of_headings(self.headings_rad)
-        width_mm = 2 * within_mm
+        width_mm, none = 2 * within_mm, np.empty((0, 2), np.int64)
+        longest_mm = LONGEST_MITRE * width_mm
         tight = self.bends_per_mm * TIGHT * width_mm < -1.0
         if not tight.any() or tight.all():
-            return way
+            return RimCorners(way, self.headings_rad, none, longest_mm)
         # begun where the rim is no corner
         first = int(np.argmin(tight))
         way, headings = np.roll(way, -first, axis=0), np.roll(self.headings_rad, -first)
@@ -63,7 +68,25 @@ class Rim(NamedTuple):
         apart_mm = float(np.hypot(*(self.places_mm[1] - self.places_mm[0])))
         beyond = max(1, round(BEYOND * width_mm / apart_mm))
         corners = np.flatnonzero(changes).reshape(-1, 2) + np.array([-beyond, beyond])
-        return _mitred(way, headings, corners, LONGEST_MITRE * width_mm)
+        return RimCorners(way, headings, corners, longest_mm)
+
+
+class RimCorners(NamedTuple):
+    """A closed way (n, 2) mm within a rim with its headings (n,) rad, and from which place to which the line
+    may have a sharp corner (m, 2), whose mitre is no longer than so many mm.
+    """
+
+    way: Array
+    headings_rad: Array
+    at: NDArray[np.int64]
+    longest_mm: float
+
+    def mitred(self, are_sharp: NDArray[np.bool_] | None = None) -> Array:
+        """The way with all its corners sharp, or those (m,) that are."""
+        at = self.at if are_sharp is None else self.at[are_sharp]
+        if not len(at):
+            return self.way
+        return _mitred(self.way, self.headings_rad, at, self.longest_mm)
 
 
 def felt_rim(view: View, outline: Array) -> Rim | None:

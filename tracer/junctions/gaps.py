@@ -6,7 +6,7 @@ straight ahead, and how wide a gap must be allowed to get there (mm) out.
     ━━━━━━━━━●   1.2 mm   ━━━━━━━━        as of a dashed line: the operator may allow it with `--gap`
 
 Source: our own. The head goes across a wider gap as it does across one that is allowed (see
-`line_ahead.straight_on`).
+`line_ahead`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from morfax.motion import long_array
 from morfax.motion.arrays import Array
 from morfax.motion.plane import heading_of
 from morfax.tracer.effort import LOOKED_MM
-from morfax.tracer.junctions.line_ahead import straight_on
+from morfax.tracer.junctions.line_ahead import Ahead
 from morfax.tracer.sensing.leg import ABOUT_LEGS, leg_of
 from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.probe import END_WIDTHS
@@ -52,14 +52,12 @@ def _gap_mm(view: View, way_mm: Array) -> float | None:
     seen = view.feel(place, heading_of(along), felt_mm)
     if len(seen) < FEWEST:
         return None
-    leg = leg_of(seen, True, view.leg_mm)
+    ahead = Ahead(view, leg_of(seen, True, view.leg_mm))
     most_mm = END_WIDTHS * view.width_mm
-    if straight_on(view, leg, most_mm) is None:
+    if ahead.over(most_mm) is None:
         return None
     gaps = np.arange(LOOKED_MM, most_mm, LOOKED_MM)
-    return next(
-        (round(float(gap), 1) for gap in gaps if straight_on(view, leg, gap) is not None), None
-    )
+    return next((round(float(gap), 1) for gap in gaps if ahead.over(gap) is not None), None)
 
 
 def _last_beyond(way_mm: Array, away_mm: float) -> Array | None:

@@ -37,19 +37,33 @@ LOOKS_BACK = 2.0  # gaps: so much of the line shows on what circle it goes on
 OFF_CIRCLE = 0.1
 
 
-def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
-    """The clean line straight ahead, through a blot or across a gap no wider than allowed; or None.
+class Ahead:
+    """What lies straight ahead of a leg: each place is looked at once, however many gaps are asked for."""
 
-    The head goes on along the leg's bend, or else with its heading held: the bend of a dash two or three
-    millimetres long is uncertain. Across a wide gap it goes on, at last, along the circle of the line before
-    that.
-    """
-    straight = replace(incoming, bend_per_mm=0.0)
-    found = _met(view, incoming, gap_mm) or _met(view, straight, gap_mm)
-    if found is not None or gap_mm <= WIDE_GAP_MM:
-        return found
-    round_about = _round_about(view, incoming, gap_mm)
-    return None if round_about is None else _met(view, round_about, gap_mm)
+    def __init__(self, view: View, incoming: Leg) -> None:
+        self._view, self._incoming = view, incoming
+        straight = replace(incoming, bend_per_mm=0.0)
+        self._ways = _Way(view, incoming), _Way(view, straight)
+
+    def over(self, gap_mm: float) -> Leg | None:
+        """The clean line straight ahead, through a blot or across a gap no wider than allowed; or None.
+
+        The head goes on along the leg's bend, or else with its heading held: the bend of a dash two or three
+        millimetres long is uncertain. Across a wide gap it goes on, at last, along the circle of the line
+        before that.
+        """
+        for way in self._ways:
+            if (found := way.met(gap_mm)) is not None:
+                return found
+        if gap_mm <= WIDE_GAP_MM:
+            return None
+        round_about = _round_about(self._view, self._incoming, gap_mm)
+        return None if round_about is None else _Way(self._view, round_about).met(gap_mm)
+
+
+def straight_on(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
+    """The clean line straight ahead of a leg (see `Ahead`); None if there is none."""
+    return Ahead(view, incoming).over(gap_mm)
 
 
 def looks_mm(view: View, gap_mm: float) -> float:
@@ -78,25 +92,53 @@ def _round_about(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
     )
 
 
-def _met(view: View, incoming: Leg, gap_mm: float) -> Leg | None:
-    """The clean line met by going on along a leg; across paper not that of others."""
-    paper_mm, step, is_across = 0.0, STEP_PX * view.pitch_mm, False
-    farthest_mm = END_WIDTHS * view.width_mm + gap_mm
-    for along in np.arange(0.5 * view.width_mm, farthest_mm, step):
+class _Way:
+    """The way on along a leg, and what was looked at along it: whether there is ink at a place, the clean
+    line that is met there, and whether that is another's.
+    """
+
+    def __init__(self, view: View, incoming: Leg) -> None:
+        self._view, self._incoming = view, incoming
+        self._seen: dict[float, tuple[bool, Leg | None]] = {}
+        self._others: dict[float, bool] = {}
+
+    def met(self, gap_mm: float) -> Leg | None:
+        """The clean line met by going on along the leg; across paper not that of others."""
+        view = self._view
+        paper_mm, step, is_across = 0.0, STEP_PX * view.pitch_mm, False
+        farthest_mm = END_WIDTHS * view.width_mm + gap_mm
+        for along in np.arange(0.5 * view.width_mm, farthest_mm, step).tolist():
+            is_dark, leg = self._at(along)
+            paper_mm = 0.0 if is_dark else paper_mm + step
+            if paper_mm > gap_mm + step:
+                return None
+            is_across |= not is_dark
+            if leg is not None and not (is_across and self._is_others(along, leg)):
+                return leg
+        return None
+
+    def _at(self, along: float) -> tuple[bool, Leg | None]:
+        """Whether there is ink at a place along the leg, and the clean line that goes straight on there."""
+        if along not in self._seen:
+            is_dark = self._view.dark(self._incoming.at(along))
+            self._seen[along] = is_dark, self._felt(along) if is_dark else None
+        return self._seen[along]
+
+    def _felt(self, along: float) -> Leg | None:
+        """The clean line that goes straight on at a place along the leg."""
+        view, incoming = self._view, self._incoming
         place = incoming.at(along)
-        paper_mm = 0.0 if view.dark(place) else paper_mm + step
-        if paper_mm > gap_mm + step:
-            return None
-        if paper_mm:
-            is_across = True
-            continue
         seen = view.feel(place, incoming.heading_at(along), view.leg_mm)
         if len(seen) < FEWEST or np.hypot(*(seen[0, :2] - place)) > BEGIN * view.width_mm:
-            continue
+            return None
         leg = leg_of(seen, False, view.leg_mm)
-        if goes_straight(incoming, leg) and not (is_across and view.is_others(leg.end_mm)):
-            return leg
-    return None
+        return leg if goes_straight(incoming, leg) else None
+
+    def _is_others(self, along: float, leg: Leg) -> bool:
+        """Whether the line met at a place along the leg is another's."""
+        if along not in self._others:
+            self._others[along] = self._view.is_others(leg.end_mm)
+        return self._others[along]
 
 
 def caught_again(view: View, incoming: Leg, trail: Trail, within_mm: float) -> Leg | None:

@@ -171,7 +171,8 @@ def _of_side(
     least_mm = sizes.SEEN[0] * view.width_mm
     most_mm = 2 * sizes.SEEN[1] * view.width_mm
     found, feet_mm = list[SideStroke](), list[float]()  # the feet in their order
-    for away, ink in zip(rows, dark, strict=True):
+    is_any = dark.any(axis=1)  # beside most lines there is nothing
+    for away, ink in zip(rows[is_any], dark[is_any], strict=True):
         for begin, end in _pulses(ink, len(path.places)):
             if not least_mm < (end - begin) * path.step_mm < most_mm:
                 continue

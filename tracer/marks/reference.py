@@ -38,6 +38,7 @@ from morfax.tracer.drawing.holes import holes_in
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
 from morfax.tracer.marks.crosses import crosses
+from morfax.tracer.marks.entered import entered
 from morfax.tracer.marks.sizes import BOX, CROSS_MM, RING_LIKE, RING_ROUND, RING_SEEN
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, Leg, leg_of
 from morfax.tracer.sensing.probe import SPECK_WIDTHS
@@ -102,11 +103,18 @@ def reach_mm(width_mm: float, pitch_mm: float) -> float:
 
 def may_lead(sheet: Sheet, stroke: Stroke) -> bool:
     """Whether a line may begin at a reference point: it has ends, other ink is near it, or it goes round a
-    hole that would do, and further than that.
+    hole that would do, and further than that; found once.
     """
+    if stroke.patch not in sheet.leads:
+        sheet.leads[stroke.patch] = _may_lead(sheet, stroke)
+    return sheet.leads[stroke.patch]
+
+
+def _may_lead(sheet: Sheet, stroke: Stroke) -> bool:
+    """The same, by what is about the line."""
     pitch_mm = sheet.drawing.pitch_mm
     about_px = math.ceil(reach_mm(stroke.width_mm, pitch_mm) / pitch_mm)
-    if len(stroke.ends_mm()) or not _is_alone(sheet.patches, stroke.patch, about_px):
+    if len(stroke.ends_mm) or not _is_alone(sheet.patches, stroke.patch, about_px):
         return True
     return any(_leads_away(stroke, *each) for each in _inside(sheet, stroke.patch))
 
@@ -142,7 +150,7 @@ def _every(
 
 def _crosses(view: View, stroke: Stroke) -> Iterator[Reference]:
     """The crosses and symbols whose arms end where a stroke does."""
-    for cross in crosses(view, stroke.ends_mm()):
+    for cross in crosses(view, stroke.ends_mm):
         yield _reference(view, cross.centre_mm, cross.reach_mm, cross.kind)
 
 
@@ -169,20 +177,9 @@ def _small_patches(
     patches = np.flatnonzero(small)
     middles_mm = sheet.middles_mm(patches)
     if stroke is not None:
-        near = _passed(stroke.middles_mm, middles_mm, 0.5 * sides_mm[patches] + about_mm)
+        near = entered(stroke.middles_mm, middles_mm, 0.5 * sides_mm[patches] + about_mm)
         patches, middles_mm = patches[near], middles_mm[near]
     yield from zip(patches.tolist(), middles_mm, strict=True)
-
-
-def _passed(line_mm: Array, middles_mm: Array, reach_mm: NDArray[Any]) -> NDArray[np.int64]:
-    """The numbers of the squares, by middle and reach to each side, that a line enters."""
-    low_mm, high_mm = line_mm.min(axis=0), line_mm.max(axis=0)
-    away_mm = np.abs(middles_mm - np.clip(middles_mm, low_mm, high_mm)).max(axis=1)
-    near = np.flatnonzero(away_mm <= reach_mm).tolist()
-    enters = [
-        k for k in near if (np.abs(line_mm - middles_mm[k]).max(axis=1) <= reach_mm[k]).any()
-    ]
-    return np.array(enters, np.int64)
 
 
 def _is_square(high: Any, wide: Any) -> Any:

@@ -29,7 +29,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
@@ -146,15 +146,16 @@ def z_moves(
     acceleration_mm_s2: float = ACCELERATION_MM_S2,
     rate_hz: float = MOTION_RATE_HZ,
 ) -> Array:
-    """Z of moves one after the other from a place, (n,) mm at the motion rate; each ends on its last pulse.
+    """Z of moves one after the other from a place, (n,) mm at the motion rate, each to its last pulse; it is
+    not to be changed.
 
     Raises MotionFault where the counters never agree with the switches.
     """
-    parts, at_mm = [np.empty(0)], start_mm
+    parts, at_mm = list[Array](), start_mm
     for move in moves:
         parts.append(_one(at_mm, move, acceleration_mm_s2, rate_hz))
         at_mm = float(parts[-1][-1])
-    return np.concatenate(parts)
+    return parts[0] if len(parts) == 1 else np.concatenate([np.empty(0), *parts])
 
 
 def counted(come_mm: Array, pulse_mm: float = COUNT_MM) -> NDArray[np.int64]:
@@ -168,10 +169,13 @@ def coincidence(shown: NDArray[np.int64], counts: int) -> int | None:
     return int(there[0]) if len(there) else None
 
 
+@lru_cache(maxsize=16)  # all holes of a plate have the same two moves
 def _one(start_mm: float, move: QuillMove, acceleration_mm_s2: float, rate_hz: float) -> Array:
     """Z of one move and of the dwell after it, mm."""
     # 1. what the motor would run
-    way = _motor_mm(start_mm, replace(move, dwell_s=0.0), acceleration_mm_s2, rate_hz)
+    how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
+    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)
+    way = way[:, 0]
     # 2. the counters, from the start of the move; the motor is off where they would pass the switches
     length_mm = abs(move.to_mm - start_mm)
     switches = round(length_mm / COUNT_MM)
@@ -186,15 +190,6 @@ def _one(start_mm: float, move: QuillMove, acceleration_mm_s2: float, rate_hz: f
             )
         way = way[np.abs(shown) <= switches]
     # 3. the dwell, where it came to rest
-    return np.concatenate([way, np.full(round(move.dwell_s * rate_hz), way[-1])])
-
-
-@lru_cache(maxsize=16)  # all holes of a plate have the same two moves
-def _motor_mm(
-    start_mm: float, move: QuillMove, acceleration_mm_s2: float, rate_hz: float
-) -> Array:
-    """Where the motor would run Z to in a move, mm."""
-    how = ramp.Ramp(acceleration_mm_s2, COUNT_MM)
-    way = ramp.positions_mm([start_mm], [move.to_mm], move.feed_mm_s, how, rate_hz=rate_hz)
-    way.flags.writeable = False
-    return way[:, 0]
+    z_mm = np.concatenate([way, np.full(round(move.dwell_s * rate_hz), way[-1])])
+    z_mm.flags.writeable = False
+    return z_mm

@@ -23,6 +23,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
@@ -163,9 +164,7 @@ def _ink_about(sheet: Sheet, places: Array, width_mm: float) -> SeenInk:
     last = np.array(window.shape) - 1  # a place on the sheet's very edge is in its last pixel
     row, column = np.clip(window.pixels(places)[:, ::-1], 0, last).T
     near[row, column] = 1
-    across_px = 2 * round(reach_mm / drawing.pitch_mm) + 1
-    reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across_px,) * 2)
-    i, j = np.nonzero(cv2.dilate(near, reach))
+    i, j = np.nonzero(cv2.dilate(near, disc(round(reach_mm / drawing.pitch_mm))))
     every = 1 + len(i) // MOST_PLACES
     i, j = i[::every] + window.top, j[::every] + window.left
     nothing_mm = np.full(len(i), NOWHERE_MM)

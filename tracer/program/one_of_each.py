@@ -67,13 +67,15 @@ class _Found(NamedTuple):
 def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
     """Follow one line of each patch that is asked for."""
     total_mm = sum(contour.stroke.length_mm for contour in asked)
-    lines, boxes_mm, come_mm = list[Line](), list[Array](), 0.0
+    lines, boxes_mm, come_mm = list[Line](), np.empty((len(asked), 2, 2)), 0.0
     begins_mm, unclear = list[tuple[float, float]](), list[Contour]()
     loops = SmallLoops(setup.sheet, setup.settings)
     others, taken = dict[int, list[Line]](), set[int]()
     letters = lettering(setup.sheet) if may_solve(setup) else set[int]()
     for contour in asked:
-        if _is_done(contour, [lines[k] for k in _near(contour, boxes_mm)], begins_mm):
+        if _is_done(
+            contour, [lines[k] for k in _near(contour, boxes_mm[: len(lines)])], begins_mm
+        ):
             continue
         if which == "outer" and _is_inner(contour, lines):
             continue
@@ -90,8 +92,8 @@ def one_of_each(setup: Setup, asked: list[Contour], which: Which) -> OneOfEach:
             taken |= taken_by(setup, [line])
             if found.others is not None:
                 others[contour.number] = found.others
+            boxes_mm[len(lines)] = line.box_mm
             lines.append(line)
-            boxes_mm.append(np.array(bounds(line.places_mm)))
             begins_mm += references_of([line])
             come_mm += line.length_mm
         elif isinstance(which, str) or contour.number not in which:
@@ -113,11 +115,9 @@ def is_inside(line: Line, lines: list[Line]) -> bool:
     return any(nesting.lies_inside(line.places_mm, other.loop_mm) for other in around)
 
 
-def _near(contour: Contour, boxes_mm: list[Array]) -> NDArray[np.int64]:
-    """The numbers of the boxes, lowest and highest place of a line, in which a patch may lie."""
-    if not boxes_mm:
-        return np.empty(0, np.int64)
-    low_mm, high_mm = np.swapaxes(np.array(boxes_mm), 0, 1)
+def _near(contour: Contour, boxes_mm: Array) -> NDArray[np.int64]:
+    """The numbers of the boxes (n, 2, 2), lowest and highest place of a line, in which a patch may lie."""
+    low_mm, high_mm = boxes_mm[:, 0], boxes_mm[:, 1]
     beside_mm, (lowest_mm, highest_mm) = selection.BESIDE_MM, bounds(contour.stroke.middles_mm)
     meets = highest_mm > low_mm - beside_mm
     meets &= lowest_mm < high_mm + beside_mm
@@ -187,7 +187,7 @@ def _about(setup: Setup, contour: Contour) -> Setup:
 def _off_mm(sheet: Sheet, stroke: Stroke) -> float:
     """How far off a patch the head may come without seeing the edge of the window about it, mm."""
     if may_lead(sheet, stroke):
-        return ABOUT_MM if len(stroke.ends_mm()) else ENDLESS_ABOUT_MM
+        return ABOUT_MM if len(stroke.ends_mm) else ENDLESS_ABOUT_MM
     return reach_mm(stroke.width_mm, sheet.drawing.pitch_mm)
 
 
@@ -209,7 +209,7 @@ def _follow_in_window(setup: Setup, about: Setup, contour: Contour, is_letter: b
 def _keeps_to(contour: Contour, line: Line) -> bool:
     """Whether a line runs nowhere beyond its own patch."""
     low_mm, high_mm = _box_mm(contour, contour.stroke.width_mm)
-    line_low_mm, line_high_mm = bounds(line.places_mm)
+    line_low_mm, line_high_mm = line.box_mm
     return bool(((line_low_mm > low_mm) & (line_high_mm < high_mm)).all())
 
 

@@ -28,12 +28,12 @@ import numpy as np
 from morfax.motion.faults import LineFault
 from morfax.motion.polyline import APART_MM
 from morfax.tracer.drawing.enclosure import NONE, Enclosure
-from morfax.tracer.drawing.lengths import told_mm
+from morfax.tracer.drawing.lengths import Told
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.open_ends import from_reference, stances_at
-from morfax.tracer.following.plain_places import aperture_for, stance_near, view_of
+from morfax.tracer.following.plain_places import aperture_for, stands_near, view_of
 from morfax.tracer.following.start import put_down
 from morfax.tracer.marks.reference import Reference, references
 from morfax.tracer.program.laid.small_lines import small_lines
@@ -105,7 +105,7 @@ class Survey:
     @property
     def left_out_mm(self) -> float:
         """Length of the patches that have no number, mm."""
-        return float(told_mm(self.sheet)[list(self.left_out)].sum())
+        return float(self.sheet.told.lengths_mm[list(self.left_out)].sum())
 
     @property
     def width_mm(self) -> float | None:
@@ -120,9 +120,9 @@ def survey(setup: Setup) -> Survey:
     contours, _ = selection.plan(sheet, "contours")
     letters = lettering(sheet)
     # 1. patches that are lines
-    drawn, lengths_mm = _references(setup), told_mm(sheet)
+    drawn, sizes = _references(setup), sheet.told
     seen = [
-        _of_patch(setup, contour, view, drawn, float(lengths_mm[contour.stroke.patch]))
+        _of_patch(setup, contour, view, drawn, sizes)
         for contour, view in _viewed(setup, contours)
     ]
     entries = {entry.patch: entry for entry in _with_references(seen, contours)}
@@ -166,13 +166,13 @@ def _references(setup: Setup) -> list[Reference]:
 
 
 def _of_patch(
-    setup: Setup, contour: Contour, view: View, drawn: list[Reference], length_mm: float
+    setup: Setup, contour: Contour, view: View, drawn: list[Reference], sizes: Told
 ) -> Entry:
     """What a patch looks like, but for what it goes round: "several" with more than two ends, "closed" with
     none.
     """
     sheet, stroke = setup.sheet, contour.stroke
-    ends = list(stances_at(view, stroke.ends_mm(), setup.settings.gap_mm))
+    ends = list(stances_at(view, stroke.ends_mm, setup.settings.gap_mm))
     begins_at = [
         found
         for found in drawn
@@ -183,8 +183,8 @@ def _of_patch(
         contour.number,
         "several" if len(ends) > 2 else "open" if ends else "closed",
         starts_mm[0],
-        length_mm,
-        stroke.width_mm,
+        float(sizes.lengths_mm[stroke.patch]),
+        float(sizes.widths_mm[stroke.patch]),
         stroke.patch,
         is_solid=bool(sheet.are_solid[stroke.patch]),
         can_begin=_can_begin(setup, contour, view, starts_mm),
@@ -215,7 +215,7 @@ def _kind(by_ends: Kind, loops: int) -> Kind:
 def _can_begin(setup: Setup, contour: Contour, view: View, starts_mm: list[Place]) -> bool:
     """Whether the head can be put down on a patch; asked as a run asks where the first looks find nothing."""
     for start_mm in starts_mm[:FIRST_LOOKS]:
-        if stance_near(view, contour.stroke, start_mm) is not None:
+        if stands_near(view, contour.stroke, start_mm):
             return True
     for start_mm in starts_mm:
         try:

@@ -36,7 +36,7 @@ from morfax.tracer.program.against_ink.strokes_off_ink import strokes_off_ink
 from morfax.tracer.program.against_ink.unexplained import Unexplained, is_about
 from morfax.tracer.program.as_contours import as_contours
 from morfax.tracer.program.laid.bent import bent
-from morfax.tracer.program.laid.line_parts import is_clear
+from morfax.tracer.program.laid.line_parts import back_along, is_clear
 from morfax.tracer.program.laid.narrow_bays import beside_mended
 from morfax.tracer.program.laid.small_loops import Loop, SmallLoops
 from morfax.tracer.program.lines import stroke_order
@@ -222,11 +222,6 @@ def _in_order(lines: list[Line]) -> list[Line]:
     ends = np.array([line.end_mm for line in lines])
     way, turned = stroke_order.in_order(begins, ends)
     return [
-        _turned_round(lines[n]) if about else lines[n]
+        back_along(lines[n]) if about else lines[n]
         for n, about in zip(way, turned, strict=True)
     ]
-
-
-def _turned_round(line: Line) -> Line:
-    """A stroke run from its other end."""
-    return replace(line, xy_mm=line.xy_mm[::-1], led=line.led.turned_round(len(line.xy_mm)))

@@ -29,6 +29,7 @@ from morfax.tracer.program.cutting_order import in_cutting_order
 from morfax.tracer.program.joined_lines import joined_to
 from morfax.tracer.program.laid.bent import bent
 from morfax.tracer.program.laid.narrow_bays import explained, with_bars
+from morfax.tracer.program.laid.own_rims import within_own_rims
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.marks_read import with_marks_read
@@ -227,13 +228,16 @@ def _joined(
     that are known, or those that the head finds; and the length of ink left over, mm.
     """
     joined, left_mm = list[tuple[Line, int]](), 0.0
-    own, taken = {line.number: line for line in lines}, taken_by(setup, lines)
+    own, taken = {line.number: k for k, line in enumerate(lines)}, taken_by(setup, lines)
     for k, contour in enumerate(asked):
         setup.come(k, len(asked))
-        line = own.get(contour.number)
-        if line is not None and len(line.xy_mm) > 1:  # not one that was never begun
+        if (n := own.get(contour.number)) is not None and len(lines[n].xy_mm) > 1:
+            line = lines[n]  # not one that was never begun
             here = kept_off(setup, taken - {contour.stroke.patch})
             others, more_mm = joined_to(line, contour, here, strokes.get(contour.number))
+            lines[n], *told = within_own_rims(here, contour.stroke.patch, [line, *others])
+            if lines[n] is not line:
+                others, more_mm = told, 0.0
             joined += [(other, contour.number) for other in others]
             left_mm += more_mm
     begins_mm = references_of(lines)

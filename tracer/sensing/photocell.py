@@ -207,9 +207,27 @@ def ring(cells, centre, radius_mm):  # type: ignore[no-untyped-def]
 
     A ring that is dark all round is one arc of a whole turn.
     """
-    seen = np.empty(looks_round(cells, radius_mm))
-    for k in range(len(seen)):
-        seen[k] = look_round(cells, centre, radius_mm, k, len(seen))
+    return ring_along(cells, centre, radius_mm, ways_round(looks_round(cells, radius_mm)))
+
+
+@njit(cache=True)
+def ways_round(looks):  # type: ignore[no-untyped-def]
+    """The directions of so many looks once round, cosine and sine (n, 2): rings of one size have the same."""
+    ways = np.empty((looks, 2))
+    for k in range(looks):
+        a = TWO_PI * k / looks
+        ways[k, 0], ways[k, 1] = math.cos(a), math.sin(a)
+    return ways
+
+
+@njit(cache=True)
+def ring_along(cells, centre, radius_mm, ways):  # type: ignore[no-untyped-def]
+    """The arcs of `ring` by its directions."""
+    seen = np.empty(len(ways))
+    for k in range(len(ways)):
+        x = centre[0] + radius_mm * ways[k, 0]
+        y = centre[1] + radius_mm * ways[k, 1]
+        seen[k] = darkness_at(cells, x, y)
     return dark_arcs(seen, cells.level)
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from morfax.tracer.drawing.blocks import runs_in
-from morfax.tracer.drawing.components import Patches, nearest_run
+from morfax.tracer.drawing.components import Patches
+from morfax.tracer.drawing.nearest_ink import nearest_run
 from tests.tracer.sensing.kernels import COMPILED_AND_PLAIN, kernel
 
 
@@ -38,15 +39,15 @@ def test_the_nearest_run_of_some_patches_is_that_of_the_nearest_pixel(
     seed: int, plain: bool
 ) -> None:
     patches, rng = blots(seed), np.random.default_rng(seed)
-    find, runs = kernel(nearest_run, plain), (patches.row, patches.begin, patches.end)
+    find, runs = kernel(nearest_run, plain), (patches.begin, patches.end)
     number = np.repeat(np.arange(len(patches.row)), patches.end - patches.begin)
-    columns = np.concatenate([np.arange(a, b) for a, b in zip(*runs[1:], strict=True)])
+    columns = np.concatenate([np.arange(a, b) for a, b in zip(*runs, strict=True)])
     x_mm, y_mm = (columns + 0.5) * PITCH_MM, (SHEET[0] - patches.row[number] - 0.5) * PITCH_MM
     for among in (np.ones(patches.count, bool), rng.random(patches.count) > 0.7):
         for place in rng.uniform(-1.0, 7.0, (20, 2)):
             away_mm = np.hypot(x_mm - place[0], y_mm - place[1])
             away_mm[~among[patches.patch[number]]] = np.inf
-            own = (*runs, patches.patch), (float(place[0]), float(place[1]))
+            own = (*runs, patches.patch), patches.firsts, (float(place[0]), float(place[1]))
             found_mm, x, y, run = find(*own, (SHEET[0], PITCH_MM), among)
             nearest = int(np.argmin(away_mm))
             assert found_mm == pytest.approx(away_mm[nearest], abs=1e-12)  # rounding

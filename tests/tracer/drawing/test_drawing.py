@@ -12,6 +12,7 @@ from PIL import Image
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.levelling import LIGHT_LINES
 from tests.tracer.drawing.images import DPI, PEN_MM, Grey, off_the_line_mm, opened
 from tests.tracer.inked import UM
 
@@ -85,6 +86,7 @@ def test_light_on_dark_is_found_out(tmp_path: Path, grey: Grey) -> None:
     drawing = opened(Image.fromarray(255 - grey), tmp_path / "blue.png", dpi=DPI)
     as_usual = opened(Image.fromarray(grey), tmp_path / "a.png", dpi=DPI)
     assert np.abs(drawing.darkness - as_usual.darkness).max() < 1 / 215  # a grey level
+    assert (LIGHT_LINES in drawing.notes, LIGHT_LINES in as_usual.notes) == (True, False)
 
 
 def test_uneven_paper_is_levelled(tmp_path: Path, grey: Grey) -> None:

@@ -114,8 +114,10 @@ def test_a_bent_sheet_is_told_and_one_bent_further_refused(photograph: Picture) 
         x += np.float32(px) * np.sin(2 * np.pi * y / rows)
         return np.asarray(cv2.remap(photograph, x, y, cv2.INTER_LINEAR), np.uint8)
 
-    told = made(bent(4), MARKS).warnings
-    assert len(told) == 1 and "press the sheet flat" in told[0]
+    found = made(bent(4), MARKS)
+    assert len(found.warnings) == 1 and "press the sheet flat" in found.warnings[0]
+    # a mark at the crest of the bend lies off by some 4 pixels, one between crests by none
+    assert found.fit is not None and found.fit.max_mm > 1.3 * found.fit.rms_mm
     with pytest.raises(
         DrawingFault, match=r"marks are up to .* mm off a flat sheet.*more than 1 %"
     ):

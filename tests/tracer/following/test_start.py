@@ -42,10 +42,10 @@ def test_lengths_and_widths_of_lines(width_mm: float) -> None:
 
 def test_ends_are_found_and_a_closed_line_has_none() -> None:
     line = polyline((4, 4), (24, 7))
-    ends = Sheet.of(inked(line)).longest().ends_mm()
+    ends = Sheet.of(inked(line)).longest().ends_mm
     for end in line:
         assert np.hypot(*(ends - end).T).min() < WIDTH_MM
-    assert len(Sheet.of(inked(arc((10, 10), 6))).longest().ends_mm()) == 0
+    assert len(Sheet.of(inked(arc((10, 10), 6))).longest().ends_mm) == 0
 
 
 def test_the_nearest_line_is_within_reach_or_said_to_be_far() -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 import numpy as np
 import pytest
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.trail import Trail
-from morfax.tracer.junctions.line_ahead import caught_again, looks_mm, straight_on
+from morfax.tracer.junctions.line_ahead import Ahead, caught_again, looks_mm, straight_on
 from morfax.tracer.sensing.leg import Leg, leg_of
 from morfax.tracer.sensing.photocell import behind_aperture
 from morfax.tracer.sensing.view import View
@@ -78,3 +79,28 @@ def test_the_line_is_looked_for_no_further_than_is_said(
     again = straight_on(view, incoming, gap_mm)
     assert again is not None
     assert np.array_equal(again.end_mm, found.end_mm) and np.array_equal(again.seen, found.seen)
+
+
+def test_however_many_gaps_are_asked_for_no_place_is_looked_at_twice(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A leg is followed on by its own bend and straight; a gap over 1 mm, by a circle of its own, is not."""
+    view, incoming = _leg(
+        inked(polyline((4, Y_MM), (12, Y_MM)), polyline((12.9, Y_MM), (22, Y_MM))), 12.0
+    )
+    gaps_mm = np.arange(0.1, 1.0, 0.1).tolist()
+    each = [straight_on(view, incoming, gap_mm) for gap_mm in gaps_mm]
+    looked, dark = Counter[tuple[float, ...]](), View.dark
+
+    def counted(view: View, place: Points) -> bool:
+        looked[tuple(np.asarray(place).tolist())] += 1
+        return dark(view, place)
+
+    monkeypatch.setattr(View, "dark", counted)
+    ahead = Ahead(view, incoming)
+    found = [ahead.over(gap_mm) for gap_mm in gaps_mm]
+    assert looked and max(looked.values()) <= 2
+    assert each[0] is None and each[-1] is not None
+    assert [leg is None for leg in found] == [leg is None for leg in each]
+    for one, other in zip(found, each, strict=True):
+        assert one is None or (other is not None and np.array_equal(one.seen, other.seen))

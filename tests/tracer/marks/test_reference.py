@@ -251,3 +251,25 @@ def test_a_ring_leads_somewhere_only_if_other_ink_is_near_or_a_line_leaves_it(
 def test_what_goes_round_no_ring_leads_nowhere() -> None:
     sheet = Sheet.of(inked(arc((15, 15), 7.0), seed=3))
     assert not reference.may_lead(sheet, sheet.stroke(0))
+
+
+def test_a_frame_of_two_slots_leads_nowhere() -> None:
+    """Neither hole is about as wide as high, so neither is a ring that the other could lead from."""
+    frame = polyline((10, 10), (22, 10), (22, 13), (10, 13), (10, 10))
+    bar = polyline((16, 10), (16, 13))
+    sheet = Sheet.of(inked(frame, bar, seed=3))
+    assert not reference.may_lead(sheet, sheet.stroke(0))
+
+
+@pytest.mark.parametrize(
+    ("besides", "sure"),
+    [([], False), ([arc((22.5, 15), 2.5)], True), ([arc((29, 15), 9)], True)],
+)
+def test_a_ring_is_sure_if_its_ink_goes_round_a_contour_besides(
+    besides: list[np.ndarray], sure: bool
+) -> None:
+    """A small contour, which lies elsewhere, or a large one."""
+    sheet = Sheet.of(inked(RING, polyline((18, 15), (20, 15)), *besides, seed=3))
+    ring = Reference((15.0, 15.0), "ring")
+    assert not sheet.bare_rings
+    assert ring.is_sure(sheet, sheet.patch_at(RING[0])) == sure

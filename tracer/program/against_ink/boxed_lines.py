@@ -30,9 +30,8 @@ class BoxedLines(NamedTuple):
     @classmethod
     def of(cls, lines: Sequence[Line]) -> BoxedLines:
         """Some lines."""
-        places_mm = [line.places_mm for line in lines]
-        boxes = np.array([bounds(places) for places in places_mm]).reshape(-1, 2, 2)
-        return cls(list(lines), places_mm, boxes[:, 0], boxes[:, 1])
+        boxes = np.array([line.box_mm for line in lines]).reshape(-1, 2, 2)
+        return cls(list(lines), [line.places_mm for line in lines], boxes[:, 0], boxes[:, 1])
 
     def reach(self, low_mm: Array, high_mm: Array) -> NDArray[np.bool_]:
         """Which of the lines (n,) have a box that reaches into another."""

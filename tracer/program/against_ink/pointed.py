@@ -13,11 +13,13 @@ Source: SVG 1.1, stroke-linejoin and stroke-miterlimit: a corner so sharp that i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED, Array
+from morfax.motion.compiled import njit
 from morfax.motion.plane import unit
 from morfax.motion.polyline import evenly
 from morfax.tracer.following.line import Line
@@ -35,6 +37,8 @@ def points_of(line: Line) -> Iterator[Array]:
     way = evenly(line.loop_mm, STEP_WIDTHS * width_mm)
     if len(way) <= 2 * LEG:
         return
+    if not _turns_by(way, LEG, TIP_RAD - ROUNDED):
+        return
     # 1. the directions in which both sides of each place come to it, and how much they turn there
     come = unit(way - np.roll(way, LEG, axis=0))
     back = unit(way - np.roll(way, -LEG, axis=0))
@@ -48,3 +52,18 @@ def points_of(line: Line) -> Iterator[Array]:
         on_mm = np.arange(0.0, long_mm, STEP_WIDTHS * width_mm)[:, None]
         yield way[k] + on_mm * come[k]
         yield way[k] + on_mm * back[k]
+
+
+@njit(cache=True, _nrt=False)
+def _turns_by(way, leg, rad):  # type: ignore[no-untyped-def]
+    """Whether a closed way (n, 2) turns anywhere by more than an angle, from a chord of so many places to the
+    next; most lines of a plate do not.
+    """
+    count, most = len(way), math.cos(rad)
+    for k in range(count):
+        before, after = (k - leg) % count, (k + leg) % count
+        x, y = way[k, 0] - way[before, 0], way[k, 1] - way[before, 1]
+        u, v = way[after, 0] - way[k, 0], way[after, 1] - way[k, 1]
+        if not x * u + y * v > most * math.sqrt((x * x + y * y) * (u * u + v * v)):
+            return True
+    return False

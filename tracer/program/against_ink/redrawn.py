@@ -27,6 +27,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm
 from morfax.tracer.drawing.components import FRINGE_PX
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.paper import disc
 from morfax.tracer.tangles.tangle import DARKEST
 
 Darkness = NDArray[np.float64]
@@ -60,8 +61,7 @@ def most_astray(drawing: Drawing, way_mm: Array) -> Astray:
     spread = _spread(np.column_stack([row - top, column - left]), sheet.shape)
     there = spread * (length_mm(way_mm) / len(places) / pitch_mm)
     # 2. the spot and the height that explain the sheet best
-    reach = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * around + 1,) * 2)
-    about = cv2.dilate((there > 0).astype(np.uint8), reach) > 0
+    about = cv2.dilate((there > 0).astype(np.uint8), disc(around)) > 0
     redrawn = min(
         (_redrawn(there, sheet, about, spot * finer) for spot in SPOTS_PX),
         key=lambda drawn: float(np.mean((drawn - sheet)[about] ** 2)),

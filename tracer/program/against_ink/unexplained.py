@@ -61,7 +61,7 @@ MISSED, MISSED_COARSE = 1.25, 2.0
 
 AHEAD = np.radians(np.linspace(-80.0, 80.0, 17))  # of a line's end: where its ink would go on
 
-Kind = Literal["ink", "tip", "bare", "beside", "crossed", "broad", "pale", "off"]
+Kind = Literal["ink", "tip", "aside", "bare", "beside", "crossed", "broad", "pale", "off"]
 
 
 class Unexplained(NamedTuple):
@@ -69,7 +69,7 @@ class Unexplained(NamedTuple):
 
     ink       ink beside all ways: how far it reaches
     tip       a tip of a filled shape, or its edge: how much of it the way cuts off
-    bare      a way over bare paper: for how long
+    bare      a way over bare paper: for how long; aside: one beside the edge of a filled shape
     beside    a way beside its own pen's ink: for how long
     crossed   a closed way that crosses itself within its ink (see `crossed_ink`): how far it goes round there
     broad     strokes within ink that is as broad as two lines: for how long
@@ -206,7 +206,8 @@ def bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[U
         bare = list(_stretches(dark < PAPER, come_mm, gap_mm + CLEAR_WIDTHS * line.width_mm))
         for middle, long_mm in bare:
             x, y = places[middle]
-            yield Unexplained((float(x), float(y)), long_mm, "bare")
+            kind: Kind = "aside" if sheet.drawing.edges_mm else "bare"
+            yield Unexplained((float(x), float(y)), long_mm, kind)
         if bare or not _is_coarse(sheet):
             continue
         for middle, long_mm in _stretches(dark < PALE, come_mm, 0.0):

@@ -15,9 +15,11 @@ from itertools import islice
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
+from morfax.tracer.drawing.inner_rings import LEAST_PX
 from morfax.tracer.drawing.narrow import LONG_WIDTHS
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.plain_places import places_of, plainest_first
@@ -42,21 +44,39 @@ def narrow_outline(sheet: Sheet, patch: int, pen_mm: float) -> Array | None:
     """
     if sheet.lengths_mm[patch] > LONGEST * pen_mm:
         return None
-    top, bottom, left, right = sheet.patches.boxes[patch].tolist()
-    own = sheet.patches.alone(patch)
-    ink = np.pad(sheet.patches.painted(own, top, bottom, left, right), 1)
-    outlines, _ = cv2.findContours(ink, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    outline = max(outlines, key=len)
+    outline = max(_contours(sheet, patch, cv2.RETR_EXTERNAL), key=len)
     area_px2, long_px = cv2.contourArea(outline, True), cv2.arcLength(outline, False)
     # the outline runs through the middles of pixels
     pen_px, broad_px = pen_mm / sheet.drawing.pitch_mm, 2 * abs(area_px2) / max(long_px, 1) + 1
     is_narrow = BROAD[0] < broad_px / pen_px < BROAD[1] and long_px < LONGEST * pen_px
     if not is_narrow:
         return None
+    return _places_mm(sheet, patch, outline)[:: -1 if area_px2 > 0 else 1]  # rows go down
+
+
+def outlines_of(sheet: Sheet, patch: int) -> list[Array]:
+    """The outlines (n, 2) mm of a patch of ink, each with the ink to its left: about all of it, and about the
+    areas of paper within it.
+    """
+    outlines = _contours(sheet, patch, cv2.RETR_CCOMP)
+    broad = (o for o in outlines if cv2.contourArea(o) >= LEAST_PX)
+    return [_places_mm(sheet, patch, outline) for outline in broad]
+
+
+def _contours(sheet: Sheet, patch: int, mode: int) -> list[NDArray[np.int32]]:
+    """The contours (n, 1, 2) of a patch of ink, columns and rows in its box and a pixel more."""
+    top, bottom, left, right = sheet.patches.boxes[patch].tolist()
+    ink = sheet.patches.painted(patch, top - 1, bottom + 1, left - 1, right + 1)
+    found, _ = cv2.findContours(ink, mode, cv2.CHAIN_APPROX_NONE)
+    return [np.asarray(contour, np.int32) for contour in found]
+
+
+def _places_mm(sheet: Sheet, patch: int, outline: NDArray[np.int32]) -> Array:
+    """The places (n, 2) mm of a contour of a patch."""
+    top, _, left, _ = sheet.patches.boxes[patch].tolist()
     column, row = outline[:, 0].T.astype(float)
     up = len(sheet.drawing.darkness) - (row - 1 + top) - 0.5
-    places = np.column_stack([column - 1 + left + 0.5, up]) * sheet.drawing.pitch_mm
-    return places[:: -1 if area_px2 > 0 else 1]  # rows go down
+    return np.column_stack([column - 1 + left + 0.5, up]) * sheet.drawing.pitch_mm
 
 
 def core_within(view: View, outline: Array, width_mm: float) -> Core | None:

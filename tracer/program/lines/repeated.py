@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from morfax.motion.arrays import bounds
+from morfax.motion.arrays import Array, bounds
 from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.effort import EVERY_MM
 from morfax.tracer.following.line import Line
@@ -31,7 +31,7 @@ def without_repeats(lines: Sequence[Line]) -> list[Line]:
     closed = [line for line in lines if line.ending == "closed"]
     closed.sort(key=lambda line: line.length_mm)
     # the boxes of all at once: on a plate of many holes each was made anew for every other line
-    boxes = np.array([np.hstack(bounds(line.loop_mm)) for line in closed]).reshape(-1, 4)
+    boxes = np.array([np.hstack(_box_mm(line)) for line in closed]).reshape(-1, 4)
     kept = list[int]()
     for number, line in enumerate(closed):
         apart_mm = np.abs(boxes[kept] - boxes[number]).max(axis=1)
@@ -40,6 +40,11 @@ def without_repeats(lines: Sequence[Line]) -> list[Line]:
             kept.append(number)
     chosen = {id(closed[number]) for number in kept}
     return [line for line in lines if line.ending != "closed" or id(line) in chosen]
+
+
+def _box_mm(line: Line) -> tuple[Array, Array]:
+    """The box about a closed line without what leads to it, mm."""
+    return bounds(line.loop_mm) if line.loop_from else line.box_mm
 
 
 def _are_one(line: Line, other: Line) -> bool:

@@ -33,7 +33,6 @@ from morfax.motion.nesting import lies_inside, size_mm
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing import lettering
 from morfax.tracer.drawing.inner_rings import inner_rings
-from morfax.tracer.drawing.lengths import told_mm
 from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.effort import SOME_PLACES
 from morfax.tracer.following.line import Line
@@ -146,20 +145,24 @@ def lines_of(sheet: Sheet) -> NDArray[np.int64]:
 
 
 def others_than(sheet: Sheet, line: Line) -> Others:
-    """The patches that are lines, have no ink on a followed line, and are not the reference point from which
-    it begins.
+    """The patches that are lines, are no part of a followed line, and are not the reference point from which
+    it begins. The ink in which most of the line runs is told of as the line's own; a patch beyond a gap is a
+    part of the line where that runs along most of it.
     """
     numbered = np.zeros(sheet.patches.count, bool)
     numbered[lines_of(sheet)] = True
     runs = np.flatnonzero(numbered[sheet.patches.patch])
     patch, middles_mm = sheet.patches.patch[runs], sheet.run_middles_mm(runs)
-    near = nearest_mm(middles_mm, line.places_mm) < 0.5 * sheet.widths_mm[patch]
-    others = numbered & (np.bincount(patch[near], minlength=len(numbered)) == 0)
+    near = nearest_mm(middles_mm, line.places_mm) < sheet.widths_mm[patch]
+    ink_px = sheet.patches.end[runs] - sheet.patches.begin[runs]
+    along_px = np.bincount(patch[near], ink_px[near], len(numbered))
+    others = numbered & (along_px <= COVERED * np.bincount(patch, ink_px, len(numbered)))
+    others[along_px.argmax()] &= along_px.max() == 0
     if line.reference_mm is not None:
         for number in np.flatnonzero(others):
             others[number] = not are_about(middles_mm[patch == number], [line.reference_mm])
     patches = np.flatnonzero(others)
-    longest_mm = float(told_mm(sheet)[patches].max()) if len(patches) else 0.0
+    longest_mm = float(sheet.told.lengths_mm[patches].max()) if len(patches) else 0.0
     return Others(len(patches), _inside(sheet, patches, line), longest_mm)
 
 

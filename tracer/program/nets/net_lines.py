@@ -72,7 +72,7 @@ def lines_of_ring(setup: Setup, contour: Contour, reads_marks: bool) -> list[Lin
     stroke = contour.stroke
     if not may_solve(setup) or not goes_round(setup.sheet, stroke.patch, 1):
         return []
-    if not len(stroke.ends_mm()) or _is_lead(setup, contour):
+    if not len(stroke.ends_mm) or _is_lead(setup, contour):
         return []
     net = NetLines(setup, stroke.patch, contour.number)
     if not (net.forks and net.is_clear):

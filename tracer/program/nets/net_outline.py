@@ -20,7 +20,7 @@ point, a card, a turn or stop that was told) has one line, which its lead line l
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -32,7 +32,6 @@ from morfax.motion.faults import LineFault
 from morfax.motion.long_array import one_in
 from morfax.motion.polyline import area_mm2, length_mm
 from morfax.motion.usual import THINNED
-from morfax.tracer.drawing.lengths import one_pen_mm
 from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
@@ -79,7 +78,9 @@ def of_net(setup: Setup) -> OfNet:
     if not may_solve(setup):
         return OfNet(setup)
     is_net = are_nets(sheet)
-    lengths_mm = one_pen_mm(sheet)
+    if not is_net.any():
+        return OfNet(setup)
+    lengths_mm = sheet.told.lengths_mm
     longest_mm = float(np.max(lengths_mm[~is_net], initial=0.0))
     nets = np.flatnonzero(is_net & (lengths_mm > (1 - ALIKE) * longest_mm))
     if not len(nets) or _has_reference(setup):
@@ -91,11 +92,10 @@ def of_net(setup: Setup) -> OfNet:
         if taken is not None:
             found[patch] = taken
     # 2. the nets count by these
-    counted_mm = sheet.lengths_mm.copy()
-    for patch, (outline, _) in found.items():
-        counted_mm[patch] = outline.length_mm
-    counted = replace(sheet, lengths_mm=counted_mm, _known={})  # strokes hold their lengths
-    longest = int(counted.longest_first(np.arange(len(counted_mm)))[0])
+    counted = _counting(
+        sheet, {patch: outline.length_mm for patch, (outline, _) in found.items()}
+    )
+    longest = int(counted.longest_first(np.arange(sheet.patches.count))[0])
     if longest not in found:
         return OfNet(replace(setup, sheet=counted))
     outline, junctions = found[longest]
@@ -105,6 +105,17 @@ def of_net(setup: Setup) -> OfNet:
     is_nearly_all = outline.length_mm > NEARLY_ALL * float(lengths_mm[longest])
     may_be_longer = outline.chain.closed and not is_nearly_all
     return OfNet(setup, line, may_be_longer and touches_itself(junctions))
+
+
+def _counting(sheet: Sheet, by_patch_mm: Mapping[int, float]) -> Sheet:
+    """The sheet on which some patches are so long."""
+    # strokes hold their lengths
+    counted = replace(sheet, lengths_mm=sheet.lengths_mm.copy(), _known={})
+    told_mm = sheet.told.lengths_mm.copy()
+    for patch, long_mm in by_patch_mm.items():
+        counted.lengths_mm[patch] = told_mm[patch] = long_mm
+    vars(counted)["told"] = sheet.told._replace(lengths_mm=told_mm)
+    return counted
 
 
 def outline_of(setup: Setup, patch: int) -> Line | None:
@@ -161,7 +172,7 @@ def junctions_of(setup: Setup, patch: int) -> Junctions:
         about_mm = ABOUT_MM + settings.gap_mm + ABOUT_WIDTHS * float(sheet.widths_mm[patch])
         window = replace(sheet, window=None).about(patch, about_mm).window
         top, left, bottom, right = window or (0, 0, *sheet.drawing.darkness.shape)
-        ink = sheet.patches.painted(sheet.patches.alone(patch), top, bottom, left, right)
+        ink = sheet.patches.painted(patch, top, bottom, left, right)
         felt = FeltSheet.of(sheet.drawing, settings, ink, window=window)
         setup.newest.clear()
         setup.newest[patch] = solved(felt, _told_of(setup, patch))

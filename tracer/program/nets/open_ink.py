@@ -137,4 +137,4 @@ def _ends(setup: Setup, stroke: Stroke, gap_mm: float) -> int:
     """How many open ends a patch has, if the head goes on across gaps no wider than this."""
     sheet, settings = setup.sheet, setup.settings
     view = view_of(sheet, settings.aperture_mm, settings.line_width_mm or stroke.width_mm)
-    return sum(1 for _ in stances_at(view, stroke.ends_mm(), gap_mm))
+    return sum(1 for _ in stances_at(view, stroke.ends_mm, gap_mm))

@@ -219,10 +219,11 @@ class _Piece:
 
     def timed(self) -> Array:
         """The way at a uniform rate, slower where the axis brakes: its ends exactly."""
-        out, bounds, start_s = LongArray(), self._bounds(), 0.0
-        out.add(self._nodes(0, 1)[1])
+        begins_mm = self._nodes(0, 1)[1]
         if self.ends[0] == self.ends[1]:
-            return out.whole()
+            return begins_mm
+        out, bounds, start_s = LongArray(), self._bounds(), 0.0
+        out.add(begins_mm)
         reached, arrives = 0.0 if self.rests[0] else math.inf, self._arrives()
         for first, last in bounds:
             # 1. the speeds, and the time of each step, longer where the axis brakes

@@ -85,9 +85,16 @@ def standing(
 ) -> Array:
     """X and Y stand while Z makes its moves, (n, 3) mm."""
     z_mm = z_moves(from_mm, moves, work.acceleration_mm_s2, rate_hz)
-    return np.column_stack([np.tile(xy_mm, (len(z_mm), 1)), z_mm])
+    return _together(xy_mm, z_mm, len(z_mm))
 
 
 def at_height(xy_mm: Array, z_mm: float | Array) -> Array:
     """X and Y move while Z stands, or moves with them, (n, 3) mm."""
-    return np.column_stack([xy_mm, np.broadcast_to(z_mm, len(xy_mm))])
+    return _together(xy_mm, z_mm, len(xy_mm))
+
+
+def _together(xy_mm: Array, z_mm: float | Array, rows: int) -> Array:
+    """X, Y and Z beside each other, (rows, 3) mm; to stack them, numpy goes row by row."""
+    positions_mm = np.empty((rows, 3))
+    positions_mm[:, :2], positions_mm[:, 2] = xy_mm, z_mm
+    return positions_mm

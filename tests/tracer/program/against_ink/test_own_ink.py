@@ -15,7 +15,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink import own_ink
-from morfax.tracer.program.against_ink.own_ink import NEARLY, SURE, OwnInk
+from morfax.tracer.program.against_ink.own_ink import NEARLY, SURE, OwnInk, parts
 from morfax.tracer.program.against_ink.pen_on_ink import (
     Band,
     PenOnInk,
@@ -131,6 +131,21 @@ def test_tiles_in_which_no_line_was_mended_are_not_held_against_their_ink_again(
     (left,) = mended.beside(SURE)
     assert left == before[1] and 0 < len(tiles) < 0.6 * of_both
     assert list(OwnInk(drawing, mended.lines).beside(NEARLY)) == list(mended.beside(NEARLY))
+
+
+def test_tiles_of_wider_lines_or_of_lines_that_are_not_judged_have_keys_of_their_own() -> None:
+    drawing = inked(notched(DEEP_MM), seed=1)
+    ways = own_ink._ways(drawing, [closed(notched(DEEP_MM))])
+    part = next(
+        parts(drawing, ways, np.ones(len(ways.line), bool), 64, own_ink._pen(drawing, ways))
+    )
+    wider = part.ways._replace(half_px=1.1 * part.ways.half_px)
+    others = part.ways._replace(judged=~part.ways.judged)
+    assert (
+        len({part.key(), part._replace(ways=wider).key(), part._replace(ways=others).key()})
+        == 3
+    )
+    assert part.key() != part.key(part.at)
 
 
 def test_an_open_line_that_cuts_a_notch_short_is_found_and_its_ends_are_not() -> None:

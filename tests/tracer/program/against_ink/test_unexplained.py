@@ -15,6 +15,7 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.redrawn import most_astray
+from morfax.tracer.program.against_ink.unexplained import bare_ways
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
@@ -127,6 +128,14 @@ def test_a_way_over_bare_paper_is_told_unless_it_is_a_gap_that_may_be_crossed() 
     assert nearest_mm(np.array([bare.place_mm]), arc((20, 20), 12))[0] < PIXEL_MM
     allowing = replace(setup, settings=replace(setup.settings, gap_mm=4.0))
     assert left_by(allowing, [closed(arc((20, 20), 12))]) == ()
+
+
+def test_a_way_beside_the_edge_of_a_shape_is_told_as_that() -> None:
+    """On a fetched stencil the head was told to run over 18.6 mm of bare paper, half a pixel off the edge."""
+    edge = arc((20, 20), 12)
+    sheet = Sheet.of(replace(inked(arc((20, 20), 12, 17.2, 360), seed=1), edges_mm=(edge,)))
+    (beside,) = bare_ways(sheet, [closed(edge)], 0.5)
+    assert beside.kind == "aside"
 
 
 def test_of_open_lines_among_others_and_of_a_drawn_program_no_ink_is_missed() -> None:

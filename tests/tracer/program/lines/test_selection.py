@@ -291,3 +291,13 @@ def test_a_sheet_of_dots_is_drilled_if_the_pen_s_width_is_given_and_else_says_so
         trace_lines(drawing)
     with pytest.raises(LineFault, match="no line 1: the drawing has none"):
         trace_lines(drawing, (1,))
+
+
+def test_ink_beyond_a_gap_that_is_followed_in_part_is_another_line() -> None:
+    """On a drawn shirt the head came over a gap and went round the collar; a sleeve was left in silence."""
+    before, behind = polyline((5, 20), (35, 20)), polyline((35.9, 20), (50, 20))
+    followed_in_part = trace(inked(before, behind, polyline((45, 20), (45, 45)), seed=1))
+    assert followed_in_part.lines[0].length_mm == pytest.approx(45.0, abs=0.1)
+    assert followed_in_part.others.lines == 1
+    assert followed_in_part.others.longest_mm == pytest.approx(39.1, abs=3.0)
+    assert trace(inked(before, behind, seed=1)).others.lines == 0

@@ -44,6 +44,13 @@ def test_of_circles_that_overlap_the_longest_as_the_pen_drew_it() -> None:
     assert line.ending == "closed" and lies_on(line, LARGE, 0.05)
 
 
+def test_a_net_counts_by_its_longest_outline_and_not_by_all_its_ink() -> None:
+    """The plate's net has 182 mm of ink, and an outline of 114 mm."""
+    longer = arc((70.0, 24.0), 120 / math.tau)
+    line = taken(PLATE, *BARS, SPUR, longer)
+    assert line.ending == "closed" and lies_on(line, longer, 0.05)
+
+
 @pytest.mark.parametrize("angle, size, dpi", [(17, 1.0, 300), (63, 0.8, 450), (200, 1.4, 200)])
 def test_the_same_line_at_any_angle_size_and_resolution(
     angle: float, size: float, dpi: float

@@ -1,6 +1,6 @@
-"""Weighing: lines nearly of one length keep their order at any size, angle and resolution.
+"""Strokes: lines nearly of one length keep their order at any size, angle and resolution.
 
-Broken on purpose, with `ROUND` 0, or lengths by area, tests here fail.
+Broken on purpose, with `ROUND` 0, or lengths by whole pixels, tests here fail.
 """
 
 from __future__ import annotations
@@ -63,35 +63,3 @@ def test_lines_that_differ_by_4_percent_have_the_same_numbers(
     times: float, angle_deg: float, dpi: float
 ) -> None:
     assert order(times, angle_deg, dpi) == [0, 1, 2, 3]
-
-
-def test_weights_are_the_lengths_of_round_lines_within_1_percent() -> None:
-    sheet = Sheet.of(inked(*(line + MIDDLE_MM for line in LINES), dpi=200.0, seed=1))
-    by_number = [
-        sheet.weights[int(patch)]
-        for patch in selection.lines_of(sheet)
-        if patch in sheet.weights
-    ]
-    assert [weight.is_open for weight in by_number] == [False, True, False, True]
-    caps_mm2 = [math.pi / 4 * WIDTH_MM**2 * weight.is_open for weight in by_number]
-    lengths = np.array(
-        [
-            (weight.weight_mm2 - caps) / WIDTH_MM
-            for weight, caps in zip(by_number, caps_mm2, strict=True)
-        ]
-    )
-    # of the star, pens overlap in ten corners
-    assert lengths[1:] / lengths[2] * 21.2 == pytest.approx([22.2, 21.2, 20.3], rel=0.01)
-
-
-@pytest.mark.parametrize(("second_mm", "count"), [(20.6, 2), (18.0, 0)])
-def test_two_lines_are_weighed_where_they_are_nearly_of_one_length(
-    second_mm: float, count: int
-) -> None:
-    rounds = [
-        middle + arc((0.0, 0.0), long_mm / math.tau)
-        for middle, long_mm in (((12.0, 12.0), 21.2), ((24.0, 12.0), second_mm))
-    ]
-    sheet = Sheet.of(inked(*rounds, seed=1))
-    selection.lines_of(sheet)
-    assert len(sheet.weights) == count

@@ -1,0 +1,66 @@
+"""The ink of a patch, and what a pen along ways leaves of it, box by box.
+
+Signals: a sheet, a patch of its ink and a pen's width in; how far its places are from a way, mm, and by how
+much ways are off the ink, in squares of the width, out.
+
+Source: our own (see `tangles.seen_ink`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from morfax.motion.arrays import Array
+from morfax.tracer.drawing.strokes import Sheet
+from morfax.tracer.ink.crossing_ink import Boxes
+from morfax.tracer.program.laid.loop_ink import ink_of
+from morfax.tracer.tangles import pen
+from morfax.tracer.tangles.seen_ink import SeenInk
+
+EVERY_PLACE = 1 << 24  # more than any patch has
+
+
+@dataclass(frozen=True, eq=False)
+class PatchInk:
+    """The ink of a patch of a sheet, and the paper about it, as far as that is no other patch's."""
+
+    seen: SeenInk
+    pitch_mm: float
+
+    @classmethod
+    def of(cls, sheet: Sheet, patch: int, width_mm: float) -> PatchInk:
+        """That of a patch that a pen of a width has drawn."""
+        return cls(ink_of(sheet, patch, width_mm, EVERY_PLACE), sheet.drawing.pitch_mm)
+
+    @property
+    def places_mm(self) -> Array:
+        """The middles of its pixels, (n, 2) mm."""
+        return self.seen.places_mm
+
+    @cached_property
+    def _boxes(self) -> Boxes:
+        """Its pixels in a window."""
+        at = (self.places_mm / self.pitch_mm).astype(np.int64)
+        column, row = (at - at.min(axis=0)).T
+        return Boxes((row, column), (int(row.max()) + 1, int(column.max()) + 1), self.pitch_mm)
+
+    def away_mm(self, way: Array) -> Array:
+        """How far its places are from a way (m, 2) mm, (n,)."""
+        return pen.away_from(self.places_mm, way)
+
+    def wrong(self, away_mm: Array) -> Array:
+        """What a pen along ways that are so far away (n,) draws too dark at each place."""
+        drawn = np.empty(len(away_mm))
+        pen.ink(away_mm, self.seen.half_mm, self.seen.softness_mm, drawn)
+        return np.asarray(drawn - self.seen.darkness)
+
+    def left(self, away_mm: Array) -> float:
+        """How much it leaves unexplained in all, in squares of the width."""
+        return self.seen.left(self.wrong(away_mm))
+
+    def worst(self, away_mm: Array) -> float:
+        """The same in the worst box as wide as a line."""
+        return self._boxes.worst(self.wrong(away_mm), self.seen.width_mm)
