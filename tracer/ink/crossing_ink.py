@@ -50,13 +50,17 @@ class Boxes(NamedTuple):
         """The sum of the squares of what is wrong (n,), too dark or too pale, in the worst box as wide as a
         line, in squares of that width.
         """
-        side, most = 2 * round(0.5 * width_mm / self.pitch_mm) + 1, 0.0
+        return float(self.sums(wrong, width_mm).max()) * (self.pitch_mm / width_mm) ** 2
+
+    def sums(self, wrong: Array, width_mm: float) -> Array:
+        """The larger of both sums in a box about each pixel of the window."""
+        side, most = 2 * round(0.5 * width_mm / self.pitch_mm) + 1, np.zeros(self.shape)
         for signed in (wrong, -wrong):
             squares = np.zeros(self.shape)
             squares[self.pixels] = np.maximum(signed, 0.0) ** 2
             sums = cv2.boxFilter(squares, -1, (side, side), normalize=False)
-            most = max(most, float(sums.max()))
-        return most * (self.pitch_mm / width_mm) ** 2
+            most = np.maximum(most, sums)
+        return most
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,16 @@ class CrossingInk:
 
     def worst(self, wrong: Array) -> float:
         """The same of ink that is left, or drawn on paper, in the worst box as wide as a line."""
-        return Boxes(self.pixels, self.shape, self.pitch_mm).worst(wrong, 2 * self.ink.half_mm)
+        return self._boxes.worst(wrong, 2 * self.ink.half_mm)
+
+    def worst_at_mm(self, wrong: Array) -> Array:
+        """The place, (x, y) mm, at the middle of that box, or the nearest that is looked at."""
+        sums = self._boxes.sums(wrong, 2 * self.ink.half_mm)
+        return self.ink.places_mm[int(np.argmax(sums[self.pixels]))]
+
+    @property
+    def _boxes(self) -> Boxes:
+        return Boxes(self.pixels, self.shape, self.pitch_mm)
 
     def settled(self, crossing: Crossing, drawn: WaysOn) -> WaysOn:
         """The same pairs with their corners moved to where they explain the ink best."""

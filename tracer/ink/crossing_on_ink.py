@@ -6,7 +6,8 @@
 A pen along all ways through a crossing, along its legs and the ends of lines without a partner is held
 against the ink there. Where it leaves ink for a third of a line's width, or draws as much on paper, other
 pairs are tried, the likeliest first, with a corner wherever two legs meet in ink; corners move to where the
-pen leaves least. What explains the ink goes before what the legs tell. Not where lines are of several widths,
+pen leaves least. Where none of these explains the ink partners are exchanged, step by step (see `exchanges`).
+What explains the ink goes before what the legs tell. Not where lines are of several widths,
 as those of letters are, nor on scans whose pixels were made finer, or of pencil: their ink shows no pen, and
 blots and arrowheads were run to and fro.
 
@@ -25,7 +26,7 @@ Source: our own; the pen and how corners move are those of `tangles`, whose line
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -33,8 +34,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.plane import direction, meeting
+from morfax.motion.polyline import nearest_mm
 from morfax.tracer.head.course import on_ink
-from morfax.tracer.ink.crossing_ink import CrossingInk, WaysOn, ended_mm
+from morfax.tracer.ink.crossing_ink import REACH, CrossingInk, WaysOn, ended_mm
+from morfax.tracer.ink.exchanges import Pairs, exchanges
 from morfax.tracer.ink.partners import (
     CORNERED,
     MOST_LEGS,
@@ -47,6 +51,7 @@ from morfax.tracer.ink.partners import (
 )
 from morfax.tracer.ink.redrawn_crossing import AS_WELL
 from morfax.tracer.junctions.corner import Corner
+from morfax.tracer.sensing.leg import turn
 from morfax.tracer.tangles.redrawing import STROKE, VERTEX
 
 if TYPE_CHECKING:
@@ -55,8 +60,12 @@ if TYPE_CHECKING:
 # All limits below were chosen by trial on crowded sheets of lines, circles and rectangles.
 OFF = 0.08  # widths², in a box as wide as a line: of crossings that are right to 0.1 mm none comes above
 MUCH = 0.3  # widths²: so much less is left by what explains not all of the ink, and is better all the same
-TRIED = 5  # pairings
+TRIED = 5  # pairings, and as many from which partners are exchanged
 FEWEST_LEGS = 4  # of which more than one may go on in another way than the others
+# widths: two legs that meet far off turn where their lines meet, or at both ends of a side between them, so
+# far before each would end alone: there a side is within the ink of a line that passes
+BACK = None, 0.0, 0.5
+FLAT = math.sin(SMOOTHLY)  # of two lines that meet nowhere
 PLAIN = math.radians(6)  # lines that turn by less, all of which go on, are plain
 
 
@@ -76,12 +85,31 @@ class AsDrawn:
     def _wrong(self) -> Array:
         return self.ink.wrong(self.ways)
 
-    @property
+    @cached_property
     def off(self) -> float:
         """By how much it is off the ink in the worst box as wide as a line, widths²."""
         return self.ink.worst(self._wrong)
 
     @property
+    def legs_about_worst(self) -> set[int]:
+        """The legs of the lines that come by the worst of these boxes, or would if they went on."""
+        crossing, place_mm = self.crossing, self.ink.worst_at_mm(self._wrong)
+        legs, alone = crossing.legs, without_partner(crossing.pairs, len(crossing.legs))
+        reach_mm = np.ptp([leg.end_mm for leg in legs], axis=0).max()
+        ahead_mm = np.arange(0.0, reach_mm, 0.5 * crossing.width_mm)
+        ways = list[tuple[tuple[int, ...], Array]](
+            zip(crossing.pairs, crossing.ways_mm, strict=True)
+        )
+        ways += [((k,), legs[k].at(ahead_mm)) for k in alone]
+        near_mm = REACH * crossing.width_mm
+        return {
+            leg
+            for some, way in ways
+            for leg in some
+            if nearest_mm(place_mm[None], way)[0] < near_mm
+        }
+
+    @cached_property
     def cost(self) -> float:
         """What is wrong in all, and the price of its corners and of lines that end in it, widths²."""
         pairs, corners = self.crossing.solution
@@ -106,12 +134,18 @@ def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
         return told
     if now.off < OFF:
         return _straightest(now, told)
-    tried = [AsDrawn(crossing.as_drawn(drawn), ink) for drawn in _others(crossing, told, ink)]
-    best = min(tried, key=lambda each: each.cost, default=now)
+    costs = turnings(crossing.legs, crossing.width_mm, view)
+    others = _others(crossing, told, ink, costs)
+    tried = [AsDrawn(crossing.as_drawn(drawn), ink) for drawn in others]
+    # of an odd number of legs one may be two lines that run together (see `solving`)
+    known = [now, *tried]
+    is_even = len(crossing.legs) % 2 == 0
+    best = _exchanged(known, costs) if is_even else min(known, key=lambda each: each.cost)
     gain = 0.0 if best.off < OFF else MUCH
-    if best.off < now.off and best.cost < now.cost - gain:
-        return best.crossing.solution
-    return told
+    if best.off >= now.off or best.cost >= now.cost - gain:
+        return told
+    drawn = best.crossing.solution
+    return _straightest(best, drawn) if best.off < OFF else drawn
 
 
 def _turns(crossing: Crossing) -> list[Array]:
@@ -142,7 +176,7 @@ def _straightest(now: AsDrawn, told: WaysOn) -> WaysOn:
         ways = [told.pairs, *likeliest(costs, TRIED)]
     else:
         return told
-    others = [_cornered(crossing, pairs, ink) for pairs in dict.fromkeys(ways)]
+    others = [_cornered(crossing, pairs, ink, costs) for pairs in dict.fromkeys(ways)]
     tried = [AsDrawn(crossing.as_drawn(drawn), ink) for drawn in others if drawn is not None]
     right = [now, *(each for each in tried if each.off < OFF)]
     least = min(each.cost for each in right)
@@ -168,7 +202,7 @@ def is_one_with_a_tip(crossing: Crossing, pair: Pair) -> bool:
     ink = CrossingInk.about(crossing, one.ways_mm)
     if ink.is_empty or AsDrawn(ends, ink).off < OFF:
         return False
-    cornered = _cornered(crossing, (pair,), ink)
+    cornered = _cornered(crossing, (pair,), ink, np.zeros((2, 2)))
     return cornered is not None and AsDrawn(crossing.as_drawn(cornered), ink).off < OFF
 
 
@@ -186,28 +220,75 @@ def _is_plain(crossing: Crossing, told: WaysOn) -> bool:
     )
 
 
-def _others(crossing: Crossing, told: WaysOn, ink: CrossingInk) -> Iterator[WaysOn]:
+def _others(
+    crossing: Crossing, told: WaysOn, ink: CrossingInk, costs: Array
+) -> Iterator[WaysOn]:
     """Other ways to go on, with their corners where these explain the ink best."""
-    legs, view = crossing.legs, crossing.views[0]
-    costs = turnings(legs, crossing.width_mm, view)
     for pairs in dict.fromkeys([told.pairs, *likeliest(costs, TRIED)]):
-        if (drawn := _cornered(crossing, pairs, ink)) is not None:
+        if (drawn := _cornered(crossing, pairs, ink, costs)) is not None:
             yield drawn
 
 
-def _cornered(crossing: Crossing, pairs: tuple[Pair, ...], ink: CrossingInk) -> WaysOn | None:
-    """Ways to go on with a corner wherever two legs turn, where it explains the ink best; None if it leads
+def _exchanged(known: Sequence[AsDrawn], costs: Array) -> AsDrawn:
+    """The way for the lines of a crossing to go on that costs least, partners exchanged step by step from
+    some known ways, the cheapest first, until one that explains all ink is cheaper than all beside it.
+    """
+    crossing, ink = known[0].crossing, known[0].ink
+    found = {each.crossing.solution.pairs: each for each in known}
+    left = list(found.values())
+    for _ in range(TRIED):
+        here = min(left, key=lambda each: each.cost, default=None)
+        least = min(found.values(), key=lambda each: each.cost)
+        if here is None or (least is not here and least.off < OFF):
+            break
+        left.remove(here)
+        pairs_here = here.crossing.solution.pairs
+        for pairs in exchanges(pairs_here, np.isfinite(costs), here.legs_about_worst):
+            if pairs not in found and (drawn := _cornered(crossing, pairs, ink, costs)):
+                found[pairs] = AsDrawn(crossing.as_drawn(drawn), ink)
+                left.append(found[pairs])
+    return min(found.values(), key=lambda each: each.cost)
+
+
+def _cornered(
+    crossing: Crossing, pairs: Pairs, ink: CrossingInk, costs: Array
+) -> WaysOn | None:
+    """Ways to go on with corners wherever two legs turn, where they explain the ink best; None if they lead
     over paper.
     """
-    legs, corners = crossing.legs, dict[Pair, Array]()
-    for a, b in pairs:
-        corner = Corner.of(legs[a], legs[b].turned_round())
-        if corner is not None and corner.deflection_rad > SMOOTHLY:
-            corners[a, b] = corner.vertex_mm[None]
-    drawn = WaysOn(pairs, corners)
-    if not corners:
-        return drawn
-    drawn = ink.settled(crossing, drawn)
-    some = crossing.as_drawn(drawn)
+    has_far = not all(math.isfinite(costs[pair]) for pair in pairs)
+    tried = list[AsDrawn]()
+    for back in BACK if has_far else BACK[:1]:
+        drawn = WaysOn(pairs, _corners(crossing, pairs, costs, back))
+        if not drawn.corners:
+            return drawn
+        tried.append(AsDrawn(crossing.as_drawn(ink.settled(crossing, drawn)), ink))
+    some = (min(tried, key=lambda each: each.cost) if has_far else tried[0]).crossing
+    corners = some.solution.corners
     ways = [way for pair, way in zip(pairs, some.ways_mm, strict=True) if pair in corners]
-    return drawn if all(on_ink(crossing.views[0], [way]) for way in ways) else None
+    is_inked = all(on_ink(crossing.views[0], [way]) for way in ways)
+    return some.solution if is_inked else None
+
+
+def _corners(
+    crossing: Crossing, pairs: Pairs, costs: Array, back: float | None
+) -> dict[Pair, Array]:
+    """The corners (n, 2) mm of those pairs whose legs turn: where they meet; of legs that meet far off, or
+    nowhere, that place, or the ends of a side between them, so many widths before each would end alone.
+    """
+    corners = dict[Pair, Array]()
+    for pair in pairs:
+        one, other = (crossing.legs[k] for k in pair)
+        corner = Corner.of(one, other.turned_round())
+        if math.isfinite(costs[pair]):
+            if corner is not None and corner.deflection_rad > SMOOTHLY:
+                corners[pair] = corner.vertex_mm[None]
+        elif back is None and abs(math.sin(turn(one.heading_rad, other.heading_rad))) > FLAT:
+            ways = direction(one.heading_rad), direction(other.heading_rad)
+            corners[pair] = meeting(one.end_mm, ways[0], other.end_mm, ways[1])[None]
+        else:
+            apart = crossing.as_drawn(WaysOn(tuple(some for some in pairs if some != pair), {}))
+            back_mm = (back or 0.0) * crossing.width_mm
+            ends = [crossing.legs[k].at(max(apart.end_mm(k) - back_mm, 0.0)) for k in pair]
+            corners[pair] = np.array(ends)
+    return corners

@@ -70,6 +70,32 @@ def test_a_corner_in_the_ink_of_another_line_is_its_lines(tip: str, seed: int) -
     assert max(each_by_a_stroke([ACROSS, *TIPS[tip]], seed)) < OFF_MM
 
 
+# a side in the ink of another line; three corners where four lines meet
+CROWDS = {
+    "side": [
+        polyline((20, 4), (20, 36)),
+        polyline((5, 30), (19.77, 30), (19.77, 12), (5, 12)),
+    ],
+    "corners": [
+        polyline((15.67, 31.2), (18.04, 18.59), (32, 21.21)),
+        polyline((18.27, 8), (18.27, 19.2), (32, 19.2)),
+        polyline((8, 32.4), (21.95, 18.78), (12, 8.7)),
+        polyline((23.4, 28), (23.7, 19), (24.9, 10)),
+    ],
+}
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("crowd", CROWDS)
+def test_lines_exchange_their_partners_until_they_explain_their_ink(
+    crowd: str, seed: int
+) -> None:
+    """None of the five likeliest ways to go on was right: a side was run as the line beside it, 0.23 mm off,
+    and two corners ended in each other's ink.
+    """
+    assert max(each_by_a_stroke(CROWDS[crowd], seed)) < OFF_MM
+
+
 def test_where_lines_end_in_ink_is_asked_once_of_each_way_to_go_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
