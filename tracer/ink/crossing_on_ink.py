@@ -140,7 +140,10 @@ def told_by_ink(crossing: Crossing, told: WaysOn) -> WaysOn:
     # of an odd number of legs one may be two lines that run together (see `solving`)
     known = [now, *tried]
     is_even = len(crossing.legs) % 2 == 0
-    best = _exchanged(known, costs) if is_even else min(known, key=lambda each: each.cost)
+    best = min(known, key=lambda each: each.cost)
+    if is_even and (other := _exchanged(known, costs)).off < OFF:
+        all_go_on = not without_partner(other.crossing.pairs, len(crossing.legs))
+        best = other if all_go_on else best
     gain = 0.0 if best.off < OFF else MUCH
     if best.off >= now.off or best.cost >= now.cost - gain:
         return told
