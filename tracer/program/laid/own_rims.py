@@ -51,6 +51,7 @@ from morfax.tracer.program.laid.patch_ink import PatchInk
 from morfax.tracer.program.laid.rim_loops import DISTINCT, LONGEST, felt_pen_mm, outlines_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.tangles import beside_itself
 
 MOST_AREAS = 8  # of paper: of more all sets would take seconds
 ON = 0.1  # widths: a way that is so near to another, or to a polygon, is on it
@@ -213,6 +214,8 @@ class _OwnRims:
             way = way[_are_apart(way, DISTINCT * STEP_WIDTHS * self.pen_mm)]
             polygon = plain(closed_up(way), ON * self.pen_mm)
             even = evenly(closed_up(way), STEP_WIDTHS * self.pen_mm)
+            if beside_itself.stretches(even, STEP_WIDTHS * self.pen_mm, self.pen_mm):
+                continue  # it goes round a bar
             turned_rad = _turned_rad(polygon, is_closed=True)
             yield _Way(way, even, self.ink.away_mm(closed_up(way)), turned_rad, _kinks(even))
 
