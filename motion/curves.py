@@ -16,7 +16,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.plane import NOTHING_MM, SAME_MM, heading_of, length_between
+from morfax.motion.plane import NOTHING_MM, SAME_MM, length_between
 from morfax.motion.polyline import APART_MM
 from morfax.motion.speed_limits import braked
 
@@ -35,15 +35,13 @@ def bow(start: Array, heading: float, end: Array, end_heading: float) -> Array:
     """The cubic from one place and heading to another that is an arc, to 2e-4 of its radius up to a quarter
     turn, where an arc would have these headings, (n, 2) mm.
 
-    At angles a to the chord an arc's slopes are 1 / cos²(a/2) times as long as the chord.
+    An arc that turns by 2a has slopes that are 1 / cos²(a/2) times as long as its chord.
     """
-    chord, along = float(np.hypot(*(end - start))), heading_of(end - start)
-    slopes = list[tuple[float, float]]()
-    for at in (heading, end_heading):
-        long = chord / max(math.cos(0.5 * (at - along)) ** 2, 0.5)
-        slopes.append((long * math.cos(at), long * math.sin(at)))
-    leaving, arriving = slopes
-    return cubic(start, leaving, end, arriving, max(2, math.ceil(chord / APART_MM) + 1))
+    turned = math.remainder(end_heading - heading, math.tau)
+    chord = float(np.hypot(*(end - start)))
+    long = chord / math.cos(0.25 * turned) ** 2
+    slopes = [(long * math.cos(at), long * math.sin(at)) for at in (heading, end_heading)]
+    return cubic(start, slopes[0], end, slopes[1], max(2, math.ceil(chord / APART_MM) + 1))
 
 
 def cubic(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.motion.arrays import bounds
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.program import trace_lines
@@ -52,13 +51,13 @@ def test_other_lines_stay(other: Line) -> None:
 
 def test_each_line_of_many_is_looked_through_once(monkeypatch: pytest.MonkeyPatch) -> None:
     holes = [along(arc((10 * k, 10), 3)) for k in range(1, 30)]
-    looked_at = list[int]()
+    looked_at, box_mm = list[int](), repeated._box_mm
 
-    def counted(rows: Points) -> tuple[Points, Points]:
-        looked_at.append(len(rows))
-        return bounds(rows)
+    def counted(line: Line) -> tuple[Points, Points]:
+        looked_at.append(line.number)
+        return box_mm(line)
 
-    monkeypatch.setattr(repeated, "bounds", counted)
+    monkeypatch.setattr(repeated, "_box_mm", counted)
     assert without_repeats(holes) == holes
     assert len(looked_at) == len(holes)
 
