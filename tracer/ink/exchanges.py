@@ -1,10 +1,10 @@
 """Exchanges: other ways for the lines of a crossing to go on, each a step from one that is known.
 
-    ─a╲ ╱c─        two lines exchange their partners, or one takes that of a line that ends, or two that end
-       ╳           are one, or one is two that end: of many legs there are too many ways to pair all of them,
-    ─d╱ ╲b─        but a few from any to those beside it
+    ─a╲ ╱c─        two lines exchange their partners, or one takes one that has none, or two without are
+       ╳           one: of many legs there are too many ways to pair all of them, but a few from any to
+    ─d╱ ╲b─        those beside it
 
-Signals: pairs of legs, by their numbers, in; pairs out.
+Signals: pairs of legs, by their numbers, in; pairs out, in which no more legs are alone.
 
 Source: our own.
 """
@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations, product
 
+import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.ink.partners import Pair, without_partner
@@ -21,7 +22,7 @@ from morfax.tracer.ink.partners import Pair, without_partner
 Pairs = tuple[Pair, ...]
 
 
-def exchanges(pairs: Pairs, are_lines: NDArray, about: set[int]) -> list[Pairs]:
+def exchanges(pairs: Pairs, are_lines: NDArray[np.bool_], about: set[int]) -> list[Pairs]:
     """The ways to pair legs that are a step from some pairs, in which lines of some legs have other partners.
 
     `are_lines` (n, n) says which legs may be one line; two without partners may be one over a side between
@@ -35,12 +36,8 @@ def exchanges(pairs: Pairs, are_lines: NDArray, about: set[int]) -> list[Pairs]:
             continue
         kept = [pair for pair in pairs if pair not in (one, other)]
         for new in _joined(one, other):
-            some = [pair for pair in new if are_ends or are_lines[pair]]
-            if some:
-                found[tuple(sorted((*kept, *some)))] = None
-    for pair in pairs:
-        if about.intersection(pair):
-            found[tuple(other for other in pairs if other != pair)] = None
+            if are_ends or all(are_lines[pair] for pair in new):
+                found[tuple(sorted((*kept, *new)))] = None
     return list(found)
 
 
