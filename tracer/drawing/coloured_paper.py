@@ -29,9 +29,8 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 SAMPLES = 200  # columns and rows of the pixels that are looked at, at the most
-LIGHT = (
-    128  # grey levels of 255: half; paper whose lightest channel is darker bears light lines
-)
+# grey levels of 255: half; paper whose lightest channel is darker bears light lines
+LIGHT = 128
 ABOUT = SAMPLES // 10  # samples: a tenth of the sheet, across which its light hardly changes
 EVEN = 0.75  # of its lightest channel, chosen: paper that is hardly yellowed stays as it is
 
