@@ -103,12 +103,15 @@ class _OwnRims:
     def are_asked(self) -> bool:
         """Whether the patch may be closed lines that touch, and those that were found may be others."""
         sheet, operator = self.setup.sheet, self.setup.operator
+        # of most patches it is no more than two outlines; to feel a pen takes longer
+        if not 2 < len(self.outlines) <= MOST_AREAS:
+            return False
+        if float(sheet.lengths_mm[self.patch]) > LONGEST * self.pen_mm:
+            return False
         if not is_clear(sheet.drawing) or not all(map(is_bare, self.lines)):
             return False
-        if operator.reads_marks(self.lines) or self.patch in lettering(sheet):
-            return False
-        is_long = float(sheet.lengths_mm[self.patch]) > LONGEST * self.pen_mm
-        return not is_long and 2 < len(self.outlines) <= MOST_AREAS
+        # letters are looked for on the whole sheet
+        return not operator.reads_marks(self.lines) and self.patch not in lettering(sheet)
 
     @cached_property
     def outlines(self) -> list[Array]:
