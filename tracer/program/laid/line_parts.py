@@ -115,3 +115,20 @@ def _one_after_the_other(parts: Sequence[Line]) -> Line:
             dict.fromkeys(place for line in parts for place in line.junctions_mm)
         ),
     )
+
+
+def closed_anew(line: Line, xy_mm: Array, led: Led, width_mm: float, long_mm: float) -> Line:
+    """A line as the closed one that the head ran anew along (n, 2) mm: nothing of its first run stays."""
+    return replace(
+        line,
+        xy_mm=xy_mm,
+        ending="closed",
+        width_mm=width_mm,
+        length_mm=long_mm,
+        fault=None,
+        loop_from=None,
+        junctions_mm=(),
+        breaks=(),
+        led=led,
+        roughness_mm=None,
+    )

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import NamedTuple
@@ -46,7 +46,7 @@ from morfax.tracer.ink.crossing_on_ink import OFF
 from morfax.tracer.ink.rim import Rim, RimCorners, felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE, CLEAR_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.program.against_ink.window import view_about
-from morfax.tracer.program.laid.line_parts import is_bare, is_clear
+from morfax.tracer.program.laid.line_parts import closed_anew, is_bare, is_clear
 from morfax.tracer.program.laid.patch_ink import PatchInk
 from morfax.tracer.program.laid.rim_loops import DISTINCT, LONGEST, felt_pen_mm, outlines_of
 from morfax.tracer.program.setup import Setup
@@ -250,19 +250,7 @@ class _OwnRims:
         carriage = Carriage(stance, settings, MOTION_RATE_HZ)
         carriage.run(stretches, leader=REDRAWN)
         xy_mm = carriage.positions_mm
-        return replace(
-            self.lines[0],
-            xy_mm=xy_mm,
-            ending="closed",
-            width_mm=width_mm,
-            length_mm=length_mm(xy_mm),
-            fault=None,
-            loop_from=None,
-            junctions_mm=(),
-            breaks=(),
-            led=carriage.led,
-            roughness_mm=None,
-        )
+        return closed_anew(self.lines[0], xy_mm, carriage.led, width_mm, length_mm(xy_mm))
 
 
 def _are_apart(way: Array, least_mm: float) -> NDArray[np.bool_]:

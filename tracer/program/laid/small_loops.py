@@ -15,7 +15,7 @@ join is a tangle.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -37,6 +37,7 @@ from morfax.tracer.head.leaders import REDRAWN, Led
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.limits import ABOUT_WIDTHS, WIDER
+from morfax.tracer.program.laid.line_parts import closed_anew
 from morfax.tracer.program.laid.loop_ink import ink_of, is_drawn, is_single, leaves_none
 from morfax.tracer.program.laid.rim_loops import (
     BROAD,
@@ -112,19 +113,7 @@ class SmallLoops:
             loop = self.of_patch(patch, line.width_mm, line.xy_mm)
         if loop is None:
             return line
-        return replace(
-            line,
-            xy_mm=loop.way_mm,
-            ending="closed",
-            width_mm=loop.width_mm,
-            length_mm=loop.length_mm,
-            fault=None,
-            loop_from=None,
-            junctions_mm=(),
-            breaks=(),
-            led=loop.led,
-            roughness_mm=None,
-        )
+        return closed_anew(line, loop.way_mm, loop.led, loop.width_mm, loop.length_mm)
 
     def of_way(self, way: Array, width_mm: float) -> Loop | None:
         """The loop whose way (n, 2) mm fails its own ink, as the compass lays it; None if it does not fail,
