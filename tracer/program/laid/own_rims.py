@@ -36,6 +36,7 @@ from morfax.motion.polyline import (
     plain,
     turned_rad,
 )
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.carriage import Carriage
@@ -54,7 +55,7 @@ from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
 
-MOST_AREAS = 8  # of paper: of more all sets would take seconds, ...
+MOST_AREAS = 12  # of paper: of more all sets would take seconds, ...
 LONGEST = 4000.0  # widths of ink: ... and so would longer ones
 ON = 0.1  # widths: a way that is so near to another, or to a polygon, is on it
 END_RAD = math.pi / 2  # an end of a line counts as so much turning, ...
@@ -210,8 +211,18 @@ class _OwnRims:
             for some in combinations(numbers, count + 1)
             if not are_kinked[np.ix_(some, some)].any()
         ]
+        # most leave much of the ink bare: it takes less to see that than how well they explain it
+        is_bare = np.array([self._is_bare(way.away_mm) for way in ways])
+        seen = self.ink.seen
+        most = self._is_bare(self._own_mm).sum() + MISSED * seen.width_mm**2 / seen.area_mm2
         for _, some in sorted(sets):
-            yield [ways[k] for k in some]
+            if is_bare[list(some)].all(axis=0).sum() < most:
+                yield [ways[k] for k in some]
+
+    def _is_bare(self, away_mm: Array) -> NDArray[np.bool_]:
+        """Which of the ink's places are beyond a pen along ways that are so far from them (n,)."""
+        seen = self.ink.seen
+        return (seen.darkness > INK) & (away_mm > (0.5 + AS_WIDE) * seen.width_mm)
 
     def _ways(self) -> Iterator[RimWay]:
         """The ways within the rims."""
