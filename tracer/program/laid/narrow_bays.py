@@ -214,13 +214,20 @@ class _Bays(WayInk):
         if rule is not None and gain is not None:
             laid = self._is_laid(seen.own, rule)
             return None if laid else self.as_bay(seen.first, seen.last, rule, gain)
-        if not suspect.is_beside_itself and not len(suspect.beyond_mm):
+        is_asked = suspect.is_beside_itself or len(suspect.beyond_mm)
+        if not is_asked and self._is_explained(seen):
             return None
         bay = self._rim_bay(seen, suspect)
         longer = None
         if bay is None:
             longer = self._seen(suspect, round(LEGS[1] / STEP_WIDTHS))
         return bay if longer is None else self._rim_bay(longer, suspect)
+
+    def _is_explained(self, seen: BayInk) -> bool:
+        """Whether a stretch explains its ink."""
+        own, ink = seen.own, seen.ink
+        misfit = ink.misfit(ink.best_drawn(pen.away_from(ink.places_mm, own)))
+        return misfit < LIKE * STEP_WIDTHS * (len(own) - 1)
 
     def _is_laid(self, own: Array, rule: Rule) -> bool:
         """Whether a stretch that was looked at before runs within half a step of a rule: it was laid along

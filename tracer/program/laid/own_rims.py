@@ -68,10 +68,10 @@ MISSED = 0.5  # of a box: along so much ink some line was missed; a corner that 
 BETTER = 0.5  # of what lines leave that cross: ways that leave less explain the ink better
 
 
-def within_own_rims(setup: Setup, patch: int, lines: Sequence[Line]) -> list[Line]:
-    """The lines of a patch of ink as they were found, or each within its own rim."""
+def within_own_rims(setup: Setup, patch: int, lines: list[Line]) -> list[Line]:
+    """The lines of a patch of ink as they were found, in the same list, or each within its own rim."""
     rims = _OwnRims(setup, patch, lines)
-    return list(lines) if not rims.are_asked else rims.lines_told()
+    return lines if not rims.are_asked else rims.lines_told()
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ class _OwnRims:
 
     setup: Setup
     patch: int
-    lines: Sequence[Line]
+    lines: list[Line]
 
     @property
     def are_asked(self) -> bool:
@@ -129,7 +129,7 @@ class _OwnRims:
         """The lines as they were found, or those within the rims that explain the ink better."""
         ways = self._better_ways()
         if not ways:
-            return list(self.lines)
+            return self.lines
         longest_first = sorted(ways, key=lambda way: -length_mm(closed_up(way.way)))
         return [way.kept.line(self.setup) or self._run(way.way) for way in longest_first]
 
@@ -237,12 +237,21 @@ class _OwnRims:
             way = kept.places_mm if kept.kept else way
             polygon = plain(closed_up(way), ON * self.pen_mm)
             even = evenly(closed_up(way), STEP_WIDTHS * self.pen_mm)
-            if beside_itself.stretches(even, STEP_WIDTHS * self.pen_mm, self.pen_mm):
-                continue  # it goes round a bar
+            if self._goes_round_a_bar(even):
+                continue
             away_mm = self.ink.away_mm(closed_up(way))
             yield RimWay(
                 way, kept, even, away_mm, turned_rad(polygon, is_closed=True), kinks_of(even)
             )
+
+    def _goes_round_a_bar(self, even: Array) -> bool:
+        """Whether a closed way (n, 2), a step from place to place, comes beside itself where no line does."""
+        step_mm, near_mm = STEP_WIDTHS * self.pen_mm, AS_WIDE * self.pen_mm
+        return any(
+            nearest_mm(even[np.arange(first, last + 1) % len(even)], self._own_places).max()
+            > near_mm
+            for first, last in beside_itself.stretches(even, step_mm, self.pen_mm)
+        )
 
     def _left(self, way: Array) -> Array:
         """What a pen along a way (n, 2) mm leaves at each of the ink's places, in squares of the width."""
