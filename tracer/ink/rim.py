@@ -95,13 +95,13 @@ class RimCorners(NamedTuple):
         )
 
     def likest(self, places_mm: Array, left: Left, near_mm: float) -> Array:
-        """The way with all its corners sharp but for those where one corner in place of several that are near
-        to each other, or a round one, leaves less of the ink at places (n, 2) mm so near.
+        """The way with all its corners sharp but for those where one corner in place of several into which
+        noise broke it, or a round one, leaves less of the ink at places (n, 2) mm so near.
         """
         groups = self._groups()
         each: list[list[NDArray[np.int64]]] = [
             groups,
-            [np.array([[group[0, 0], group[-1, 1]]]) for group in groups],
+            [self._as_one(group) for group in groups],
             [group[:0] for group in groups],
         ]
         tried = [left(closed_up(self.mitred(np.vstack([*at, self.at[:0]])))) for at in each]
@@ -114,6 +114,12 @@ class RimCorners(NamedTuple):
                 best = other if sums[other] < sums[best] - BETTER else best
             chosen.append(each[best][k])
         return self.mitred(np.vstack(chosen))
+
+    def _as_one(self, group: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Corners (m, 2) as one if any of them turns to the left, which none does; else as they are."""
+        before, after = self.headings_rad[np.minimum(group, len(self.way) - 1)].T
+        turns = np.sin(after - before)
+        return np.array([[group[0, 0], group[-1, 1]]]) if (turns > 0).any() else group
 
     def _groups(self) -> list[NDArray[np.int64]]:
         """The corners, from which place to which (m, 2), those that come up to the next one together."""

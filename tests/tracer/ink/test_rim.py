@@ -157,6 +157,29 @@ def test_a_corner_is_as_its_ink_has_it(is_sharp: bool) -> None:
     assert np.array_equal(corners.likest(places, left, 0.75), drawn)
 
 
+def test_corners_into_which_noise_broke_one_are_that_one_where_the_ink_has_it() -> None:
+    """An acute corner whose parabolas turn back between: three mitres are none of it; one is."""
+    whole = square_rim(40).corners(HALF_MM)
+    first, last = whole.at[0].tolist()
+    middle, headings = (first + last) // 2, whole.headings_rad.copy()
+    headings[middle - 1 : middle + 1] += 1.2
+    broken = whole._replace(
+        headings_rad=headings,
+        at=np.vstack([[(first, middle), (middle - 1, last)], whole.at[1:]]),
+    )
+    places = np.stack(np.meshgrid(*2 * [np.arange(-1, 5.01, 0.05)]), axis=-1).reshape(-1, 2)
+
+    def left(way: Points) -> Points:
+        away_mm = (nearest_mm(places, with_places(each, 0.02)) for each in (way, truth))
+        drawn, seen = (each < HALF_MM for each in away_mm)
+        return np.asarray((drawn != seen) * 0.05**2 / (2 * HALF_MM) ** 2)
+
+    truth = closed_up(whole.mitred())
+    off_mm = nearest_mm(broken.likest(places, left, 0.75), with_places(truth, 0.005))
+    assert off_mm.max() < 5 * UM
+    assert nearest_mm(broken.mitred(), with_places(truth, 0.005)).max() > 20 * UM
+
+
 def test_ink_that_is_hardly_there_has_no_rim() -> None:
     view = view_of(inked(polyline((4, 4), (12, 4))).sheet, None, 2 * HALF_MM)
     assert felt_rim(view, arc((6, 4), 0.1)[:-1]) is None

@@ -166,3 +166,15 @@ def test_a_way_round_two_beams_that_leaves_the_bar_between_them_goes() -> None:
     assert len(lines) == 2
     for each in beams:
         assert min(off_mm(line, each) for line in lines) < 60 * UM
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_plates_whose_corners_just_meet_are_both_traced(seed: int) -> None:
+    """The first as the head ran along it, the other within its rim: it was left out, and nothing was told."""
+    x = 15 + 1.05 * WIDTH_MM
+    first = polyline((5, 5), (15, 6), (11, 20), (5, 20), (5, 5))
+    second = polyline((x, 6), (25, 5), (25, 20), (19, 20), (x, 6))
+    lines = lines_of(first, second, seed=seed)
+    assert [line.ending for line in lines] == ["closed", "closed"]
+    for each in (first, second):
+        assert min(off_mm(line, each) for line in lines) < 60 * UM
