@@ -16,7 +16,8 @@ narrow ones the rim does not tell; the ink within does (see `program.laid.small_
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import cross, direction, left_of_headings, meeting
 from morfax.motion.polyline import at_lengths, closed_up, length_mm
 from morfax.tracer.ink.run import parabolas
@@ -126,6 +128,25 @@ class RimCorners(NamedTuple):
         apart = np.flatnonzero(self.at[1:, 0] > self.at[:-1, 1]) + 1
         return np.split(self.at, apart) if len(self.at) else []
 
+    def over_to(self, others: Sequence[Array], near_mm: float) -> Array:
+        """The way with one of some others (n, 2) mm in place of each of its corners, which runs the other way
+        along the same ink, and comes so near before and behind that; as it is where none does.
+        """
+        ends = self.way[np.minimum(self.at, len(self.way) - 1)]
+        found = [Neighbours(other).nearest(ends.reshape(-1, 2)) for other in others]
+        parts, begin = list[Array](), 0
+        for k, (before, after) in enumerate(self.at.tolist()):
+            off_mm = [away_mm[2 * k : 2 * k + 2].max() for away_mm, _ in found]
+            if before < begin or min(off_mm, default=math.inf) > near_mm:
+                continue
+            best = int(np.argmin(off_mm))
+            first, last = found[best][1][2 * k : 2 * k + 2].tolist()
+            count = len(others[best])
+            back = (first - np.arange((first - last) % count + 1)) % count
+            parts += [self.way[begin : before + 1], others[best][back]]
+            begin = after
+        return np.vstack([*parts, self.way[begin:]])
+
 
 def felt_rim(view: View, outline: Array) -> Rim | None:
     """The rim that the cells feel about an outline (n, 2) mm, counter-clockwise, not closed up; None for ink
@@ -161,7 +182,8 @@ def _feel(cells, places, headings, reach_mm, out):  # type: ignore[no-untyped-de
         c, s = -np.sin(headings[k]), np.cos(headings[k])
         x, y = places[k, 0] - reach_mm * c, places[k, 1] - reach_mm * s
         ray = Ray(x, y, c, s, 0.0)
-        out[k] = crossing_mm(cells, ray, 0.0, 2.0 * reach_mm, speck_mm) - reach_mm
+        # an edge is told from a speck by what lies as far beyond it as a speck is long
+        out[k] = crossing_mm(cells, ray, 0.0, 2.0 * reach_mm + speck_mm, speck_mm) - reach_mm
 
 
 def _mitred(way: Array, headings: Array, corners: NDArray[np.int64], most_mm: float) -> Array:

@@ -180,6 +180,16 @@ def test_corners_into_which_noise_broke_one_are_that_one_where_the_ink_has_it() 
     assert nearest_mm(broken.mitred(), with_places(truth, 0.005)).max() > 20 * UM
 
 
+def test_the_rim_of_a_thin_line_is_felt_on_a_coarse_scan() -> None:
+    """A circle of 0.34 mm line at 200 dpi, where a speck may be as long as the rays reach beyond the rim."""
+    line = arc((8, 8), 4.0)
+    view = view_of(inked(line, width_mm=0.34, dpi=200).sheet, None, 0.36)
+    found = felt_rim(view, arc((8, 8), 4.17)[:-1])
+    assert found is not None
+    away_mm = np.hypot(*(found.places_mm - (8, 8)).T)
+    assert away_mm == pytest.approx(np.full(len(away_mm), 4.185), abs=25 * UM)
+
+
 def test_ink_that_is_hardly_there_has_no_rim() -> None:
     view = view_of(inked(polyline((4, 4), (12, 4))).sheet, None, 2 * HALF_MM)
     assert felt_rim(view, arc((6, 4), 0.1)[:-1]) is None

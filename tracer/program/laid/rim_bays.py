@@ -21,6 +21,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import (
     area_mm2,
     between_corners,
@@ -88,6 +89,23 @@ def ways_within_rims(
         for way in _between(within, own, width_mm):
             if not len(crossings_of(way, np.arange(len(way) - 1))):
                 yield LaidWay(tuple(between_corners(way)), half_mm)
+
+
+def within_outer_rims(setup: Setup, width_mm: float, own: Array) -> Iterator[Array]:
+    """The closed ways (n, 2) mm of a pen of a width within the rims of the ink along a way (n, 2) mm; where
+    one of these turns towards the ink, its way is that within another.
+    """
+    aperture_mm, reach_mm = setup.settings.aperture_mm, 2 * ABOUT_WIDTHS * width_mm
+    view, near = view_about(setup.sheet, aperture_mm, width_mm, own, reach_mm), Neighbours(own)
+    within = [
+        rim.corners(0.5 * width_mm)
+        for outline in _outlines(setup.sheet.drawing, own, width_mm)
+        if np.isfinite(near.nearest(outline, NEAR * width_mm)[0]).any()
+        and (rim := felt_rim(view, outline)) is not None
+    ]
+    for k, corners in enumerate(within):
+        others = [other.way for n, other in enumerate(within) if n != k]
+        yield corners.over_to(others, ASIDE * width_mm)
 
 
 def _outlines(drawing: Drawing, about: Array, width_mm: float) -> Iterator[Array]:
