@@ -72,6 +72,17 @@ class Stroke:
         return np.array(kept).reshape(-1, 2)
 
 
+@dataclass(slots=True)
+class Known:
+    """What is asked of a sheet again and again, and looked for once for all its views: patches as lines;
+    their lengths and widths as a reader is told them; which patches are lines, by whether rings are bare.
+    """
+
+    strokes: dict[int, Stroke] = field(default_factory=dict)
+    told: Told | None = None
+    lines: dict[bool, NDArray[np.int64]] = field(default_factory=dict)
+
+
 @dataclass(frozen=True)
 class Sheet:
     """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes.
@@ -89,7 +100,7 @@ class Sheet:
     has_references: bool = True  # small crosses and rings may be reference points
     bare_rings: bool = False  # rings are, whatever the line from them leads to
     taken: frozenset[int] = frozenset()
-    _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
+    known: Known = field(default_factory=Known, repr=False, compare=False)
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -113,10 +124,12 @@ class Sheet:
             )
         return sheet
 
-    @cached_property
+    @property
     def told(self) -> Told:
         """Lengths and widths of the patches as lines, mm, as a reader is told them."""
-        return told(self)
+        if self.known.told is None:
+            self.known.told = told(self)
+        return self.known.told
 
     def about(self, patch: int, around_mm: float) -> Sheet:
         """The sheet with a window about a patch; itself if that is no small part of it."""
@@ -230,11 +243,11 @@ class Sheet:
 
     def stroke(self, patch: int) -> Stroke:
         """A patch as a line, with its middle places; that of a small patch is looked for once."""
-        if patch in self._known:
-            return self._known[patch]
+        if patch in self.known.strokes:
+            return self.known.strokes[patch]
         stroke = self._stroke(patch)
         if len(stroke.middles_mm) < FEW_PLACES:
-            self._known[patch] = stroke
+            self.known.strokes[patch] = stroke
         return stroke
 
     def _stroke(self, patch: int) -> Stroke:
