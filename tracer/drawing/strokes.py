@@ -13,9 +13,10 @@ Source: patent ES 361967 leaves the choice of the line to the operator, who brin
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,7 @@ from morfax.tracer.drawing.paper import disc
 from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]
+Answer = TypeVar("Answer")
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
 
 TILE_PX = 2048  # the places of a line come tile by tile, so that its size decides where the head begins
@@ -72,17 +74,6 @@ class Stroke:
         return np.array(kept).reshape(-1, 2)
 
 
-@dataclass(slots=True)
-class Known:
-    """What is asked of a sheet again and again, and looked for once for all its views: patches as lines;
-    their lengths and widths as a reader is told them; which patches are lines, by whether rings are bare.
-    """
-
-    strokes: dict[int, Stroke] = field(default_factory=dict)
-    told: Told | None = None
-    lines: dict[bool, NDArray[np.int64]] = field(default_factory=dict)
-
-
 @dataclass(frozen=True)
 class Sheet:
     """The patches of ink on a drawing: their lengths and widths as lines, and which are filled shapes.
@@ -100,7 +91,11 @@ class Sheet:
     has_references: bool = True  # small crosses and rings may be reference points
     bare_rings: bool = False  # rings are, whatever the line from them leads to
     taken: frozenset[int] = frozenset()
-    known: Known = field(default_factory=Known, repr=False, compare=False)
+    _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
+    # what was asked of all its patches, and whether rings are bare: the same whatever the window or is taken
+    _asked: dict[tuple[Callable[[Sheet], Any], bool], Any] = field(
+        default_factory=dict, repr=False, compare=False
+    )
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -127,9 +122,21 @@ class Sheet:
     @property
     def told(self) -> Told:
         """Lengths and widths of the patches as lines, mm, as a reader is told them."""
-        if self.known.told is None:
-            self.known.told = told(self)
-        return self.known.told
+        return self.once(told)
+
+    def once(self, ask: Callable[[Sheet], Answer]) -> Answer:
+        """What is asked of all patches; asked once of a sheet, with any window, and with any lines taken."""
+        asked = ask, self.bare_rings
+        if asked not in self._asked:
+            self._asked[asked] = ask(self)
+        answer: Answer = self._asked[asked]
+        return answer
+
+    def counting(self, lengths_mm: Array, told_lengths_mm: Array) -> Sheet:
+        """The sheet on which the patches have other lengths, and others are told of them."""
+        counted = replace(self, lengths_mm=lengths_mm, _known={}, _asked={})
+        counted._asked[told, self.bare_rings] = self.told._replace(lengths_mm=told_lengths_mm)
+        return counted
 
     def about(self, patch: int, around_mm: float) -> Sheet:
         """The sheet with a window about a patch; itself if that is no small part of it."""
@@ -243,11 +250,11 @@ class Sheet:
 
     def stroke(self, patch: int) -> Stroke:
         """A patch as a line, with its middle places; that of a small patch is looked for once."""
-        if patch in self.known.strokes:
-            return self.known.strokes[patch]
+        if patch in self._known:
+            return self._known[patch]
         stroke = self._stroke(patch)
         if len(stroke.middles_mm) < FEW_PLACES:
-            self.known.strokes[patch] = stroke
+            self._known[patch] = stroke
         return stroke
 
     def _stroke(self, patch: int) -> Stroke:

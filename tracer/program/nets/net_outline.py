@@ -33,7 +33,7 @@ from morfax.motion.long_array import one_in
 from morfax.motion.polyline import area_mm2, length_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.numbering import ALIKE
-from morfax.tracer.drawing.strokes import Known, Sheet
+from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following import lost
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import put_down
@@ -112,9 +112,7 @@ def _counting(sheet: Sheet, by_patch_mm: Mapping[int, float]) -> Sheet:
     lengths_mm, told_mm = sheet.lengths_mm.copy(), sheet.told.lengths_mm.copy()
     for patch, long_mm in by_patch_mm.items():
         lengths_mm[patch] = told_mm[patch] = long_mm
-    # strokes hold their lengths, and lines are numbered by them
-    known = Known(told=sheet.told._replace(lengths_mm=told_mm))
-    return replace(sheet, lengths_mm=lengths_mm, known=known)
+    return sheet.counting(lengths_mm, told_mm)
 
 
 def outline_of(setup: Setup, patch: int) -> Line | None:

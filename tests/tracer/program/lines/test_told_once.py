@@ -20,7 +20,7 @@ def test_lengths_and_numbers_are_told_once_a_sheet(
 ) -> None:
     """They were made anew for each view: 20 ms and five times on a plate of 100 holes."""
     times = {"told": 0, "lines": 0}
-    told, lines_of = strokes.told, selection._lines_of
+    told, lines_of = strokes.told, selection._lines
 
     def counted(sheet: Sheet) -> object:
         times["told"] += 1
@@ -31,7 +31,7 @@ def test_lengths_and_numbers_are_told_once_a_sheet(
         return lines_of(sheet)
 
     monkeypatch.setattr(strokes, "told", counted)
-    monkeypatch.setattr(selection, "_lines_of", numbered)
+    monkeypatch.setattr(selection, "_lines", numbered)
     assert callable(traced)
     traced(inked(*PART))
     assert times == {"told": 1, "lines": 1}
@@ -43,8 +43,8 @@ def test_a_sheet_whose_nets_count_otherwise_has_numbers_of_its_own() -> None:
     numbers = selection.lines_of(sheet)
     longer = sheet.told.lengths_mm.copy()
     longer[numbers[-1]] = 1000.0
-    counted = strokes.replace(
-        sheet, known=strokes.Known(told=sheet.told._replace(lengths_mm=longer))
-    )
+    counted = sheet.counting(sheet.lengths_mm, longer)
     assert selection.lines_of(counted)[0] == numbers[-1]
+    bare = strokes.replace(sheet, bare_rings=True)
+    assert selection.lines_of(bare) is not selection.lines_of(sheet)
     assert selection.lines_of(sheet)[0] == numbers[0]
