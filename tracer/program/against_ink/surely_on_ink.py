@@ -35,27 +35,29 @@ def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[n
     """
     band = band_of(seen, ways, pen, room)
     spread, side = room.spread[: seen.size].reshape(seen.shape), 2 * round(pen.half_px) + 1
-    # 1. all that is wrong in each square of a box's side; the boxes about a station reach into nine of them
-    squares = np.zeros((len(seen) // side + 3, seen.shape[1] // side + 3))
+    # 1. all that is wrong in each square of half a box's side, from a box before the part on
+    half, number = max(1, side // 2), room.number[: seen.size].reshape(seen.shape)
+    squares = np.zeros(
+        ((len(seen) + 2 * side) // half + 2, (seen.shape[1] + 2 * side) // half + 2)
+    )
     for k in range(len(band.dark)):
         wrong = ink_at(band.beyond_px[k], 0.0, pen.softness_px) - band.dark[k]
         row, column = band.row[k], band.column[k]
         spread[row, column] = wrong * wrong - pen.noise
-        squares[row // side + 1, column // side + 1] += max(spread[row, column], 0.0)
+        squares[(row + side) // half, (column + side) // half] += max(spread[row, column], 0.0)
     # 2. where that is more than the limit, box by box: with the felt pens, what the widest draw, the best
     down, boxes, papers = np.empty(2 * side - 1), np.empty((side, side)), np.empty((side, side))
-    told, on_paper, wrongs = np.full((KEPT, 3), -1.0), np.empty((0, 0)), np.empty((0, 0))
+    near, middle = np.empty((2 * side - 1, 2 * side - 1)), np.array([side - 1, side - 1])
+    told, wrongs = np.full((KEPT, 3), -1.0), np.empty((0, 0))
     for k in range(len(stations)):
         limit = (1 - ROUNDED) * limits[k] * (2 * pen.half_px) ** 2
-        left, top = stations[k][0] // side, stations[k][1] // side
-        out[k] = squares[top : top + 3, left : left + 3].sum() > limit
+        out[k] = _most_in_squares(squares, stations[k], side, half) > limit
         if out[k]:
             _in_boxes_about(spread, stations[k], down, boxes)
             out[k] = boxes.max() > limit
-        if out[k] and not on_paper.size:
-            on_paper = _on_paper(band, pen, seen.shape)
         if out[k]:
-            _in_boxes_about(on_paper, stations[k], down, papers)
+            _on_paper(band, number, stations[k], pen, near)
+            _in_boxes_about(near, middle, down, papers)
             out[k] = papers.max() > limit
         if out[k] and not wrongs.size:
             wrongs = np.full((len(pen.of_width), len(band.dark)), np.nan)
@@ -68,6 +70,20 @@ def may_be_over(seen, ways, stations, limits, pen, room, out):  # type: ignore[n
 
 
 @njit(cache=True)
+def _most_in_squares(squares, pixel, side, half):  # type: ignore[no-untyped-def]
+    """The most in the squares of half a side that any box about a pixel (column, row) may reach into."""
+    more, most = (side + half - 2) // half, 0.0
+    for top in range((pixel[1] + 1) // half, (pixel[1] + side) // half + 1):
+        for left in range((pixel[0] + 1) // half, (pixel[0] + side) // half + 1):
+            here = 0.0
+            for i in range(top, top + more + 1):
+                for j in range(left, left + more + 1):
+                    here += squares[i, j]
+            most = max(most, here)
+    return most
+
+
+@njit(cache=True)
 def _too_dark(band, k, share, pen):  # type: ignore[no-untyped-def]
     """What a pen of a share of its line's width draws too dark at a pixel of a band."""
     beyond_px = band.beyond_px[k] - (share - 1) * band.half_px[k]
@@ -75,13 +91,16 @@ def _too_dark(band, k, share, pen):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _on_paper(band, pen, shape):  # type: ignore[no-untyped-def]
-    """What the widest pen draws on paper, by pixels of a part of the sheet."""
-    on_paper = np.zeros(shape)
-    for k in range(len(band.dark)):
-        wrong = _too_dark(band, k, pen.of_width[-1], pen)
-        on_paper[band.row[k], band.column[k]] = max(wrong, 0.0) ** 2 - pen.noise
-    return on_paper
+def _on_paper(band, number, pixel, pen, near):  # type: ignore[no-untyped-def]
+    """Fill in what the widest pen draws on paper at pixels that boxes about a pixel (column, row) hold."""
+    reach = len(near) // 2
+    near[:] = 0.0
+    for i in range(max(0, pixel[1] - reach), min(len(number), pixel[1] + reach + 1)):
+        for j in range(max(0, pixel[0] - reach), min(number.shape[1], pixel[0] + reach + 1)):
+            k = number[i, j] - 1
+            if k >= 0:
+                wrong = max(_too_dark(band, k, pen.of_width[-1], pen), 0.0)
+                near[i - pixel[1] + reach, j - pixel[0] + reach] = wrong**2 - pen.noise
 
 
 @njit(cache=True)
