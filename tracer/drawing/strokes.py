@@ -92,8 +92,8 @@ class Sheet:
     bare_rings: bool = False  # rings are, whatever the line from them leads to
     taken: frozenset[int] = frozenset()
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
-    # what was asked of all its patches: it is the same whatever the window, and whatever is taken
-    _asked: dict[Callable[[Sheet], Any], Any] = field(
+    # what was asked of all its patches, and whether rings are bare: the same whatever the window or is taken
+    _asked: dict[tuple[Callable[[Sheet], Any], bool], Any] = field(
         default_factory=dict, repr=False, compare=False
     )
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
@@ -126,15 +126,16 @@ class Sheet:
 
     def once(self, ask: Callable[[Sheet], Answer]) -> Answer:
         """What is asked of all patches; asked once of a sheet, with any window, and with any lines taken."""
-        if ask not in self._asked:
-            self._asked[ask] = ask(self)
-        answer: Answer = self._asked[ask]
+        asked = ask, self.bare_rings
+        if asked not in self._asked:
+            self._asked[asked] = ask(self)
+        answer: Answer = self._asked[asked]
         return answer
 
     def counting(self, lengths_mm: Array, told_lengths_mm: Array) -> Sheet:
         """The sheet on which the patches have other lengths, and others are told of them."""
         counted = replace(self, lengths_mm=lengths_mm, _known={}, _asked={})
-        counted._asked[told] = self.told._replace(lengths_mm=told_lengths_mm)
+        counted._asked[told, self.bare_rings] = self.told._replace(lengths_mm=told_lengths_mm)
         return counted
 
     def about(self, patch: int, around_mm: float) -> Sheet:
