@@ -82,11 +82,19 @@ def straight_chains(junctions: Junctions) -> list[Outline]:
 
 def is_free(chain: Chain, junctions: Junctions) -> bool:
     """Whether both ends of a chain are ends of the ink."""
-    if chain.closed:
-        return False
+    return not chain.closed and all(_are_free(chain, junctions))
+
+
+def ends_freely(chain: Chain, junctions: Junctions) -> bool:
+    """Whether an end of a chain is one of the ink."""
+    return not chain.closed and any(_are_free(chain, junctions))
+
+
+def _are_free(chain: Chain, junctions: Junctions) -> tuple[bool, bool]:
+    """Whether the first and the last end of a chain are ends of the ink."""
     lines, (first, last) = junctions.net.lines, (chain.links[0], chain.links[-1])
     ends = lines[first.line].junctions[first.back], lines[last.line].junctions[not last.back]
-    return junctions.net.free_ends.issuperset(ends)
+    return ends[0] in junctions.net.free_ends, ends[1] in junctions.net.free_ends
 
 
 def goes_round(chain: Chain, junctions: Junctions, aside: Set[int]) -> bool:

@@ -40,8 +40,7 @@ from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.taken import kept_off, taken_by
 from morfax.tracer.program.trace import followed, followed_from_an_end
 
-# from a patch to the edge of the window: the furthest that a reference point or a lead line is looked for, of
-# `following.open_ends`, and as much again
+# mm from a patch to the edge of the window: twice as far as reference points and lead lines are looked for
 ABOUT_MM = 40.0
 # the same for a patch without ends: only a reference point whose lead line touches it can matter
 ENDLESS_ABOUT_MM = 1.5 * LARGEST_MM
@@ -157,8 +156,9 @@ def _found(
             lines = []
         if lines:
             return _as_found(setup, [loops.mended(line) for line in lines])
-        found = _follow_in_window(setup, about, contour, is_letter)
-        own = or_outline(setup, contour, found.line)
+        own = None if is_letter or net is None else net.between_ends(contour)
+        found = _Found(own) if own else _follow_in_window(setup, about, contour, is_letter)
+        own = own or or_outline(setup, contour, found.line)
         if own is not None:
             line = loops.mended(own)
             if net is not None and not line.is_lead:

@@ -127,3 +127,17 @@ def test_of_a_sheet_no_more_is_seen_about_a_hole_than_what_may_lead_onto_it() ->
         around_mm.append((top - window[0]) * sheet.drawing.pitch_mm)
     alone_mm, beside_mm = around_mm
     assert beside_mm - alone_mm == pytest.approx(15.0 - 2.75, abs=0.5)
+
+
+def test_the_outline_of_a_net_whose_ends_lead_to_ends_is_run_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """From an end of the chord the head would only come to its other end."""
+    monkeypatch.setattr(one_of_each, "_follow_in_window", lambda *_: pytest.fail("the head runs"))
+    plate = polyline((4, 4), (34, 4), (34, 20), (4, 20), (4, 4))
+    sheet = Sheet.of(inked(plate, polyline((1, 9), (37, 14))))
+    asked, _ = selection.plan(sheet, "contours")
+    found = one_of_each.one_of_each(Setup(sheet), asked, "contours")
+    (outline,) = found.lines
+    assert outline.ending == "closed" and outline.length_mm == pytest.approx(92, abs=0.5)
+    assert [each.ending for each in found.others[outline.number]] == ["ended"]

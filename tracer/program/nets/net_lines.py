@@ -161,6 +161,23 @@ class NetLines:
         """Whether lines meet: it is no single line with sharp bends."""
         return any(len(there.sides) > 2 for there in self._junctions.by_number.values())
 
+    def between_ends(self, contour: Contour) -> Line | None:
+        """The outline, where the head would be put down at open ends, and straight on leads from each to
+        another: from there it would find no closed line. None if it may find one.
+        """
+        from morfax.tracer.ink.outlines import ends_freely, is_free
+
+        junctions, setup = self._junctions, self._setup
+        from_ends = [chain for chain in junctions.chains() if ends_freely(chain, junctions)]
+        if not from_ends or not all(is_free(chain, junctions) for chain in from_ends):
+            return None
+        if not ends_of(
+            setup.sheet, contour.stroke, setup.settings, setup.operator.reference_mm
+        ):
+            return None
+        outline = outline_of(setup, contour.stroke.patch)
+        return None if outline is None else replace(outline, number=self._number)
+
     def lines(self) -> list[Line]:
         """All lines, the longest closed one first."""
         found = self._besides(set())
