@@ -158,8 +158,10 @@ def way_through(
     ways = list[list[Array]]()
     if between is not None:
         ways.append(planner.through(incoming, outgoing, corner).stretches)
-    elif corner is not None and is_corner(
-        corner, planner.view.width_mm, is_felt=ink is not None
+    elif (
+        corner is not None
+        and not _bends_on(incoming, outgoing)
+        and is_corner(corner, planner.view.width_mm, is_felt=ink is not None)
     ):
         end_mm = max(0.0, BEYOND_MM - corner.before_mm)
         ways.append(sharp_corner(planner.stands, corner, end_mm))
@@ -208,11 +210,8 @@ def _turning(
     long = float(np.hypot(*chord))
     if long < 1e-6:
         return abs(turn(one.heading_rad, out.heading_rad))
-    along = math.atan2(chord[1], chord[0])
-    natural = 0.25 * long * (one.bend_per_mm + out.bend_per_mm)
-    before, after = turn(one.heading_rad, along), turn(along, out.heading_rad)
     # a bend felt along a short leg beside other ink is none: over a long chord it tells nothing
-    turning = min(_bending(before - bend, after - bend) for bend in (0.0, natural))
+    turning = min(_turned(one, out, chord, share) for share in (0.0, 1.0))
     longer = STRETCHED * long / width_mm
     if turning < SMOOTHLY:
         return turning + longer
@@ -222,6 +221,20 @@ def _turning(
     if math.dist(corner.vertex_mm, about[0]) > about[1] and not _is_inked(corner, view):
         return math.inf
     return math.sqrt(CORNERED**2 + SHARPER * corner.deflection_rad + longer**2)
+
+
+def _bends_on(one: Leg, out: Leg) -> bool:
+    """Whether a way that bends as two legs do, and by more than a smooth one, leads from one to the other."""
+    chord = out.end_mm - one.end_mm
+    return _turned(one, out, chord, 1.0) < SMOOTH < _turned(one, out, chord, 0.0)
+
+
+def _turned(one: Leg, out: Leg, chord: Array, share: float) -> float:
+    """By how much a way turns from leg to leg over a chord, besides a share of what both bend, rad."""
+    along = math.atan2(chord[1], chord[0])
+    bend = share * 0.25 * math.hypot(*chord) * (one.bend_per_mm + out.bend_per_mm)
+    before, after = turn(one.heading_rad, along), turn(along, out.heading_rad)
+    return _bending(before - bend, after - bend)
 
 
 def _is_inked(corner: Corner, view: View | None) -> bool:

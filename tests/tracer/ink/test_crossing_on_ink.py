@@ -158,15 +158,20 @@ def test_two_corners_across_each_other_are_told_though_no_line_passes() -> None:
     assert np.hypot(*(vertices - corners).T).max() < OFF_MM
 
 
-def test_a_line_goes_on_through_a_wide_junction_on_the_arc_on_which_it_comes_in() -> None:
-    """Nothing was felt between its legs; over a quarter turn its way was 0.43 mm within the circle."""
-    turns = np.linspace(-0.5, 0.5 * np.pi + 0.5, 600)
-    arc = 20 + 10 * np.column_stack([np.cos(turns), np.sin(turns)])
+@pytest.mark.parametrize(("radius_mm", "before_rad"), [(10, 0.5), (2.6, 1.4)])
+def test_a_line_goes_on_through_a_wide_junction_on_the_arc_on_which_it_comes_in(
+    radius_mm: float, before_rad: float
+) -> None:
+    """Nothing was felt between its legs; over a quarter turn its way was 0.43 mm within the circle, and a
+    small circle's turned at a corner, 0.13 mm off.
+    """
+    turns = np.linspace(-before_rad, 0.5 * np.pi + before_rad, 600)
+    arc = 20 + radius_mm * np.column_stack([np.cos(turns), np.sin(turns)])
     view = View(photocell.behind_aperture(inked(arc), 0.1), WIDTH_MM)
-    ends = [(arc[0], 0.5 * np.pi - 0.5), (arc[-1], 0.5)]
+    ends = [(arc[0], 0.5 * np.pi - before_rad), (arc[-1], before_rad)]
     legs = [leg_of(view.feel(*end, LEG_MM), True, LEG_MM) for end in ends]
     ways = Crossing(legs, [view] * 2, Settings()).as_drawn(WaysOn(((0, 1),), {})).ways_mm
-    off_mm = np.abs(np.hypot(*(ways[0] - 20).T) - 10).max()
+    off_mm = np.abs(np.hypot(*(ways[0] - 20).T) - radius_mm).max()
     assert off_mm < OFF_MM
 
 

@@ -48,6 +48,7 @@ from morfax.tracer.program.against_ink.pen_on_ink import (
     most_about,
     sums_of,
 )
+from morfax.tracer.program.against_ink.turned_in_ink import stretches_that_turn, without
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.tangles.pen import ink_at
 
@@ -81,19 +82,40 @@ def strokes_off_ink(
     half_px = median(ways.half_px)
     reach_px, paper = 2 * CLEAR_WIDTHS * half_px, 0.5 * noise.paper**2
     pen = PenOnInk(half_px, noise.softness_px, reach_px, paper, OF_WIDTH, OFF)
-    tiles = parts(drawing, ways, is_station, TILE_PX, pen)
     # what is told, or raises the limit, is above these
     limits = np.where(from_memory, OFF, OFF / OF_USUAL)
+    stations, off = _off(drawing, ways, is_station, limits, pen)
+    limit = _limit(off[~from_memory[stations]])
+    is_off = from_memory[stations] & (off > limit)
+    told = list(_places(drawing, ways, stations[is_off], off[is_off]))
+    # 3. what turns, and is told by no ink
+    for first, last in stretches_that_turn(ways, from_memory & judged, half_px):
+        is_station[:] = False
+        is_station[first:last:STATION_PX] = True
+        others = without(ways, first, last, reach_px)
+        stations, off = _off(drawing, others, is_station, np.full(len(judged), limit), pen)
+        if off.max() < limit:
+            told += _places(drawing, ways, stations, off)
+    return told
+
+
+def _off(
+    drawing: Drawing,
+    ways: Ways,
+    is_station: NDArray[np.bool_],
+    limits: Array,
+    pen: PenOnInk,
+) -> tuple[NDArray[np.int64], Array]:
+    """The numbers of some stations, and by how much strokes are off their ink about each (see `_off_at`)."""
     found = [
         (
             part.stations,
             _off_at(part.seen, part.ways, part.at, limits[part.stations], pen, part.room),
         )
-        for part in tiles
+        for part in parts(drawing, ways, is_station, TILE_PX, pen)
     ]
     stations, off = (np.concatenate(column) for column in zip(*found, strict=True))
-    is_off = from_memory[stations] & (off > _limit(off[~from_memory[stations]]))
-    return list(_places(drawing, ways, stations[is_off], off[is_off]))
+    return stations, off
 
 
 def _limit(by_cell: Array) -> float:

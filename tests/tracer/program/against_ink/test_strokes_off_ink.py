@@ -74,6 +74,29 @@ def test_a_stroke_that_goes_on_from_ink_of_two_lines_is_not_told(seed: int | Non
     assert told and all(place.place_mm[0] > 35 for place in told)  # along all of it
 
 
+# two lines with their inks side by side, and one across these that turns to and fro in them, or does not
+BESIDE = [polyline((4, y), (36, y)) for y in (19.8, 20.2)]
+TO_AND_FRO = polyline((20, 8), (20, 20), (20.5, 20.2), (19.6, 20.1), (20, 19.7), (20, 32))
+
+
+@pytest.mark.parametrize(
+    ("across", "count"), [(TO_AND_FRO, 1), (polyline((20, 8), (20, 32)), 0)]
+)
+def test_a_stroke_that_turns_to_and_fro_in_others_ink_is_told(
+    across: Points, count: int
+) -> None:
+    drawing = inked(*BESIDE, polyline((20, 8), (20, 32)), seed=3)
+    told = strokes_off_ink(drawing, [stroke(line) for line in (*BESIDE, across)])
+    assert len(told) == count
+    assert all(np.hypot(*(np.array(place.place_mm) - 20)) < ABOUT_MM for place in told)
+
+
+def test_a_stroke_that_turns_to_and_fro_in_its_own_ink_is_not_told() -> None:
+    """So do letters and teeth."""
+    teeth = polyline((8, 20), (20, 20), (20, 21), (20.8, 21), (20.8, 20), (32, 20))
+    assert strokes_off_ink(inked(teeth, seed=3), [stroke(teeth)]) == []
+
+
 def test_an_end_that_is_alone_is_not_told() -> None:
     drawing = inked(ACROSS, seed=3)
     assert strokes_off_ink(drawing, [stroke(polyline((4.6, 20), (35.4, 20)))]) == []
