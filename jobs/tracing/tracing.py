@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from morfax.jobs.listener import never_back
+from morfax.jobs.remarks.many_pieces import of_many_pieces
 from morfax.jobs.remarks.on_contours import of_around, of_contouring, of_open, of_order
 from morfax.jobs.remarks.on_edges import of_picture_edge
 from morfax.jobs.remarks.on_reference import of_reference, of_zero
@@ -78,6 +79,8 @@ class Tracing:
         from morfax.motion.motion import thin
 
         # 1. the head follows
+        for text in of_many_pieces(drawing) if self.settings.line.lines != "all" else ():
+            listener.warning(text)
         listener.compiling("the head", ("motion", "tracer", "recorder"))
         followed = self._followed(drawing, listener)
         led = WhoLed.along(followed)

@@ -30,7 +30,7 @@ from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.cleared import cleared
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import deepened, deepened_note
-from morfax.tracer.drawing.levelling import Levelled, levelled
+from morfax.tracer.drawing.levelling import Levelled, levelled, of_bold_lines
 from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.polarity import Polarity
@@ -255,7 +255,7 @@ class Drawing:
             notes = (*notes, speckled.note(times, pitch_mm))
             larger = speckled.on_larger_pixels(np.asarray(grey), times)
             return cls._of_lines(file, larger, times * pitch_mm, notes, reading)
-        notes = (*notes, *remarks)
+        notes = (*notes, *remarks, *of_bold_lines(lines.width_px * pitch_mm))
         # 2. pale lines
         drawn_grain = lines.grain
         is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None

@@ -31,6 +31,7 @@ from morfax.tracer.drawing.contrast import (
     strokes_of,
 )
 from morfax.tracer.drawing.memory import SHEET_BYTES, give_back
+from morfax.tracer.drawing.paper import WIDEST_STROKE_MM
 from morfax.tracer.drawing.paper_noise import every_px, paper_noise
 from morfax.tracer.drawing.polarity import Polarity
 from morfax.tracer.drawing.scan import Grey
@@ -40,6 +41,7 @@ from morfax.tracer.effort import FEW_PX
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 # of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen
 STEP = 0.1
+BOLD_MM = WIDEST_STROKE_MM / 2  # two such lines side by side are broader than a stroke may be
 
 Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
@@ -84,6 +86,17 @@ def levelled(
     if everywhere.nbytes > SHEET_BYTES:
         give_back()
     return Levelled(contrast.in_parts_of(ink, everywhere), *told)
+
+
+def of_bold_lines(width_mm: float) -> tuple[str, ...]:
+    """What the operator should know of lines so wide that their ink looks like dark paper where they meet."""
+    if not width_mm >= BOLD_MM:  # not a number without any line
+        return ()
+    return (
+        f"the lines are {width_mm:.1f} mm wide: where lines broader than {BOLD_MM:g} mm meet at a sharp angle"
+        " or cross, strokes may end short; read the sheet half as large (half the --width, or twice the"
+        " --dpi), and --scale 2 gives the program its size back",
+    )
 
 
 def _in_even_light(contrast: Contrast, pitch_mm: float) -> Contrast:

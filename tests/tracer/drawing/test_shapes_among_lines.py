@@ -91,9 +91,9 @@ def test_filled_shapes_are_told_and_a_sheet_with_lines_is_read_once(
 ) -> None:
     levelled, read_as_ink = drawing_module.levelled, list[bool]()
 
-    def counted(grey: Any, pitch_mm: float, shapes_are_ink: bool) -> Levelled:
+    def counted(grey: Any, pitch_mm: float, shapes_are_ink: bool, *known: Any) -> Levelled:
         read_as_ink.append(shapes_are_ink)
-        return levelled(grey, pitch_mm, shapes_are_ink)
+        return levelled(grey, pitch_mm, shapes_are_ink, *known)
 
     monkeypatch.setattr(drawing_module, "levelled", counted)
     assert read(box(25, 45, 85, 58), lines=lines).has_shapes

@@ -1,0 +1,44 @@
+"""What is told before a sheet is traced: nearly all ink is too short to be lines, or lines are too bold."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from morfax.jobs.remarks.many_pieces import of_many_pieces
+from morfax.jobs.settings.settings import DrawingFile
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.levelling import of_bold_lines
+
+WIDTH_MM, PX = 100.0, 1000
+
+
+def opened(sheet: np.ndarray, file: Path, ink: str | None = None) -> Drawing:
+    Image.fromarray(sheet).save(file)
+    return DrawingFile(file, width_mm=WIDTH_MM, ink=ink).open()
+
+
+def test_short_print_of_another_colour_is_told_and_the_advice_works(tmp_path: Path) -> None:
+    """Blue dashes 3 mm long under a black line, as on printed sketching paper."""
+    sheet = np.full((PX, PX, 3), 250, np.uint8)
+    for x in range(40, 960, 50):
+        for y in range(40, 960, 50):
+            cv2.line(sheet, (x, y), (x + 28, y), (90, 110, 230), 5)
+    cv2.line(sheet, (100, 120), (900, 870), (20, 20, 20), 6)
+    all_ink = opened(sheet, tmp_path / "a.png")
+    assert [text for text in of_many_pieces(all_ink) if "--ink black" in text]
+    own = opened(sheet, tmp_path / "a.png", "black")
+    assert not list(of_many_pieces(own))
+    assert own.sheet.patches.count < 20
+
+
+@pytest.mark.parametrize(("wide_mm", "is_told"), [(1.0, False), (2.5, False), (4.0, True)])
+def test_bold_lines_are_told(tmp_path: Path, wide_mm: float, is_told: bool) -> None:
+    sheet = np.full((PX, PX), 240, np.uint8)
+    cv2.line(sheet, (150, 150), (850, 800), 20, round(wide_mm * PX / WIDTH_MM))
+    cv2.line(sheet, (150, 850), (850, 200), 20, round(wide_mm * PX / WIDTH_MM))
+    notes = opened(sheet, tmp_path / "a.png").notes
+    assert any("--scale 2" in note for note in notes) == is_told
+    assert of_bold_lines(float("nan")) == ()
