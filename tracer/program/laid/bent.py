@@ -136,7 +136,7 @@ class _Way(WayInk):
         """The stretches that are off their ink, from which place to which."""
         leg = round(LEGS[0] / STEP_WIDTHS)
         off = np.zeros(len(self.way), bool)
-        for first, last in _runs(self._between_ends(~self.by_cell), leg, self.is_closed):
+        for first, last in runs_of(self._between_ends(~self.by_cell), leg, self.is_closed):
             if not self.turning[np.arange(first, last + 1) % len(off)].any():
                 continue  # straight on over a crossing, it is on its ink
             for begin in range(first, last + 1, round(LONGEST / STEP_WIDTHS)):
@@ -144,7 +144,7 @@ class _Way(WayInk):
                 ink, own = self._seen(begin - leg, end + leg, felt)
                 wrong = wrong_about(ink, own, about_corners(own), STEP_WIDTHS)[leg:-leg]
                 off[np.arange(begin, end + 1) % len(off)] |= wrong > felt.limit
-        yield from _runs(off, leg, self.is_closed)
+        yield from runs_of(off, leg, self.is_closed)
 
     def _between_ends(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Those of some places (n,) that are a leg and a step from the ends of an open way."""
@@ -193,7 +193,9 @@ class _Way(WayInk):
         return self.as_bay(first, last, rule, gain)
 
 
-def _runs(chosen: NDArray[np.bool_], apart: int, is_closed: bool) -> Iterator[tuple[int, int]]:
+def runs_of(
+    chosen: NDArray[np.bool_], apart: int, is_closed: bool
+) -> Iterator[tuple[int, int]]:
     """From which place of a way to which some are chosen, nearer than twice so many places to one another;
     the last of a closed way may be over the end.
     """

@@ -48,6 +48,7 @@ OVER = 0.4  # on either side of a place, by how much the way turns there
 NEAR = 2.0  # from a corner of a chain to a place that runs beside its ink
 OFF = 0.4  # that a corner lies off the way, at the most: the head cuts none by more
 SWEEPS = 2
+NONE = np.empty((0, 2))
 LEG = round(LEGS[0] / STEP_WIDTHS)
 
 
@@ -64,11 +65,14 @@ class _Corner(NamedTuple):
     is_asked: bool = False
 
 
-def with_chains(setup: Setup, own: OwnInk) -> OwnInk:
-    """Lines, held against their ink, with their chains of corners laid."""
-    asked = own.doubtful
+def with_chains(setup: Setup, own: OwnInk, laid_mm: Array = NONE) -> OwnInk:
+    """Lines, held against their ink, with their chains of corners laid where they run beside it, and where
+    they were laid anew (n, 2) mm: there the corners are near to where they belong.
+    """
+    asked = own.doubtful | bool(len(laid_mm))
     for _ in range(ROUNDS):
-        left_mm = np.array([place.place_mm for place in own.beside(NEARLY)])
+        beside = [place.place_mm for place in own.beside(NEARLY)]
+        left_mm = np.vstack([laid_mm, np.array(beside).reshape(-1, 2)])
         if not len(left_mm):
             break
         every, before = BoxedLines.of(own.lines), own.lines
@@ -79,7 +83,7 @@ def with_chains(setup: Setup, own: OwnInk) -> OwnInk:
         asked = np.array([new is not line for new, line in zip(mended, before, strict=True)])
         if not asked.any():
             break
-        own = own.mended(mended)
+        own, laid_mm = own.mended(mended), NONE
     return own
 
 

@@ -38,6 +38,7 @@ from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.corner_chains import with_chains
 from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
 from morfax.tracer.program.laid.news import near_box
+from morfax.tracer.program.laid.outer_rims import with_outer_rims
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT
@@ -60,7 +61,13 @@ def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
     if not is_clear_and_fine or setup.operator.reads_marks(own.lines):
         return own
     news: Array | None = None
+    asked = own.doubtful
     own = with_chains(setup, own)
+    for _ in range(ROUNDS):
+        own, asked, laid_mm = with_outer_rims(setup, own, asked)
+        if not asked.any():
+            break
+        own = with_chains(setup, own, laid_mm)
     for _ in range(ROUNDS):
         lines = own.lines
         left = [place for place in own.beside(NEARLY) if not place.is_sure]

@@ -188,10 +188,10 @@ def test_lines_of_a_drawn_program_are_as_they_are() -> None:
 def test_stretches_that_are_chosen_near_one_another_are_one_and_may_go_over_the_end() -> None:
     chosen = np.zeros(50, bool)
     chosen[[2, 5, 20, 47]] = True
-    assert list(bent_stretches._runs(chosen, 4, True)) == [(47, 55), (70, 70)]
-    assert list(bent_stretches._runs(chosen, 4, False)) == [(2, 5), (20, 20), (47, 47)]
-    assert list(bent_stretches._runs(np.ones(50, bool), 4, True)) == [(0, 49)]
-    assert not list(bent_stretches._runs(np.zeros(50, bool), 4, True))
+    assert list(bent_stretches.runs_of(chosen, 4, True)) == [(47, 55), (70, 70)]
+    assert list(bent_stretches.runs_of(chosen, 4, False)) == [(2, 5), (20, 20), (47, 47)]
+    assert list(bent_stretches.runs_of(np.ones(50, bool), 4, True)) == [(0, 49)]
+    assert not list(bent_stretches.runs_of(np.zeros(50, bool), 4, True))
 
 
 def test_a_stretch_ends_away_from_corners() -> None:
