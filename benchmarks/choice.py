@@ -95,12 +95,14 @@ def scanned(shapes: list[Points], way: Way, file: Path, seed: int) -> list[Point
     """Write the scan; the shapes as they lie on it, (n, 2) mm."""
     side_mm = math.sqrt(2) * way.times * SIDE_MM
     turn = math.radians(way.angle_deg)
-    turned = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    c, s = math.cos(turn), math.sin(turn)
+    turned = np.array([[c, s], [-s, c]])
     on_it = [way.times * (places @ turned) + side_mm / 2 for places in shapes]
     pixels, scale = round(side_mm * way.dpi / 25.4), FINER * way.dpi / 25.4
     fine = np.zeros((FINER * pixels,) * 2, np.uint8)
     for places in on_it:
-        x, y = places[:, 0] * scale - 0.5, len(fine) - places[:, 1] * scale - 0.5
+        x = places[:, 0] * scale - 0.5
+        y = len(fine) - places[:, 1] * scale - 0.5
         sixteenths = np.round(16 * np.column_stack([x, y])).astype(np.int32)
         width = round(PEN_MM * way.times * scale)
         cv2.polylines(fine, [sixteenths], False, 255, width, cv2.LINE_AA, 4)
@@ -148,7 +150,8 @@ def differing(number: int, folder: Path) -> Iterator[tuple[Way, str]]:
 def main(arguments: list[str] | None = None) -> None:
     """Print how many drawings and scans hold."""
     words = arguments or []
-    count, first = (*[int(word) for word in words if word != "-v"], *(10, 0)[len(words) :])[:2]
+    given = [int(word) for word in words if word != "-v"]
+    count, first = (*given, *(10, 0)[len(words) :])[:2]
     drawings, scans = Counter[str](), Counter[str]()
     with tempfile.TemporaryDirectory() as folder:
         for number in range(first, first + count):

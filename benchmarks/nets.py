@@ -160,7 +160,8 @@ def partners(strokes: Strokes, junctions: Points, lines: Strokes) -> list[bool]:
                 truth[[k - reach, k + reach]], PASSED_ASIDE_MM
             )
             a, b = np.array(np.meshgrid(before, behind), int)
-            a, b = a[which[a] == which[b]], b[which[a] == which[b]]
+            of_one_line = which[a] == which[b]
+            a, b = a[of_one_line], b[of_one_line]
             apart = abs(at[a] - at[b])
             round_it = np.where(is_ring[which[a]], counts[which[a]] - apart, apart)
             apart = np.minimum(apart, round_it)
@@ -174,7 +175,8 @@ def drawn(strokes: Strokes, file: Path, seed: int) -> None:
     scale = DPI / 25.4 * FINER  # the sheet is as large as its whole pixels
     fine = np.zeros((pixels * FINER,) * 2, np.uint8)
     for stroke in strokes:
-        x, y = stroke[:, 0] * scale - 0.5, pixels * FINER - stroke[:, 1] * scale - 0.5
+        x = stroke[:, 0] * scale - 0.5
+        y = pixels * FINER - stroke[:, 1] * scale - 0.5
         places = np.round(16 * np.column_stack([x, y])).astype(np.int32)
         cv2.polylines(fine, [places], False, 255, round(PEN_MM * scale), cv2.LINE_AA, 4)
     ink = cv2.resize(fine, (pixels, pixels), interpolation=cv2.INTER_AREA) / 255.0

@@ -73,8 +73,8 @@ class Phone:
     def _aimed_mm(self, size_mm: tuple[float, float]) -> Array:
         """Where the sheet's middle is before the lens (right, down, away): it fills the photograph."""
         w, h = size_mm
-        around = np.array([(0, 0), (w, 0), (w, h), (0, h), (w / 2, 0), (w, h / 2)], float)
-        around = np.vstack([around, (w, h) - around])
+        half = np.array([(0, 0), (w, 0), (w / 2, 0), (w, h / 2)], float)
+        around = np.vstack([half, (w, h) - half])
         frame = np.array([self.columns, self.rows], float)
         middle_mm = np.array([0.0, 0.0, 2.0 * max(size_mm)])
         for _ in range(30):
@@ -135,7 +135,8 @@ class Phone:
         )
         plane = np.column_stack([along - corner, up - corner, corner + self._aimed_mm(size_mm)])
         back = np.linalg.inv(plane).astype(np.float32)
-        rays = u[..., 0, None] * back[:, 0] + u[..., 1, None] * back[:, 1] + back[:, 2]
+        along_rays, up_rays = u[..., 0, None] * back[:, 0], u[..., 1, None] * back[:, 1]
+        rays = along_rays + up_rays + back[:, 2]
         return np.asarray(rays[..., :2] / rays[..., 2:], np.float32)
 
     def _light(self) -> NDArray[np.float32]:

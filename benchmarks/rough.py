@@ -106,8 +106,9 @@ def _within(
     way = part[-1] - part[0]
     if not way.any():
         return np.zeros(x_mm.shape, bool)
-    along = ((x_mm - part[0, 0]) * way[0] + (y_mm - part[0, 1]) * way[1]) / (way @ way)
-    aside = (x_mm - part[0, 0]) * way[1] - (y_mm - part[0, 1]) * way[0]
+    dx_mm, dy_mm = x_mm - part[0, 0], y_mm - part[0, 1]
+    along = (dx_mm * way[0] + dy_mm * way[1]) / (way @ way)
+    aside = dx_mm * way[1] - dy_mm * way[0]
     return (along > 0) & (along < 1) & (np.abs(aside) < width_mm * np.hypot(*way))
 
 

@@ -89,4 +89,6 @@ def _swing(vertex: Array, arm: Array, turn: float, beside_mm: float, radius_mm: 
 def _turned(arm: Array, angles: Array) -> Array:
     """An arm turned by angles, (n, 2)."""
     c, s = np.cos(angles), np.sin(angles)
-    return np.column_stack([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]])
+    x = c * arm[0] - s * arm[1]
+    y = s * arm[0] + c * arm[1]
+    return np.column_stack([x, y])

@@ -43,9 +43,8 @@ def between(values: Array, at: float) -> float:
     """The value at a place, counted from the first: straight between two, and beyond the ends theirs."""
     place = min(max(at, 0.0), len(values) - 1.0)
     low = min(int(place), max(len(values) - 2, 0))
-    return float(
-        values[low] + (place - low) * (values[min(low + 1, len(values) - 1)] - values[low])
-    )
+    high = min(low + 1, len(values) - 1)
+    return float(values[low] + (place - low) * (values[high] - values[low]))
 
 
 @njit(cache=True, nogil=True)

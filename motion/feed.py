@@ -70,8 +70,10 @@ def _allowed(way_mm: Array, steps: Array, feed_mm_s: float, acceleration_mm_s2: 
     """Highest speed at each place, mm/s, by the turn there and the bend about it; 0 at corners and ends."""
     # 1. the turn at each place; both ends count as corners
     ways = np.diff(way_mm, axis=0)
-    across = ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0]
-    turns = np.abs(np.arctan2(across, np.einsum("ij,ij->i", ways[:-1], ways[1:])))
+    coming, going = ways[:-1], ways[1:]
+    across = coming[:, 0] * going[:, 1] - coming[:, 1] * going[:, 0]
+    along = np.einsum("ij,ij->i", coming, going)
+    turns = np.abs(np.arctan2(across, along))
     turns = np.r_[math.pi, turns, math.pi]
     # 2. the bend about each place: the larger of those before and after it
     s = np.r_[0.0, np.cumsum(steps)]

@@ -15,7 +15,6 @@ from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
-from morfax.motion.faults import BY_SIGNAL, SIGKILL
 from morfax.panel import commands, sheet_picture
 from morfax.panel.commands import CommandLine, Options
 from morfax.panel.corrected import corrections_text, lay_corrections
@@ -25,7 +24,7 @@ from morfax.panel.kept_result import STATE, KeptResult
 from morfax.panel.own_files import as_paths, own_files
 from morfax.panel.tiles import LineMap, Pyramid
 from morfax.panel.uploads import taken_in
-from morfax.panel.workshop import Heard, Workshop
+from morfax.panel.workshop import Heard, Workshop, why_ended
 
 MESSAGES = 40  # lines of notes and warnings that are kept
 HIDDEN = ("numbers", "picture")  # of what the worker says of a drawing: arrays, for the tiles
@@ -263,9 +262,7 @@ class Bench:
     def _ended(self, message: dict[str, Any]) -> None:
         """The worker ended by itself, or was ended by the operator."""
         if self.busy is not None:
-            # by the system, itself or behind a shell
-            is_killed = message["code"] in (-SIGKILL, BY_SIGNAL + SIGKILL)
-            why = "too little memory, maybe" if is_killed else f"code {message['code']}"
+            why = why_ended(message["code"])
             self.tell(
                 "fault",
                 f"the worker ended before the work was done ({why}); what is set is kept: run again",

@@ -76,7 +76,8 @@ def _square(levels: list[NDArray], level: int, column: int, row: int) -> NDArray
     """The pixels of a tile; raises IndexError where there is none."""
     if not 0 <= level < len(levels) or column < 0 or row < 0:
         raise IndexError
-    square = levels[level][row * TILE : (row + 1) * TILE, column * TILE : (column + 1) * TILE]
+    top, left = row * TILE, column * TILE
+    square = levels[level][top : top + TILE, left : left + TILE]
     if not square.size:
         raise IndexError
     return square

@@ -12,9 +12,17 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from morfax.motion.faults import BY_SIGNAL, SIGKILL
 from morfax.panel import pipe
 
 Heard = Callable[[dict[str, Any]], None]
+
+
+def why_ended(code: int) -> str:
+    """Why a worker ended that nobody stopped, by its exit code."""
+    # by the system, itself or behind a shell
+    is_killed = code in (-SIGKILL, BY_SIGNAL + SIGKILL)
+    return "too little memory, maybe" if is_killed else f"code {code}"
 
 
 class Workshop:

@@ -113,10 +113,10 @@ def grey(drawing: Drawing, view: View, darkest: float) -> Ground:
 def _cut_out(drawing: Drawing, view: View) -> tuple[Any, View]:
     """The part of the drawing within the view, not larger than needed, and its extent in sheet mm."""
     pitch_mm, (rows, columns) = drawing.pitch_mm, drawing.darkness.shape
-    left, right = np.clip([view[0] / pitch_mm, view[1] / pitch_mm + 1], 0, columns).astype(int)
-    top, bottom = np.clip(
-        [rows - view[3] / pitch_mm, rows - view[2] / pitch_mm + 1], 0, rows
-    ).astype(int)
+    across_px = [view[0] / pitch_mm, view[1] / pitch_mm + 1]
+    down_px = [rows - view[3] / pitch_mm, rows - view[2] / pitch_mm + 1]
+    left, right = np.clip(across_px, 0, columns).astype(int)
+    top, bottom = np.clip(down_px, 0, rows).astype(int)
     part: Any = drawing.darkness[top:bottom, left:right]
     low_mm = (rows - bottom) * pitch_mm
     high_mm = (rows - top) * pitch_mm

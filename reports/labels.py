@@ -99,7 +99,8 @@ class _Grid:
             return words
         wide = _wide_pt(words)
         tried = [words.offset_pt, *_offsets(wide, words.size_pt)]
-        boxes = [(x + dx, y + dy, x + dx + wide, y + dy + words.size_pt) for dx, dy in tried]
+        corners = [(x + dx, y + dy) for dx, dy in tried]
+        boxes = [(left, low, left + wide, low + words.size_pt) for left, low in corners]
         best = int(np.argmin([self._cost_of(box) for box in boxes]))
         self._take(boxes[best], NAME_COST)
         return replace(words, offset_pt=tried[best])

@@ -106,7 +106,9 @@ def _legend_px(plate: Plate) -> tuple[float, float]:
     """Width and height of a plate's legend."""
     em, rows = looks.WORDS_PT * PX_PER_PT, len(plate.legend)
     longest = max(_font(looks.WORDS_PT).getlength(_plain(mark.label)) for mark in plate.legend)
-    return (3 * PAD + SAMPLE) * em + longest, (2 * PAD + rows + (rows - 1) * PAD) * em
+    beside_words = 3 * PAD + SAMPLE
+    between_rows = (rows - 1) * PAD
+    return beside_words * em + longest, (2 * PAD + rows + between_rows) * em
 
 
 def written(

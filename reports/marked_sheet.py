@@ -69,8 +69,8 @@ def sheet(layout: Layout, *, grid: bool = True) -> Figure:
         _grid(axes, layout.frame_mm)
     for number, corners_mm in layout.marks_mm.items():
         left, top = corners_mm[0]
-        for box in _black(marked.pattern(number)):
-            _filled(axes, [left + box[0], top - box[3], left + box[2], top - box[1]])
+        for x0, y0, x1, y1 in _black(marked.pattern(number)):
+            _filled(axes, [left + x0, top - y1, left + x1, top - y0])
     _bar(axes, layout)
     return figure
 

@@ -139,10 +139,8 @@ def _write_png(program: StepProgram, file: FilePath) -> None:
         pen.text((s.x_mm * PX_PER_MM, 1.5 * PX_PER_MM), str(s.first_row + 1), fill=INK)
     for h in holes(program):
         r = h.diameter_mm / 2
-        pen.ellipse(
-            [mm * PX_PER_MM for mm in (h.x_mm - r, h.y_mm - r, h.x_mm + r, h.y_mm + r)],
-            fill=HOLE,
-        )
+        around = h.x_mm - r, h.y_mm - r, h.x_mm + r, h.y_mm + r
+        pen.ellipse([mm * PX_PER_MM for mm in around], fill=HOLE)
     dpi = PX_PER_MM * MM_PER_INCH
     with written_beside(file) as beside:
         image.save(beside, dpi=(dpi, dpi))

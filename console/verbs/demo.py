@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 FOLDER = FilePath("morfax-demo")
 DRAWING, CARD, RESULTS = "program.png", "program.toml", "results"
+ONE_LINE = "cam.png"  # what the tutorial takes for a scan
 
 EXAMPLES = """\b
 Examples:
@@ -43,9 +44,11 @@ def command(folder: FilePath | None, desk: Desk) -> None:
 
     The folder then holds the drawing with its operator's card, and in `results` what `morfax run` makes of
     them: the tape, the traced and the played path, the picture with the error in colour, and the figures.
+    Beside them is cam.png, a scan of one closed line for the tutorial.
     """
     place = _new_folder(folder)
     drawing, card = _unpacked(DRAWING, place), _unpacked(CARD, place)
+    _unpacked(ONE_LINE, place)
     settings = TraceSettings(program=ProgramSettings(card_file=card))
     result = run_and_show(RunJob(DrawingFile(drawing), place / RESULTS, settings), desk)
     traced = result.figures["traced_path"]

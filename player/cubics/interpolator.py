@@ -80,9 +80,9 @@ def ends(words: Words, points: int, linear: int = 1) -> Words:
     first = words[..., 0]
     second = words[..., 1]
     third = words[..., 2]
-    return np.asarray(
-        linear * (n * first + n * (n - 1) // 2 * second + n * (n - 1) * (n - 2) // 6 * third)
-    )
+    pairs = n * (n - 1) // 2
+    triples = n * (n - 1) * (n - 2) // 6
+    return np.asarray(linear * (n * first + pairs * second + triples * third))
 
 
 def slopes(words: Words, points: int, linear: int = 1) -> tuple[Words, Words]:
@@ -96,7 +96,8 @@ def slopes(words: Words, points: int, linear: int = 1) -> tuple[Words, Words]:
     second = words[..., 1]
     third = words[..., 2]
     start = 6 * first - 3 * second + 2 * third
-    return start, start + 6 * n * second - 6 * n * third + 3 * n * n * third
+    gained = 6 * n * second - 6 * n * third + 3 * n * n * third
+    return start, start + gained
 
 
 @njit(cache=True)

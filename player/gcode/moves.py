@@ -12,6 +12,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from morfax.motion.axis import TRAVEL_MM
+from morfax.motion.faults import ProgramFault
+from morfax.motion.motion import AXES
 from morfax.player.gcode.arc_words import Place
 
 RAPID, LINE, CLOCKWISE, COUNTER_CLOCKWISE, DWELL = "G0", "G1", "G2", "G3", "G4"
@@ -65,6 +68,24 @@ def reached(move: Move) -> Iterator[tuple[float, ...]]:
                 x + radius * (quarter == 0) - radius * (quarter == 2),
                 y + radius * (quarter == 1) - radius * (quarter == 3),
             )
+
+
+def demand_travel(
+    program: str,
+    move: Move,
+    travel_mm: float = TRAVEL_MM,
+    holds: str = "the machine has",
+    remedy: str = "move the zero, or make it smaller",
+) -> None:
+    """Raise ProgramFault for a move that leaves the travel either way from zero; `holds`: what ends there."""
+    for place in reached(move):
+        for axis, place_mm in zip(AXES, place, strict=False):
+            if not abs(place_mm) <= travel_mm:
+                raise ProgramFault(
+                    f"{program}, line {move.line}: {axis.upper()} goes to {place_mm:.3f} mm; {holds} "
+                    f"±{travel_mm:.3f} mm: {remedy}",
+                    line=move.line,
+                )
 
 
 def length_mm(place: tuple[float, float, float], move: Move) -> float:

@@ -28,13 +28,12 @@ from itertools import pairwise
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.axis import TRAVEL_MM
 from morfax.motion.drive import SOUND
 from morfax.motion.faults import ProgramFault
 from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
 from morfax.motion.usual import RAPID_MM_S
 from morfax.player.gcode.machine_reader import read_program
-from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
+from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, demand_travel, length_mm
 from morfax.player.gcode.pulses import STANDSTILL_S
 from morfax.player.monitor.following_limit import FollowingLimit
 from morfax.player.monitor.monitor import Supervised
@@ -161,14 +160,7 @@ class PositionPlayback(Supervised):
 
     def _check(self, move: Move) -> None:
         """Raise ProgramFault for a move that leaves the travel, or has no feed that the drives can run."""
-        for place in reached(move):
-            for axis, place_mm in zip(AXES, place, strict=False):
-                if not abs(place_mm) <= TRAVEL_MM:
-                    raise ProgramFault(
-                        f"{self.name}, line {move.line}: {axis.upper()} goes to {place_mm:.3f} mm; the "
-                        f"machine has ±{TRAVEL_MM:.3f} mm: move the zero, or make it smaller",
-                        line=move.line,
-                    )
+        demand_travel(self.name, move)
         if move.kind != DWELL and not 0 < self._feed_mm_s(move) < math.inf:
             raise ProgramFault(
                 f"{self.name}, line {move.line}: a feed of {move.feed_mm_s * 60:g} mm/min never arrives; "

@@ -43,7 +43,7 @@ from morfax.motion.motion import AXES, MOTION_RATE_HZ, Motion
 from morfax.motion.usual import AT_ONCE, RAPID_MM_S
 from morfax.player.gcode.feed_control import feed_number, override_number
 from morfax.player.gcode.machine_reader import read_program
-from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, length_mm, reached
+from morfax.player.gcode.moves import DWELL, RAPID, Move, Program, demand_travel, length_mm
 from morfax.player.gcode.pulse_servo import HISTORIC, PulseServo, PulseServos
 from morfax.player.gcode.residues import LINE, Feed, ResidueInterpolator
 from morfax.player.monitor.following_limit import FollowingLimit
@@ -229,22 +229,12 @@ class PulsePlayback(Supervised):
     def _check_travel(self, move: Move) -> None:
         """Raise ProgramFault if a move leaves the machine's travel or the range of the registers."""
         servo = self.settings.servo
-        travel_mm, what, remedy = (
-            TRAVEL_MM,
-            "the machine has",
-            "move the zero, or make it smaller",
-        )
         if servo.travel_mm < TRAVEL_MM:
-            travel_mm, remedy = servo.travel_mm, "move the zero, or use longer ones"
             what = f"the registers of {servo.register_bits} bits hold"
-        for place in reached(move):
-            for axis, place_mm in zip(AXES, place, strict=False):
-                if not abs(place_mm) <= travel_mm:
-                    raise ProgramFault(
-                        f"{self.name}, line {move.line}: {axis.upper()} goes to {place_mm:.3f} mm; {what} "
-                        f"±{travel_mm:.3f} mm: {remedy}",
-                        line=move.line,
-                    )
+            remedy = "move the zero, or use longer ones"
+            demand_travel(self.name, move, servo.travel_mm, what, remedy)
+        else:
+            demand_travel(self.name, move)
 
     def _run(
         self, move: Move, feed: Feed, interpolator: ResidueInterpolator

@@ -255,7 +255,8 @@ def _decode(rows, vectors, has_z, memory, counts, source):  # type: ignore[no-un
     for row in range(len(rows)):
         code = rows[row]
         if vectors == 0:  # the order is the count itself: the counters are set
-            counts[k, 0], counts[k, 1], counts[k, 2] = code & 15, code >> 4 & 15, code >> 8 & 15
+            for axis in range(3):
+                counts[k, axis] = code >> 4 * axis & 15
             source[k] = row
             k += 1
             continue

@@ -70,6 +70,9 @@ def branches(
             for one in map(_taps, taps)
         ]
     )
-    last = int(np.flatnonzero(rows.any(axis=(0, 1)))[-1])  # the window is nothing at its ends
-    rows = np.pad(rows[:, :, : last + 1], ((0, 0), (0, 0), (0, -(last + 1) % group)))
+    used = (
+        int(np.flatnonzero(rows.any(axis=(0, 1)))[-1]) + 1
+    )  # the window is nothing at its ends
+    filled_up = (0, -used % group)
+    rows = np.pad(rows[:, :, :used], ((0, 0), (0, 0), filled_up))
     return rows, turned.real.astype(np.float32), turned.imag.astype(np.float32)

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from morfax.motion.faults import DropoutFault, LockFault, TapeFault
-from morfax.player.tape.bridges import Gap
 from morfax.player.tape.counts import Off
+from morfax.player.tape.gap import Gap
 from morfax.player.tape.standstill import track_name
 from morfax.recorder.tape.format import SURE_CYCLES
 
@@ -122,8 +122,8 @@ def miscounted(axis: str, off: Off, time_s: float, place_mm: float) -> LockFault
         else "its phase was turned on shortly before, as a filter or an echo does; copy the tape again"
     )
     return LockFault(
-        f"{axis.upper()} is {off.cycles:+.2f} cycles off what its check signal says at {time_s:.3f} s, "
-        f"{off.limit_cycles:.2f} is allowed; last certain position {place_mm:.3f} mm: {why}",
+        f"{axis.upper()} is {off.cycles:+.3f} cycles off what its check signal says at {time_s:.3f} s, "
+        f"{off.limit_cycles:.3f} is allowed; last certain position {place_mm:.3f} mm: {why}",
         axis=axis,
         time_s=time_s,
         error_cycles=off.cycles,

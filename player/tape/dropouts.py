@@ -32,8 +32,9 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import Fault, LockFault, TapeFault
 from morfax.motion.usual import MOTION_RATE_HZ
-from morfax.player.tape.bridges import SIDE_ROWS, Bridge, Gap, GapEdge, side
+from morfax.player.tape.bridges import SIDE_ROWS, Bridge, GapEdge, side
 from morfax.player.tape.discriminator import Discriminator
+from morfax.player.tape.gap import Gap
 from morfax.player.tape.motion_edges import END_ROWS, furthest
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.predictor import recount
@@ -71,8 +72,7 @@ def _count_on(
     surprise: NDArray[np.float32],
 ) -> None:
     """Count an axis anew from a place on to the discriminator's last row."""
-    state = np.array([at.place - at.speed + at.bend, at.speed - 2 * at.bend, at.bend])
-    discriminator.state[axis] = recount(cycles, discriminator.gains, state, surprise)
+    discriminator.state[axis] = recount(cycles, discriminator.gains, at.row_before, surprise)
 
 
 def _furthest(gap: Gap, cycles: Array, within: tuple[int, int]) -> float:

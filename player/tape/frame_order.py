@@ -60,7 +60,8 @@ class FrameOrder:
         if not self._is_calm or self._number not in (None, frames.number):
             return False
         self._number = frames.number + frames.frames
-        self._missing, self._told = [0] * len(self._told), frames.figures[-1, :, 1:-2].tolist()
+        self._missing = [0] * len(self._told)
+        self._told = frames.figures[-1, :, 1:-2].tolist()
         self._is_last = [bool(told >> 60 & 1) for told in frames.told[-1].tolist()]
         return True
 

@@ -24,7 +24,8 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.player.tape.bridges import Bound, Gap
+from morfax.player.tape.bridges import Bound
+from morfax.player.tape.gap import Gap
 from morfax.player.tape.phases import Phases
 from morfax.recorder.tape.format import SURE_CYCLES
 

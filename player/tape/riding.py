@@ -24,12 +24,12 @@ from morfax.player.tape.bridges import (
     SIDE_ROWS,
     Bound,
     Bridge,
-    Gap,
     GapEdge,
     bridge,
     side,
     turned,
 )
+from morfax.player.tape.gap import Gap
 from morfax.player.tape.phases import Phases
 from morfax.player.tape.standstill import SILENT_LEVEL
 from morfax.player.tape.told_bounds import ToldBounds

@@ -115,9 +115,8 @@ class StereoSource:
         """Places in the other file that belong to frames of the one with the reference."""
         knots, places = self._knots, self._places
         inside = np.interp(frames, knots, places)
-        before, after = (
-            (places[k + 1] - places[k]) / (knots[k + 1] - knots[k]) for k in (0, len(knots) - 2)
-        )
+        before = (places[1] - places[0]) / (knots[1] - knots[0])
+        after = (places[-1] - places[-2]) / (knots[-1] - knots[-2])
         return np.asarray(
             inside
             + np.minimum(frames - knots[0], 0) * before
@@ -211,9 +210,8 @@ def _joined(main: Half, beside: Half) -> tuple[Array, Array]:
     here = np.array([main.places[number] for number in both])
     there = np.array([beside.places[number] for number in both])
     rate_hz = main.source.rate_hz
-    knots = np.linspace(
-        here[0], here[-1], max(round((here[-1] - here[0]) / (KNOTS_S * rate_hz)) + 1, 2)
-    )
+    stretches = round((here[-1] - here[0]) / (KNOTS_S * rate_hz))
+    knots = np.linspace(here[0], here[-1], max(stretches, 1) + 1)
     places = np.empty_like(knots)
     for k, knot in enumerate(knots):
         near = np.abs(here - knot) <= max(WITHIN_S * rate_hz, here[1] - here[0])

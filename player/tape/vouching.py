@@ -24,13 +24,13 @@ from collections.abc import Sequence
 from morfax.motion.arrays import Array
 from morfax.motion.faults import Fault
 from morfax.player.tape import check_faults as faults
-from morfax.player.tape.bridges import Gap
 from morfax.player.tape.calm_frames import Heard
 from morfax.player.tape.check_reader import CheckReader
 from morfax.player.tape.counts import Counts, Off
 from morfax.player.tape.delays import corrected
 from morfax.player.tape.frame_order import FrameOrder
 from morfax.player.tape.frame_report import FrameReport
+from morfax.player.tape.gap import Gap
 from morfax.player.tape.held_rows import HeldRows
 from morfax.player.tape.lost_ways import Laid, LostWays, laid
 from morfax.player.tape.phases import Phases, Uncertain

@@ -15,8 +15,8 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 from morfax.motion.arrays import Array
-from morfax.player.tape.bridges import Gap
 from morfax.player.tape.calm_frames import Heard
+from morfax.player.tape.gap import Gap
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.told_bounds import ToldBounds
 from morfax.recorder.tape.tape import Stored

@@ -166,7 +166,8 @@ def demand_apart(frames: Float32s, levels: Array, names: Sequence[str]) -> None:
         if floor < ROUNDED * _step(frames[:, one]):
             continue
         for other in range(one):
-            if float(np.std(equal[:, one] - equal[:, other])) * levels[one] < 0.05 * floor:
+            apart = float(np.std(equal[:, one] - equal[:, other])) * levels[one]
+            if apart < 0.05 * floor:
                 raise TapeFault(
                     f"tracks {other + 1} ({track_name(other, names)}) and {one + 1} "
                     f"({track_name(one, names)}) carry the "

@@ -74,7 +74,8 @@ class ArcSpline:
         n = len(pieces)
         self.places, s = places, lengths_mm(places)
         self.joints = np.asarray(places[[0, *(b for _, b, _ in pieces)]], float)
-        halves = [curvature_per_mm(places[a : b + 1]) * (s[b] - s[a]) / 2 for a, b, _ in pieces]
+        bends = [curvature_per_mm(places[a : b + 1]) for a, b, _ in pieces]
+        halves = [k * (s[b] - s[a]) / 2 for k, (a, b, _) in zip(bends, pieces, strict=True)]
         self.halves = np.where(curved, halves, 0.0)
         self.few = np.unique(
             np.linspace(0, len(places) - 1, min(len(places), 60 * n + 20)).astype(int)

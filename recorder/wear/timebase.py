@@ -70,9 +70,9 @@ class Tones:
     def integral_s(self, t_s: Array) -> Array:
         """The sum's integral from 0 to moments in s."""
         w = 2 * np.pi * self.hz
-        return (self.amplitude / w) @ (
-            np.cos(self.phase_rad)[:, None] - np.cos(w[:, None] * t_s + self.phase_rad[:, None])
-        )
+        begun = np.cos(self.phase_rad)[:, None]
+        now = np.cos(w[:, None] * t_s + self.phase_rad[:, None])
+        return (self.amplitude / w) @ (begun - now)
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,9 +139,8 @@ def _taps() -> Frames:
     """The windowed sinc at each part of a sample (parts + 1, taps)."""
     shift = np.arange(PARTS + 1)[:, None] / PARTS
     n = np.arange(-HALF_TAPS + 1, HALF_TAPS + 1) - shift
-    window = np.i0(KAISER_BETA * np.sqrt(np.clip(1 - (n / HALF_TAPS) ** 2, 0, None))) / np.i0(
-        KAISER_BETA
-    )
+    round_off = np.sqrt(np.clip(1 - (n / HALF_TAPS) ** 2, 0, None))
+    window = np.i0(KAISER_BETA * round_off) / np.i0(KAISER_BETA)
     taps = np.sinc(n) * window
     return np.asarray(taps / taps.sum(axis=1, keepdims=True), np.float32)
 

@@ -16,7 +16,8 @@ def test_the_demo_goes_the_whole_way_and_says_what_to_try_next(
     assert answer.exit_code == 0
     assert (here / "morfax-demo" / "program.png").read_text() == "dear to somebody"
     place = here / "morfax-demo-2"
-    assert {file.name for file in place.iterdir()} == {"program.png", "program.toml", "results"}
+    unpacked = {"program.png", "program.toml", "cam.png"}
+    assert {file.name for file in place.iterdir()} == {*unpacked, "results"}
     assert (place / "results" / "program.png").read_bytes().startswith(b"\x89PNG")
     assert str(Path("morfax-demo-2", "results", "program.png")) in answer.err
     assert answer.figures["played_to_ink"]["rms_mm"] < 0.005

@@ -11,7 +11,9 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image, ImageChops
 
 from docs.figures import recipes
 
@@ -35,6 +37,16 @@ def shape(program: str) -> list[str]:
     return NUMBER.sub("#", CHECK_SUM.sub("crc32 #", program)).splitlines()
 
 
+def alike(made: Path, shown: Path) -> bool:
+    """Whether a page's picture is what comes out, but for places that move by a fraction of a pixel."""
+    with Image.open(made) as one, Image.open(shown) as other:
+        if one.size != other.size:
+            return False
+        apart = ImageChops.difference(one.convert("L"), other.convert("L"))
+    moved = np.asarray(apart) > 64  # of the edge of a line that moves by a quarter of a pixel
+    return bool(moved.mean() < 0.002)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=[page.stem for page in PAGES])
 def test_a_recipe_runs_and_shows_what_comes_out(page: Path, tmp_path: Path) -> None:
     text = page.read_text(encoding="utf-8")
@@ -44,8 +56,7 @@ def test_a_recipe_runs_and_shows_what_comes_out(page: Path, tmp_path: Path) -> N
     for name, told in shown.items():
         assert shape(told) == shape(recipes.excerpt(tmp_path / name))
     for name in pictures:
-        assert (tmp_path / name).stat().st_size > 1000
-        assert (recipes.RECIPES / "pictures" / name).exists()
+        assert alike(tmp_path / name, recipes.RECIPES / "pictures" / name)
 
 
 def test_there_is_a_recipe_for_every_machine_and_each_program_is_checked() -> None:

@@ -150,7 +150,8 @@ def test_the_installed_command_traces_and_plays_in_an_empty_folder(
     results = {f"program.{end}" for end in ("wav", "traced.csv", "played.csv", "png", "json")}
     demo = tmp_path / "morfax-demo"
     assert {file.name for file in (demo / "results").iterdir()} == results
-    assert {file.name for file in demo.iterdir()} == {"program.png", "program.toml", "results"}
+    unpacked = {"program.png", "program.toml", "cam.png"}
+    assert {file.name for file in demo.iterdir()} == {*unpacked, "results"}
 
 
 @pytest.mark.skipif(not machine_code.can_be_kept(), reason="numba runs the kernels here")

@@ -173,7 +173,8 @@ def check_stock(steps: Sequence[Step], stock: Stock, findings: Findings) -> None
         if not step.in_work or step.is_rapid:
             continue
         low, high = step.bounds_mm()
-        if max(left - low[0], bottom - low[1], high[0] - right, high[1] - top) > INCREMENT_MM:
+        beside_mm = left - low[0], bottom - low[1], high[0] - right, high[1] - top
+        if max(beside_mm) > INCREMENT_MM:
             findings.add(beside.at(step), beside.kind)
         if stock.thickness_mm is not None and step.lowest_mm < lowest_mm - INCREMENT_MM:
             findings.add(below.at(step), below.kind)

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from morfax.player.tape.bridges import Bound, Bridge, Gap, GapEdge, bridge, filled, turned
+from morfax.player.tape.bridges import Bound, Bridge, GapEdge, bridge, filled, turned
+from morfax.player.tape.gap import Gap
 
 MOST = 1e-4  # cycles/row², 0.18 m/s²
 NOISE = 0.005  # six standard deviations of a row of a quiet tape, cycles

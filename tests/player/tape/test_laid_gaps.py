@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from morfax.player.tape.bridges import Bound, Gap, GapEdge, bridge, filled, freedom, turned
+from morfax.player.tape.bridges import Bound, GapEdge, bridge, filled, turned
 from morfax.player.tape.erasures import Erasures
+from morfax.player.tape.gap import Gap, freedom
 from morfax.player.tape.symbols import GATES, PARTS, Gates
 from morfax.recorder.tape.check_frame import Bits, CheckFrame, to_bits
 

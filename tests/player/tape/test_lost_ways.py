@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from morfax.player.tape.bridges import Bound, Bridge, Gap, GapEdge
+from morfax.player.tape.bridges import Bound, Bridge, GapEdge
 from morfax.player.tape.discriminator import Phases
+from morfax.player.tape.gap import Gap
 from morfax.player.tape.lost_ways import LostWays, laid
 
 SYMBOL_ROWS = 24.0  # four thousandths of a second

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from morfax.player.tape.bridges import Bound, Gap, GapEdge, bridge, side
+from morfax.player.tape.bridges import Bound, GapEdge, bridge, side
+from morfax.player.tape.gap import Gap
 from morfax.player.tape.motion_edges import END_ROWS, furthest
 
 MOST = 10_000 / 6000**2  # cycles/row²: 0.5 m/s² at 20 cycles per mm
