@@ -133,7 +133,9 @@ def test_the_outline_of_a_net_whose_ends_lead_to_ends_is_run_at_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """From an end of the chord the head would only come to its other end."""
-    monkeypatch.setattr(one_of_each, "_follow_in_window", lambda *_: pytest.fail("the head runs"))
+    monkeypatch.setattr(
+        one_of_each, "_follow_in_window", lambda *_: pytest.fail("the head runs")
+    )
     plate = polyline((4, 4), (34, 4), (34, 20), (4, 20), (4, 4))
     sheet = Sheet.of(inked(plate, polyline((1, 9), (37, 14))))
     asked, _ = selection.plan(sheet, "contours")
