@@ -93,7 +93,7 @@ def test_what_noise_may_gain_is_no_gain() -> None:
     noise = np.random.default_rng(4).normal(0, 0.16, quiet.darkness.shape)
     loud = Drawing((quiet.darkness + noise).astype(np.float32), quiet.pitch_mm)
     for drawing, is_gain in ((quiet, True), (loud, False)):
-        way = _OuterRims(Setup(drawing.sheet), line, BoxedLines.of([line]))
+        way = _OuterRims(Setup(drawing.sheet), line, BoxedLines.of([line]), 0.0)
         seen = way.about(110, 210, np.empty((0, 2)))
         assert seen is not None
         is_aside = (seen.own[:, 0] > 12) & (seen.own[:, 0] < 14)
