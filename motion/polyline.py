@@ -121,6 +121,14 @@ def plain(line_mm: Array, within_mm: float) -> Array:
     return line_mm[_kept(np.ascontiguousarray(line_mm, float), within_mm)]
 
 
+def turned_rad(line_mm: Array, *, is_closed: bool = False) -> float:
+    """By how much a polygon (n, 2), closed up if it is closed, turns to either side in all, rad."""
+    steps = np.diff(line_mm, axis=0)
+    headings = np.arctan2(steps[:, 1], steps[:, 0])
+    turns = np.diff(headings, append=headings[:is_closed])
+    return float(np.abs(turns - math.tau * np.round(turns / math.tau)).sum())
+
+
 def at_places(line_mm: Array, at: Array) -> Array:
     """Where a polyline is at places between its own, numbered with shares, (n, 2) mm; before its first place
     and beyond its last it is at these.

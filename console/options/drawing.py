@@ -90,8 +90,8 @@ _DRAWING = (
         callback=_colour,
         metavar="COLOUR",
         help="Colour of the line, such as blue or '#0000c0': other colours, such as a printed grid, "
-        "count "
-        "as paper.  [default: all that is dark]",
+        "count as paper; or `dark` or `light`, if the sheet leaves it in doubt.  "
+        "[default: all that is darker than the paper, or lighter than dark paper]",
     ),
     option(
         "Drawing",

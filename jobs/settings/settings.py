@@ -111,8 +111,15 @@ class DrawingFile:
         """The picture as it is read, made flat if it is a photograph, and how well."""
         scale_given = bool(self.scale().given())
         self.flatten.check(scale_given)
-        scan = self._read(listener, coloured=self.ink is not None)
+        scan = self._read(listener, coloured=self._by_colour)
         return self._flattened(scan, scale_given, listener)
+
+    @property
+    def _by_colour(self) -> bool:
+        """Whether an ink is told from others by its colour."""
+        from morfax.tracer.drawing import inks
+
+        return inks.is_colour(self.ink)
 
     def _read(self, listener: Listener, *, coloured: bool) -> Scan:
         """The picture as the file has it; a page full of drawn lines is rendered for a while."""
@@ -142,10 +149,10 @@ class DrawingFile:
             if scale_given:
                 flattening.warn_of_tilt(scan, listener)
             return scan, None
-        if self.ink is None:
+        if not self._by_colour:
             scan = self._read(listener, coloured=True)
         flat, made = flattening.made_flat(scan, wanted, self.flatten.bar_mm, listener)
-        return (flat if self.ink is not None else flattening.in_grey(flat, made)), made
+        return (flat if self._by_colour else flattening.in_grey(flat, made)), made
 
 
 @dataclass(frozen=True, slots=True)

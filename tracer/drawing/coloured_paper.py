@@ -8,8 +8,8 @@ does: the lines would be taken for light ones on dark paper, and the ink left ou
              └────┘    0          blue   ink  60 below the paper of  95   paper: ink is as dark in all of them
 
 On a blueprint the lines are lighter than the paper, and blue is the lightest channel by far: brought up to
-it, red and green would be noise. So what stands out further in the paper's lightest channel has to be darker
-than the paper; a white label can hardly stand out there.
+it, red and green would be noise. So the lines have to be darker than the paper in its lightest channel (see
+`polarity`); a white label can hardly stand out there.
 
 Signals: an image in; levels (768,), 256 for each of red, green and blue, out, or None on paper that is grey,
 white or dark, or bears light lines.
@@ -21,9 +21,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
+
+from morfax.tracer.drawing.polarity import polarity_of
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 SAMPLES = 200  # columns and rows of the pixels that are looked at, at the most
 # grey levels of 255: half; paper whose lightest channel is darker bears light lines
 LIGHT = 128
-ABOUT = SAMPLES // 10  # samples: a tenth of the sheet, across which its light hardly changes
+BROADEST = SAMPLES // 10 - 1  # samples: a tenth of the sheet, no line is broader; an odd number
 EVEN = 0.75  # of its lightest channel, chosen: paper that is hardly yellowed stays as it is
 
 
@@ -44,14 +44,8 @@ def levels_on_white(image: Image) -> list[int] | None:
     paper = np.median(some.reshape(-1, 3), axis=0)
     if paper.max() < LIGHT or paper.min() > EVEN * paper.max() or not paper.all():
         return None
-    if _bears_light_lines(some[:, :, paper.argmax()]):
+    lightest = np.asarray(some[:, :, paper.argmax()], np.float32)
+    if not polarity_of(lightest, BROADEST).is_light:
         return None
     levels = np.arange(256)[:, None] * paper.max() / paper
     return np.minimum(np.rint(levels.T), 255).astype(int).ravel().tolist()
-
-
-def _bears_light_lines(samples: NDArray[np.uint8]) -> bool:
-    """Whether what is lighter than the samples about it stands out further than what is darker."""
-    level = samples.astype(np.float32)
-    relief = level - cv2.blur(level, (ABOUT, ABOUT))
-    return float((relief * relief * relief).sum()) > 0

@@ -42,6 +42,7 @@ from morfax.tracer.drawing.blocks import (
 )
 from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.paper import Paper
+from morfax.tracer.drawing.polarity import Polarity
 from morfax.tracer.drawing.scan import Grey
 
 Darkness = NDArray[np.float32]
@@ -89,11 +90,11 @@ class Contrast:
     blocks: Blocks
 
     @classmethod
-    def of(cls, grey: Grey, pitch_mm: float) -> Contrast:
-        """Find the paper of a picture of a pixel pitch."""
+    def of(cls, grey: Grey, pitch_mm: float, known: Polarity | None = None) -> Contrast:
+        """Find the paper of a picture of a pixel pitch, of a polarity if it is known."""
         by = Paper.by(pitch_mm)
         blocks = Blocks.of(grey, by)
-        level = Paper.of_reduced(blocks.mean, by, grey.shape[1], pitch_mm)
+        level = Paper.of_reduced(blocks.mean, by, grey.shape[1], pitch_mm, known)
         return cls(grey, level, blocks)
 
     def with_shapes(self, ink: float) -> Contrast:

@@ -30,9 +30,10 @@ from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.cleared import cleared
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import deepened, deepened_note
-from morfax.tracer.drawing.levelling import LIGHT_LINES, Levelled, levelled
+from morfax.tracer.drawing.levelling import Levelled, levelled
 from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, measured, within
+from morfax.tracer.drawing.polarity import Polarity
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
@@ -52,13 +53,15 @@ Darkness = NDArray[np.float32]
 
 class Reading(NamedTuple):
     """How a scan is read: the edges of filled shapes alone; printed lines of what kind of paper are left out;
-    or filled shapes as ink, which is as dark as the lines that end at them; or pale lines as ink.
+    or filled shapes as ink, which is as dark as the lines that end at them; or pale lines as ink; lines of a
+    polarity if it is known.
     """
 
     edge: bool = False
     printed: PaperKind = "auto"
     shapes_are_ink: bool = False
     pale_is_ink: bool = False
+    polarity: Polarity | None = None
 
 
 AS_LINES = Reading()
@@ -194,7 +197,7 @@ class Drawing:
         cannot be read.
         """
         wanted = None if ink is None else inks.parsed(ink)
-        scan = raster.read(Path(file), coloured=wanted is not None, dpi=dpi)
+        scan = raster.read(Path(file), coloured=inks.is_colour(ink), dpi=dpi)
         return cls.of(scan, Scale(dpi, width_mm), wanted, Reading(edge))
 
     @classmethod
@@ -202,7 +205,7 @@ class Drawing:
         cls,
         scan: Scan,
         scale: Scale,
-        ink: inks.Colour | None = None,
+        ink: inks.Ink | None = None,
         reading: Reading = AS_LINES,
     ) -> Drawing:
         """Make a drawing of a scan that was opened; in colours where an ink is asked for.
@@ -211,14 +214,12 @@ class Drawing:
         not there.
         """
         pitch = scale.pitches_mm(scan)
-        grey = scan.pixels
-        if ink is not None:
-            colours = np.asarray(scan.pixels, np.uint8)
-            grey = inks.covered(colours, ink, None if reading.edge else pitch[0])
+        grey = inks.grey_of(scan.pixels, ink, None if reading.edge else pitch[0])
         grey = on_square_pixels(grey, pitch)
         notes = (*scan.notes, *scale.notes(scan))
         if reading.edge:
             return cls._of_shapes(scan.file, np.asarray(grey), pitch[0], notes)
+        reading = reading._replace(polarity=inks.polarity_of(ink))
         return cls._of_lines(scan.file, grey, pitch[0], notes, reading)
 
     @classmethod
@@ -245,7 +246,7 @@ class Drawing:
     ) -> Drawing:
         """The lines in grey levels on square pixels."""
         # 1. darkness, without what is printed and the scan's border
-        darkness, shapes, paper_noise, has_shapes, is_light = _levelled(grey, pitch_mm, reading)
+        darkness, shapes, paper_noise, has_shapes, remarks = _levelled(grey, pitch_mm, reading)
         darkness, ink, told = cleared(darkness, pitch_mm, reading.printed, reading.pale_is_ink)
         paper_noise /= ink
         lines, pale_mm = within(darkness, paper_noise), 0.0
@@ -254,7 +255,7 @@ class Drawing:
             notes = (*notes, speckled.note(times, pitch_mm))
             larger = speckled.on_larger_pixels(np.asarray(grey), times)
             return cls._of_lines(file, larger, times * pitch_mm, notes, reading)
-        notes = notes if is_light else (*notes, LIGHT_LINES)
+        notes = (*notes, *remarks)
         # 2. pale lines
         drawn_grain = lines.grain
         is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None
@@ -298,5 +299,5 @@ class Drawing:
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Levelled:
     """The sheet as darkness; a large one as tiles of it."""
     if grey.size >= large.LARGE_PX:
-        return large.levelled(grey, pitch_mm)
-    return levelled(grey, pitch_mm, reading.shapes_are_ink)
+        return large.levelled(grey, pitch_mm, reading.polarity)
+    return levelled(grey, pitch_mm, reading.shapes_are_ink, reading.polarity)

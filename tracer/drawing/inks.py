@@ -19,6 +19,7 @@ through or not; both are mixtures here, right to within the other ink's own dark
 from __future__ import annotations
 
 import math
+from typing import Any, Literal, get_args
 
 import cv2
 import numpy as np
@@ -28,10 +29,13 @@ from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
 from morfax.tracer.drawing.components import strips
 from morfax.tracer.drawing.paper import Paper
+from morfax.tracer.drawing.polarity import Polarity
 from morfax.tracer.effort import FEW_PX
 
 Picture = NDArray[np.uint8]  # rows from the top, columns, channels
 Colour = tuple[int, int, int]
+Tone = Literal["dark", "light"]  # of strokes of any colour
+Ink = Colour | Tone
 
 LEAST = 40.0  # levels from the paper's colour: less is paper
 NEAR = math.radians(18)  # inks whose colours lie in directions as near as this are one
@@ -47,16 +51,39 @@ GREY, WHITE = 200.0, 235.0
 NOISE = 5.0  # levels: a scan's, and what JPEG makes of edges
 
 
-def parsed(text: str) -> Colour:
-    """A colour by its name, or as #rgb or #rrggbb; raises ValueError for another text."""
+def parsed(text: str) -> Ink:
+    """A colour by its name, or as #rgb or #rrggbb, or a tone; raises ValueError for another text."""
     from PIL import ImageColor
 
+    for tone in get_args(Tone):
+        if text.strip().lower() == tone:
+            return tone
     try:
         return ImageColor.getrgb(text.strip())[:3]
     except ValueError:
         raise ValueError(
-            f"{text!r} is no colour; give a name such as blue, or #rrggbb such as #0000c0"
+            f"{text!r} is no colour; give a name such as blue, or #rrggbb such as #0000c0; or dark or light"
         ) from None
+
+
+def is_colour(text: str | None) -> bool:
+    """Whether an ink that is asked for is to be told by its colour, and no tone."""
+    return text is not None and not isinstance(parsed(text), str)
+
+
+def grey_of(pixels: NDArray[Any], ink: Ink | None, pitch_mm: float | None) -> NDArray[Any]:
+    """Grey levels of an ink: covered pixels are dark. Lines of a tone stay as they are.
+
+    Without a pitch shapes are read, which are the dark ones: light ones are made that.
+    """
+    if isinstance(ink, tuple):
+        return covered(np.asarray(pixels, np.uint8), ink, pitch_mm)
+    return 255 - np.asarray(pixels) if ink == "light" and pitch_mm is None else pixels
+
+
+def polarity_of(ink: Ink | None) -> Polarity | None:
+    """Whether the grey levels of an ink are darker than paper; None if no ink is asked for."""
+    return None if ink is None else Polarity(ink != "light")
 
 
 def covered(

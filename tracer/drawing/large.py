@@ -37,6 +37,7 @@ from morfax.tracer.drawing.levelling import Levelled
 from morfax.tracer.drawing.memory import make_sure_of_ink
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.paper_noise import paper_noise
+from morfax.tracer.drawing.polarity import Polarity
 from morfax.tracer.drawing.tiles import PAPER, TILE_PX, Tiles
 from morfax.tracer.effort import FEW_PX
 
@@ -61,15 +62,15 @@ class _Look:
     every: int
 
 
-def levelled(grey: Any, pitch_mm: float) -> Levelled:
-    """Darkness of a grey picture whose rows can be read: paper 0, the strokes 1; filled shapes; and the noise
-    of the paper.
+def levelled(grey: Any, pitch_mm: float, known: Polarity | None = None) -> Levelled:
+    """Darkness of a grey picture whose rows can be read, of a polarity if it is known: paper 0, the strokes
+    1; filled shapes; and the noise of the paper.
 
     Raises DrawingFault if nothing is long and dark enough to be a line, or the ink does not fit into memory.
     """
     by = Paper.by(pitch_mm)
     look = _look(grey, by)
-    paper = Paper.of_reduced(look.reduced, by, grey.shape[1], pitch_mm)
+    paper = Paper.of_reduced(look.reduced, by, grey.shape[1], pitch_mm, known)
     sample = _sample(look, paper)
     centre, darker = (float(v) for v in np.percentile(sample, [MIDDLE, ONE_ABOVE]))
     noise = darker - centre  # by the darker ones: scanners clip the white
@@ -83,7 +84,7 @@ def levelled(grey: Any, pitch_mm: float) -> Levelled:
     noise_of_paper = paper_noise(sample / np.float32(ink))
     shapes = paper.shapes(ink)
     kept, has_shapes = replace(tiles, unit=1 / ink), bool(shapes.any())
-    return Levelled(kept, shapes, noise_of_paper, has_shapes, paper.is_light)
+    return Levelled(kept, shapes, noise_of_paper, has_shapes, paper.polarity.notes)
 
 
 def _look(grey: Any, by: int) -> _Look:

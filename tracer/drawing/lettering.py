@@ -36,6 +36,11 @@ NARROW = 0.85
 
 def lettering(sheet: Sheet) -> set[int]:
     """The patches that are likely letters."""
+    return set(sheet.once(_letters))
+
+
+def _letters(sheet: Sheet) -> set[int]:
+    """The same, of a sheet of which it was not asked before."""
     pitch_mm = sheet.drawing.pitch_mm
     boxes_mm = np.asarray(sheet.patches.boxes, float) * pitch_mm
     heights_mm = boxes_mm[:, 1] - boxes_mm[:, 0]

@@ -32,6 +32,7 @@ from morfax.tracer.drawing.contrast import (
 )
 from morfax.tracer.drawing.memory import SHEET_BYTES, give_back
 from morfax.tracer.drawing.paper_noise import every_px, paper_noise
+from morfax.tracer.drawing.polarity import Polarity
 from morfax.tracer.drawing.scan import Grey
 from morfax.tracer.drawing.tiles import Tiles
 from morfax.tracer.effort import FEW_PX
@@ -39,10 +40,6 @@ from morfax.tracer.effort import FEW_PX
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 # of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen
 STEP = 0.1
-LIGHT_LINES = (
-    "the lines that are followed are lighter than the sheet about them; if yours are the dark ones, name"
-    " their colour, such as --ink black"
-)
 
 Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
@@ -51,21 +48,23 @@ Shapes = NDArray[np.bool_]
 class Levelled(NamedTuple):
     """A sheet as darkness, paper 0, the strokes 1, or tiles of it; where filled shapes are that are no ink,
     on a picture reduced by a whole number; the noise of the paper; whether there are filled shapes; and
-    whether the strokes are darker than the paper.
+    what there is to tell of its polarity.
     """
 
     darkness: Darkness | Tiles
     shapes: Shapes
     paper_noise: float
     has_shapes: bool
-    is_light: bool
+    notes: tuple[str, ...]
 
 
-def levelled(grey: Grey, pitch_mm: float, shapes_are_ink: bool = False) -> Levelled:
-    """Darkness of a grey picture (0..255). Raises DrawingFault if nothing is long and dark enough to be a
-    line.
+def levelled(
+    grey: Grey, pitch_mm: float, shapes_are_ink: bool = False, known: Polarity | None = None
+) -> Levelled:
+    """Darkness of a grey picture (0..255), of a polarity if it is known. Raises DrawingFault if nothing is
+    long and dark enough to be a line.
     """
-    contrast = _in_even_light(Contrast.of(grey, pitch_mm), pitch_mm)
+    contrast = _in_even_light(Contrast.of(grey, pitch_mm, known), pitch_mm)
     ink, everywhere = _ink_contrast(contrast, pitch_mm)
     shapes = contrast.paper.shapes(ink)
     has_shapes = bool(shapes.any())
@@ -74,7 +73,12 @@ def levelled(grey: Grey, pitch_mm: float, shapes_are_ink: bool = False) -> Level
         shapes = contrast.paper.shapes(ink)
     every = every_px(grey.size)
     sample = contrast.pixels(every) if everywhere is None else everywhere[::every, ::every]
-    told = shapes, paper_noise(sample / np.float32(ink)), has_shapes, contrast.paper.is_light
+    told = (
+        shapes,
+        paper_noise(sample / np.float32(ink)),
+        has_shapes,
+        contrast.paper.polarity.notes,
+    )
     if everywhere is None:
         return Levelled(contrast.darkness(ink), *told)
     if everywhere.nbytes > SHEET_BYTES:
@@ -115,7 +119,7 @@ def _lit(contrast: Contrast, light: Darkness, white: float, pitch_mm: float) -> 
         at = block[row], column // by
         light_there[row, column] = np.clip(seen[row, column] / white, low[at], high[at])
         lit[top:bottom] = np.clip(np.rint(cv2.divide(seen, light_there)), 0, 255)
-    return Contrast.of(lit, pitch_mm)
+    return Contrast.of(lit, pitch_mm, contrast.paper.polarity)
 
 
 def _ink_contrast(contrast: Contrast, pitch_mm: float) -> tuple[float, Darkness | None]:

@@ -3,10 +3,7 @@
 Signals: a grey picture (0..255), or a channel of a coloured one, in; the paper's level at every pixel out.
 
 The paper is the picture with its dark strokes narrower than a few mm closed (a grey closing), smoothed.
-Whether the strokes are dark on light or light on dark is read off the skew of the grey levels about their
-local mean: strokes are the smaller part, so they stand out further. Bold outlines are no smaller part of what
-is about them, and a picture may hold light and dark strokes: where neither stands out clearly, what takes
-most of the sheet is its paper, and light lines are only believed on dark paper.
+Whether the strokes are dark on light or light on dark tells `polarity`.
 
 Source: our own; the patent takes the drawing for granted.
 """
@@ -20,9 +17,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import median
 from morfax.tracer.drawing.blocks import Blocks
 from morfax.tracer.drawing.lighting import Lighting, from_beside
+from morfax.tracer.drawing.polarity import Polarity, polarity_of
 
 WIDEST_STROKE_MM = 6.0  # broader dark areas count as paper that is dark
 SHAPE = 0.6  # of the ink's contrast: paper that is darker by so much is no shadow
@@ -30,8 +27,7 @@ SHARP_MM = 1.5  # a shape's edge is no broader, most shadows' are; by trial
 DARK = 0.5  # of the ink's contrast: what is darker than the paper by more is ink
 BLACK = 0.8  # of the ink's contrast: a paler area is a panel, or in shadow; by trial
 ALIKE = 0.02  # of the ink's contrast: levels that differ by less are one
-# skew of two levels of which one takes a quarter of the sheet: strokes take less of it
-CLEAR = 1.155
+CROSSED = math.sqrt(2)  # of a stroke's width: as broad is the place where two of them cross
 FEW = 0.01  # of a spot: so little bare paper in it tells no level
 REDUCED_PITCH_MM = 0.34  # the paper is estimated on a picture reduced to this, by 4 at least
 
@@ -50,7 +46,7 @@ class Paper:
     closed: Levels
     by_px: int
     columns: int
-    is_light: bool
+    polarity: Polarity
     pitch_mm: float
 
     @classmethod
@@ -65,13 +61,25 @@ class Paper:
         return max(4, round(REDUCED_PITCH_MM / pitch_mm))
 
     @classmethod
-    def of_reduced(cls, small: Levels, by: int, columns: int, pitch_mm: float) -> Paper:
-        """The paper of a picture of so many columns that was reduced already."""
+    def of_reduced(
+        cls,
+        small: Levels,
+        by: int,
+        columns: int,
+        pitch_mm: float,
+        known: Polarity | None = None,
+    ) -> Paper:
+        """The paper of a picture of so many columns that was reduced already; its polarity may be known."""
         across = _stroke_px(by, pitch_mm)
-        is_light = _is_light(small, across)
-        level = _closed(small, is_light, across)
+        polarity = known or polarity_of(small, 2 * round(CROSSED * across / 2) + 1)
+        level = _closed(small, polarity.is_light, across)
         smooth = np.asarray(cv2.GaussianBlur(level, (0, 0), across / 2), np.float32)
-        return cls(smooth, level, by, columns, is_light, by * pitch_mm)
+        return cls(smooth, level, by, columns, polarity, by * pitch_mm)
+
+    @property
+    def is_light(self) -> bool:
+        """Whether it is lighter than the strokes."""
+        return self.polarity.is_light
 
     def rows(self, top: int, bottom: int) -> Levels:
         """The paper of some rows of the picture."""
@@ -152,17 +160,6 @@ class Paper:
         among = cv2.GaussianBlur(weights, (0, 0), spot)
         level = cv2.GaussianBlur(weights * small, (0, 0), spot) / np.maximum(among, FEW)
         return np.asarray(np.where(among > FEW, level, about), np.float32)
-
-
-def _is_light(small: Levels, across: int) -> bool:
-    """Whether the paper of a reduced picture is lighter than its strokes, of which none is broader."""
-    relief = small - cv2.blur(small, (across, across))
-    # strokes take less room than paper: the few stand out further
-    third = float((relief * relief * relief).sum())
-    if third <= 0:
-        return True
-    is_clear = third * math.sqrt(relief.size) >= CLEAR * float((relief * relief).sum()) ** 1.5
-    return not is_clear and median(small.ravel()) > float(small.mean())
 
 
 def _stroke_px(by: int, pitch_mm: float) -> int:

@@ -24,7 +24,7 @@ from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import FRINGE_PX, INK, SOFTENED_PX, Mask
 from morfax.tracer.drawing.depth import depth_px
 from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
-from morfax.tracer.drawing.inks import Colour, covered
+from morfax.tracer.drawing.inks import Ink, grey_of
 from morfax.tracer.drawing.lengths import ONE_PEN
 from morfax.tracer.drawing.paper import disc
 from morfax.tracer.drawing.ruling import PaperKind
@@ -42,14 +42,12 @@ MOSTLY_SHAPES = (
 )
 
 
-def drawing_of_both(scan: Scan, scale: Scale, ink: Colour | None = None) -> Drawing:
+def drawing_of_both(scan: Scan, scale: Scale, ink: Ink | None = None) -> Drawing:
     """Read a scan for its lines and its solid areas; raises DrawingFault for a missing scale, and without
     anything that is darker than paper.
     """
     pitch_mm, pitch_down_mm = scale.pitches_mm(scan)
-    grey = scan.pixels
-    if ink is not None:
-        grey = covered(np.asarray(scan.pixels, np.uint8), ink, None)
+    grey = grey_of(scan.pixels, ink, None)
     grey = on_square_pixels(grey, (pitch_mm, pitch_down_mm))
     darkness = shade_of(grey, pitch_mm)
     notes = (*scan.notes, *scale.notes(scan))
@@ -60,7 +58,7 @@ def drawing_of_both(scan: Scan, scale: Scale, ink: Colour | None = None) -> Draw
 
 
 def drawing_of_all_ink(
-    scan: Scan, scale: Scale, ink: Colour | None, printed: PaperKind
+    scan: Scan, scale: Scale, ink: Ink | None, printed: PaperKind
 ) -> Drawing:
     """Read a scan of lines for all its ink; filled shapes among lines are ink, too, if there are lines.
 

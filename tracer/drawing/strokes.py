@@ -13,9 +13,10 @@ Source: patent ES 361967 leaves the choice of the line to the operator, who brin
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,7 @@ from morfax.tracer.drawing.paper import disc
 from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]
+Answer = TypeVar("Answer")
 Window = tuple[int, int, int, int]  # first row and column, row and column after the last
 
 TILE_PX = 2048  # the places of a line come tile by tile, so that its size decides where the head begins
@@ -90,6 +92,10 @@ class Sheet:
     bare_rings: bool = False  # rings are, whatever the line from them leads to
     taken: frozenset[int] = frozenset()
     _known: dict[int, Stroke] = field(default_factory=dict, repr=False, compare=False)
+    # what was asked of all its patches, and whether rings are bare: the same whatever the window or is taken
+    _asked: dict[tuple[Callable[[Sheet], Any], bool], Any] = field(
+        default_factory=dict, repr=False, compare=False
+    )
     # what the cells see of it through the aperture that was asked for last (see `plain_places.view_of`)
     seen: dict[float, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -113,10 +119,24 @@ class Sheet:
             )
         return sheet
 
-    @cached_property
+    @property
     def told(self) -> Told:
         """Lengths and widths of the patches as lines, mm, as a reader is told them."""
-        return told(self)
+        return self.once(told)
+
+    def once(self, ask: Callable[[Sheet], Answer]) -> Answer:
+        """What is asked of all patches; asked once of a sheet, with any window, and with any lines taken."""
+        asked = ask, self.bare_rings
+        if asked not in self._asked:
+            self._asked[asked] = ask(self)
+        answer: Answer = self._asked[asked]
+        return answer
+
+    def counting(self, lengths_mm: Array, told_lengths_mm: Array) -> Sheet:
+        """The sheet on which the patches have other lengths, and others are told of them."""
+        counted = replace(self, lengths_mm=lengths_mm, _known={}, _asked={})
+        counted._asked[told, self.bare_rings] = self.told._replace(lengths_mm=told_lengths_mm)
+        return counted
 
     def about(self, patch: int, around_mm: float) -> Sheet:
         """The sheet with a window about a patch; itself if that is no small part of it."""

@@ -121,7 +121,7 @@ class Carriage:
         """
         if self.count > 1:  # a run that is taken up again
             return True
-        stations, tuning = tuned_along(view), self.tuning._replace(lead_mm=0.0)
+        stations, tuning = tuned_along(view), self.tuning._replace(lead_mm=0.0, square=False)
         states = two_of(self.state)
         states[0].lead_mm = states[0].middle_mm = 0.0
         off_mm = CALIBRATED_ASIDE * view.width_mm

@@ -95,19 +95,6 @@ class Trail:
             self._boxes[self._boxed : full, 2:] = groups.max(axis=1)
             self._boxed = full
 
-    def _within(self, low: Array, high: Array, count: int) -> Array:
-        """The first `count` places of those that lie within a corner (x, y) and another, in their order."""
-        boxes = self._boxes[: self._boxed]
-        meets = np.all((boxes[:, :2] < high) & (boxes[:, 2:] > low), axis=1)
-        numbers = np.append(
-            np.flatnonzero(meets), self._boxed
-        )  # and the places beyond all boxes
-        parts = [
-            self._places[n * BOXED : min((n + 1) * BOXED, count)] for n in numbers.tolist()
-        ]
-        near = np.vstack([part for part in parts if len(part)] or [np.empty((0, 2))])
-        return np.asarray(near[np.all((near > low) & (near < high), axis=1)])
-
     def places(self) -> Array:
         """All places so far, (n, 2)."""
         return self._places[: self._count].copy()
@@ -140,15 +127,9 @@ class Trail:
 
     def holds(self, leg: Leg, width_mm: float) -> bool:
         """Whether the beginning of a leg has been followed already, in either sense."""
-        # 1. the places of the trail about the leg's first third
-        before = max(0, self._count - round(PIECE_MM / self.step_mm))
-        first = leg.seen[: max(3, len(leg.seen) // 3), :2]
-        low, high = first.min(axis=0) - width_mm, first.max(axis=0) + width_mm
-        old = self._within(low, high, before)
-        if not len(old):
-            return False
-        # 2. how many of the leg's places are on them
-        near = [np.min(np.hypot(*(old - place).T)) < NEAR * width_mm for place in first]
+        first = np.array(leg.seen[: max(3, len(leg.seen) // 3), :2])
+        near = np.zeros(len(first), np.bool_)
+        come_near(self.marks(0), first, float(width_mm), near)
         return bool(np.mean(near) > MOSTLY)
 
 
@@ -212,3 +193,31 @@ def is_near_itself(marks, width_mm):  # type: ignore[no-untyped-def]
             return True
         k += 1
     return False
+
+
+@njit(cache=True, _nrt=False)
+def come_near(marks, places, width_mm, near):  # type: ignore[no-untyped-def]
+    """Note to which of some places (n, 2) the trail came near, but for its newest piece."""
+    trail, boxes, near_mm = marks.places, marks.boxes, NEAR * width_mm
+    left, low, right, high = math.inf, math.inf, -math.inf, -math.inf
+    for i in range(len(places)):
+        left, right = min(left, places[i, 0] - width_mm), max(right, places[i, 0] + width_mm)
+        low, high = min(low, places[i, 1] - width_mm), max(high, places[i, 1] + width_mm)
+    k, end = 0, marks.marked[0] - round(PIECE_MM / marks.step_mm)
+    while k < end:
+        box = k // BOXED
+        # 1. a box that is far away
+        if box < marks.boxed and not (
+            boxes[box, 0] < right
+            and boxes[box, 1] < high
+            and boxes[box, 2] > left
+            and boxes[box, 3] > low
+        ):
+            k = (box + 1) * BOXED
+            continue
+        # 2. the places in it
+        if left < trail[k, 0] < right and low < trail[k, 1] < high:
+            for i in range(len(places)):
+                away_mm = math.hypot(trail[k, 0] - places[i, 0], trail[k, 1] - places[i, 1])
+                near[i] |= away_mm < near_mm
+        k += 1

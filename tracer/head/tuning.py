@@ -124,7 +124,7 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         drive_gain=settings.drive.gain(1 / rate_hz),
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
         steering_gain=_steering_gain(settings.steering_lag_s, rate_hz),
-        square=False,
+        square=view.square,
         direct_rad_s_mm=settings.direct_rad_s_mm,
         cell_gain=settings.cell_gain,
         detector_gain=settings.detector_gain,

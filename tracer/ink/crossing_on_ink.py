@@ -37,6 +37,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.plane import direction, meeting
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.head.course import on_ink
+from morfax.tracer.ink.astray import astray
 from morfax.tracer.ink.crossing_ink import REACH, CrossingInk, WaysOn, ended_mm
 from morfax.tracer.ink.exchanges import Pairs, exchanges
 from morfax.tracer.ink.partners import (
@@ -111,10 +112,11 @@ class AsDrawn:
 
     @cached_property
     def cost(self) -> float:
-        """What is wrong in all, and the price of its corners and of lines that end in it, widths²."""
+        """What is wrong in all, and the price of its corners, also astray, and of lines that end, widths²."""
         pairs, corners = self.crossing.solution
         effort = float(sum(map(len, corners.values())))
         effort += STROKE * (len(self.crossing.legs) - 2 * len(pairs))
+        effort += astray(self.crossing)
         return self.ink.left(self._wrong) + VERTEX * effort
 
 
@@ -171,13 +173,12 @@ def _straightest(now: AsDrawn, told: WaysOn) -> WaysOn:
         return told
     costs = turnings(crossing.legs, crossing.width_mm, crossing.views[0])
     alone = without_partner(told.pairs, len(crossing.legs))
-    if len(alone) > 1:
-        joined = likeliest(costs[np.ix_(alone, alone)], TRIED)
-        more = [tuple((alone[a], alone[b]) for a, b in pairs) for pairs in joined]
-        ways = [tuple(sorted((*told.pairs, *pairs))) for pairs in more if pairs]
-    elif any(crossing.turnings_rad[pair] > PLAIN for pair in told.pairs):
-        ways = [told.pairs, *likeliest(costs, TRIED)]
-    else:
+    joined = likeliest(costs[np.ix_(alone, alone)], TRIED)
+    more = [tuple((alone[a], alone[b]) for a, b in pairs) for pairs in joined]
+    ways = [tuple(sorted((*told.pairs, *pairs))) for pairs in more if pairs]
+    if any(crossing.turnings_rad[pair] > PLAIN for pair in told.pairs):
+        ways += [told.pairs, *likeliest(costs, TRIED)]
+    if not ways:
         return told
     others = [_cornered(crossing, pairs, ink, costs) for pairs in dict.fromkeys(ways)]
     tried = [AsDrawn(crossing.as_drawn(drawn), ink) for drawn in others if drawn is not None]
@@ -266,7 +267,9 @@ def _cornered(
         if not drawn.corners:
             return drawn
         tried.append(AsDrawn(crossing.as_drawn(ink.settled(crossing, drawn)), ink))
-    some = (min(tried, key=lambda each: each.cost) if has_far else tried[0]).crossing
+        if astray(tried[-1].crossing) > 1:
+            tried.append(AsDrawn(crossing.as_drawn(drawn), ink))
+    some = min(tried, key=lambda each: each.cost).crossing
     corners = some.solution.corners
     ways = [way for pair, way in zip(pairs, some.ways_mm, strict=True) if pair in corners]
     is_inked = all(on_ink(crossing.views[0], [way]) for way in ways)

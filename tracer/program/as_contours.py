@@ -69,7 +69,8 @@ def as_contours(setup: Setup, lines: Sequence[Line]) -> tuple[list[Line], list[U
         bars: list[Unexplained] | None = None
         if patch in numbers:
             bars = _broken_at(setup.sheet, strokes, width_mm)
-            if bars is not None or _is_folded(strokes):
+            may_close = bars is not None and not _has_free_end(setup.sheet, strokes, width_mm)
+            if may_close or _is_folded(strokes):
                 line = _contour(setup, numbers[patch], strokes)
         if line is not None:
             kept.append(line)
@@ -99,13 +100,10 @@ def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> list[Unexp
     others lie within bars, or go from side to side of one. None if they are no such line.
     """
     # 1. what makes up the line, and the others
-    least_mm = OTHERS * strokes[0].length_mm
-    parts, others = list[Line](), list[Line]()
-    for stroke in strokes:
-        is_part = stroke.ending == "closed" or stroke.length_mm > least_mm
-        (parts if is_part else others).append(stroke)
+    parts, others = _parts_and_others(strokes)
     others_mm = sum(stroke.length_mm for stroke in others)
-    if len(strokes) == 1 or len(parts) > MOST_PARTS or others_mm > least_mm:
+    too_much = others_mm > OTHERS * strokes[0].length_mm
+    if len(strokes) == 1 or len(parts) > MOST_PARTS or too_much:
         return None
     # 2. the bars that the others lie within, or in which the parts end
     end_mm, short_mm = END * width_mm, THICK[1] * width_mm
@@ -119,6 +117,35 @@ def _broken_at(sheet: Sheet, strokes: list[Line], width_mm: float) -> list[Unexp
     slim = [each.places_mm for each in others if each.width_mm < THICK[0] * width_mm]
     may_be = bars_along(sheet, slim, width_mm)
     return thick if all(bar.is_thick or bar.long_mm < short_mm for bar in may_be) else None
+
+
+def _parts_and_others(strokes: list[Line]) -> tuple[list[Line], list[Line]]:
+    """The strokes that may make up a closed line, and the others."""
+    least_mm = OTHERS * strokes[0].length_mm
+    parts, others = list[Line](), list[Line]()
+    for stroke in strokes:
+        is_part = stroke.ending == "closed" or stroke.length_mm > least_mm
+        (parts if is_part else others).append(stroke)
+    return parts, others
+
+
+def _has_free_end(sheet: Sheet, strokes: list[Line], width_mm: float) -> bool:
+    """Whether one of the strokes that may make up a closed line ends on bare paper: in no bar, and beside no
+    line. A closed line would leave it out.
+    """
+    end_mm, near_mm = END * width_mm, NARROW * width_mm
+    for part in _parts_and_others(strokes)[0]:
+        others = [stroke.places_mm for stroke in strokes if stroke is not part]
+        ways = (part.places_mm, part.places_mm[::-1]) if part.ending != "closed" else ()
+        for way in ways:
+            end, further = np.split(way, [len(_up_to(way, end_mm))])
+            lines_mm = np.vstack([further, *others])
+            is_beside = len(lines_mm) and nearest_mm(end[:1], lines_mm)[0] < near_mm
+            if not is_beside and not any(
+                bar.is_thick for bar in bars_along(sheet, [end], width_mm)
+            ):
+                return True
+    return False
 
 
 def _up_to(way: Array, length_mm: float) -> Array:

@@ -27,6 +27,7 @@ from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.ledger import balance
 from morfax.tracer.ink.left_out import InkLeft, ink_left
 from morfax.tracer.ink.put_down_again import put_down_again
+from morfax.tracer.ink.ring import stroke_round
 from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.struck_off import struck_off
@@ -150,7 +151,8 @@ def _strokes(
             progress(SOLVED * all_mm + (1 - SOLVED) * come_mm, all_mm)
 
     for chain in junctions.chains():
-        stroke = stroke_along(chain, junctions, settings, told)
+        stroke = stroke_round(chain, junctions, settings, told)
+        stroke = stroke or stroke_along(chain, junctions, settings, told)
         before_mm += stroke.length_mm
         told(0.0)
         yield stroke

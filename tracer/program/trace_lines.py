@@ -235,9 +235,10 @@ def _joined(
             line = lines[n]  # not one that was never begun
             here = kept_off(setup, taken - {contour.stroke.patch})
             others, more_mm = joined_to(line, contour, here, strokes.get(contour.number))
-            lines[n], *told = within_own_rims(here, contour.stroke.patch, [line, *others])
-            if lines[n] is not line:
-                others, more_mm = told, 0.0
+            found = [line, *others]
+            told = within_own_rims(here, contour.stroke.patch, found)
+            if told is not found:
+                (lines[n], *others), more_mm = told, 0.0
             joined += [(other, contour.number) for other in others]
             left_mm += more_mm
     begins_mm = references_of(lines)

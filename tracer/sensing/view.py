@@ -73,7 +73,7 @@ class View:
     times as large as on the drawing. `on_edge`: it is the edge of a filled shape, dark to one side, and the
     width is that of a line which would be as fine. `parted`: so many of the sheet's pixels lie side by side
     in one of the scan's. `grainy`: the ink is that of a pencil or a dry pen, seen through a slit. `others` is
-    the ink of other lines.
+    the ink of other lines. `square`: the cell's sweep stands square to bends, and not to the heading.
     """
 
     cells: Cells
@@ -84,6 +84,7 @@ class View:
     parted: int = 1
     grainy: bool = False
     others: OtherInk | None = None
+    square: bool = False
 
     @property
     def pitch_mm(self) -> float:

@@ -145,6 +145,10 @@ class SeenInk(NamedTuple):
         left = float(np.sum(wrong**2)) - self.noise
         return left * self.area_mm2 / self.width_mm**2
 
+    def left_at(self, wrong: Array) -> Array:
+        """The same at each place (n,), with what noise leaves."""
+        return np.asarray(wrong**2 * self.area_mm2 / self.width_mm**2)
+
     def holds(self, way: Array) -> bool:
         """Whether a way (m, 2) mm lies on ink all along: beyond the places seen nothing costs it."""
         dark, off_mm = self.places_mm[self.darkness > INK], CLEAR_WIDTHS * self.width_mm

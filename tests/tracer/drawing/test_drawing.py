@@ -12,7 +12,7 @@ from PIL import Image
 from morfax.motion.faults import DrawingFault, FileFault
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.levelling import LIGHT_LINES
+from morfax.tracer.drawing.polarity import LIGHT_LINES
 from tests.tracer.drawing.images import DPI, PEN_MM, Grey, off_the_line_mm, opened
 from tests.tracer.inked import UM
 

@@ -6,7 +6,8 @@ import copy
 
 import numpy as np
 
-from morfax.tracer.head.trail import BOXED, ROOM, Trail
+from morfax.tracer.head.trail import BOXED, ROOM, Trail, come_near
+from morfax.tracer.limits import NEAR, PIECE_MM
 
 STEP_MM = 0.03
 
@@ -45,3 +46,19 @@ def test_a_copy_of_a_copy_takes_no_more_than_its_places() -> None:
     sets = trail.places()[: trail._boxed * BOXED].reshape(-1, BOXED, 2)
     assert np.array_equal(trail._boxes[: trail._boxed, :2], sets.min(axis=1))
     assert np.array_equal(trail._boxes[: trail._boxed, 2:], sets.max(axis=1))
+
+
+def test_the_kernel_notes_the_places_near_to_which_the_trail_came() -> None:
+    """As numpy does, place by place, on a trail of many boxes that crosses itself; not its newest piece."""
+    rng = np.random.default_rng(2)
+    trail = Trail(np.zeros(2), STEP_MM)
+    trail.add(np.cumsum(rng.normal(0, 0.02, (60_000, 2)), axis=0))
+    ways, marks = trail.places(), trail.marks(0)
+    before = ways[: len(ways) - round(PIECE_MM / STEP_MM)]
+    for width_mm in (0.2, 0.6):
+        for place in ways[rng.integers(0, len(ways), 30)]:
+            leg = place + rng.uniform(-1, 1, (9, 2))
+            near = np.zeros(len(leg), np.bool_)
+            come_near(marks, leg, width_mm, near)
+            away = np.hypot(*(before[:, None] - leg).transpose(2, 0, 1)).min(axis=0)
+            assert np.array_equal(near, away < NEAR * width_mm)

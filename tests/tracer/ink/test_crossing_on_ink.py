@@ -96,6 +96,30 @@ def test_lines_exchange_their_partners_until_they_explain_their_ink(
     assert max(each_by_a_stroke(CROWDS[crowd], seed)) < OFF_MM
 
 
+# a corner that the ink tells badly: in that of another corner, and at the side of a line
+DEEP = {
+    "corners": [
+        polyline((14.2, 27.34), (19.74, 19.87), (12.92, 14.82)),
+        polyline((5, 20.3), (20.29, 20.3), (20.29, 7.7)),
+    ],
+    "beside": [
+        polyline((30.26, 3.58), (15.7, 27.74)),
+        polyline((21.68, 3.31), (19.85, 19.93), (3.64, 18.14)),
+    ],
+}
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3])
+@pytest.mark.parametrize("crowd", DEEP)
+def test_a_corner_deep_in_others_ink_lies_where_its_legs_lead(crowd: str, seed: int) -> None:
+    """Its place is the legs' to tell: two corners exchanged a side each, and one lay 0.2 mm aside of its leg,
+    where the ink was explained as well.
+    """
+    one, other = DEEP[crowd]
+    shift = np.random.default_rng(seed).uniform(-0.05, 0.05, 2)
+    assert max(each_by_a_stroke([one, other + shift], seed)) < OFF_MM
+
+
 def test_where_lines_end_in_ink_is_asked_once_of_each_way_to_go_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from morfax.motion.polyline import area_mm2, length_mm
+from morfax.motion.polyline import area_mm2, closed_up, length_mm, nearest_mm, with_places
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.ink import rim as rim_module
@@ -77,6 +77,107 @@ def test_a_corner_towards_the_ink_is_sharp() -> None:
     assert off_mm.min() == pytest.approx(0.0, abs=1 * UM)
     beside = np.minimum(np.abs(way[:, 0] - 0.25), np.abs(way[:, 1] - 0.25))
     assert beside.max() < 1 * UM
+
+
+def square_rim(begin: int) -> Rim:
+    """The rim of a hole of 4 mm in ink, felt every 0.05 mm from some place on: its corners turn right."""
+    side = np.arange(0.025, 4.0, 0.05)
+    low, high = np.zeros(len(side)), np.full(len(side), 4.0)
+    places = np.vstack(
+        [
+            np.column_stack(each)
+            for each in ((low, side), (side, high), (high, side[::-1]), (side[::-1], low))
+        ]
+    )
+    headings = np.repeat(np.array([0.5, 0.0, -0.5, -1.0]) * math.pi, len(side))
+    bends = np.zeros(len(places))
+    for k in range(4):
+        at = k * len(side) + np.arange(-2, 2)  # parabolas turn it over four places
+        headings[at] += np.array([-0.1, -0.2, 0.2, 0.1]) * math.pi
+        bends[at] = -8.0
+    return Rim(*(np.roll(each, -begin, axis=0) for each in (places, headings, bends)))
+
+
+@pytest.mark.parametrize("begin", [0, 1, 2, 5, 40, 79])
+def test_a_corner_at_which_the_rim_begins_is_as_sharp_as_any(begin: int) -> None:
+    """All four corners of the way half a pen's width beyond a hole; one was left round by 0.1 mm."""
+    way = square_rim(begin).way(HALF_MM)
+    for corner in ((-0.25, -0.25), (4.25, -0.25), (4.25, 4.25), (-0.25, 4.25)):
+        assert np.hypot(*(way - corner).T).min() < 1 * UM
+
+
+def test_a_corner_beyond_the_place_behind_it_is_none() -> None:
+    """A speck beside a straight rim turned it to the left, and then further: the lines through both meet
+    further on.
+    """
+    way = np.column_stack([np.arange(8.0), np.zeros(8)])
+    headings = np.zeros(8)
+    headings[2], headings[4] = math.radians(45), math.radians(60)
+    assert np.array_equal(rim_module._mitred(way, headings, np.array([[2, 4]]), 99.0), way)
+
+
+def test_corners_that_are_nearer_than_a_mitre_are_both_sharp() -> None:
+    """A slot in the ink of 0.3 mm: what bends the parabolas at one of its corners comes up to the other."""
+    at = np.arange(0.025, 6.0, 0.05)
+    end = np.arange(0.025, 0.3, 0.05)
+    places = np.vstack(
+        [
+            np.column_stack([np.zeros(len(at)), at]),
+            np.column_stack([end, np.full(len(end), 6.0)]),
+            np.column_stack([np.full(len(at), 0.3), at[::-1]]),
+            np.column_stack([end[::-1], np.zeros(len(end))]),
+        ]
+    )
+    counts = (len(at), len(end), len(at), len(end))
+    headings = np.repeat(np.array([0.5, 0.0, -0.5, -1.0]) * math.pi, counts)
+    bends = np.zeros(len(places))
+    for first in np.cumsum((0, *counts[:3])):
+        bends[[first - 2, first - 1, first, first + 1]] = -8.0
+    way = Rim(places, headings, bends).way(HALF_MM)
+    for corner in ((-0.25, -0.25), (0.55, -0.25), (0.55, 6.25), (-0.25, 6.25)):
+        assert np.hypot(*(way - corner).T).min() < 1 * UM
+
+
+@pytest.mark.parametrize("is_sharp", [True, False])
+def test_a_corner_is_as_its_ink_has_it(is_sharp: bool) -> None:
+    """The ink of a pen that drew it sharp, or round the rim's own corner."""
+    corners = square_rim(0).corners(HALF_MM)
+    drawn = corners.mitred() if is_sharp else corners.way
+    about = np.stack(np.meshgrid(np.arange(-1, 5.01, 0.05), np.arange(-1, 5.01, 0.05)), axis=-1)
+    places = about.reshape(-1, 2)
+
+    def is_dark(way: Points) -> Points:
+        return nearest_mm(places, with_places(way, 0.02)) < HALF_MM
+
+    def left(way: Points) -> Points:
+        return np.asarray(
+            (is_dark(way) != is_dark(closed_up(drawn))) * 0.05**2 / (2 * HALF_MM) ** 2
+        )
+
+    assert np.array_equal(corners.likest(places, left, 0.75), drawn)
+
+
+def test_corners_into_which_noise_broke_one_are_that_one_where_the_ink_has_it() -> None:
+    """An acute corner whose parabolas turn back between: three mitres are none of it; one is."""
+    whole = square_rim(40).corners(HALF_MM)
+    first, last = whole.at[0].tolist()
+    middle, headings = (first + last) // 2, whole.headings_rad.copy()
+    headings[middle - 1 : middle + 1] += 1.2
+    broken = whole._replace(
+        headings_rad=headings,
+        at=np.vstack([[(first, middle), (middle - 1, last)], whole.at[1:]]),
+    )
+    places = np.stack(np.meshgrid(*2 * [np.arange(-1, 5.01, 0.05)]), axis=-1).reshape(-1, 2)
+
+    def left(way: Points) -> Points:
+        away_mm = (nearest_mm(places, with_places(each, 0.02)) for each in (way, truth))
+        drawn, seen = (each < HALF_MM for each in away_mm)
+        return np.asarray((drawn != seen) * 0.05**2 / (2 * HALF_MM) ** 2)
+
+    truth = closed_up(whole.mitred())
+    off_mm = nearest_mm(broken.likest(places, left, 0.75), with_places(truth, 0.005))
+    assert off_mm.max() < 5 * UM
+    assert nearest_mm(broken.mitred(), with_places(truth, 0.005)).max() > 20 * UM
 
 
 def test_the_rim_of_a_thin_line_is_felt_on_a_coarse_scan() -> None:

@@ -57,6 +57,20 @@ def test_a_tick_and_a_bar_from_side_to_side_stay_strokes() -> None:
     assert lengths_mm == pytest.approx([2.0, 16.0, 92.0], abs=0.6)
 
 
+def test_strokes_that_end_on_bare_paper_are_not_followed_as_a_contour(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A closed line would leave the chord's ends out: that is known before the head runs."""
+    followed = list[object]()
+    room = "morfax.tracer.program.as_contours"
+    monkeypatch.setattr(f"{room}._broken_at", lambda *_: [])
+    monkeypatch.setattr(f"{room}._contour", lambda *args: followed.append(args))
+    assert len(all_ink(plate(), polyline((2, 12), (38, 12))).lines) == 2
+    assert not followed
+    all_ink(plate(), polyline((4, 12), (34, 12)))  # both ends are on the plate
+    assert len(followed) == 1
+
+
 def test_a_bent_slot_whose_sides_run_together_is_told() -> None:
     """The compass lays straight slots only, and a stroke in the middle is half a line beside each side."""
     sides = arc((14, 12), 2.0, 60, 120), arc((14, 12), 2.0 + WIDTH_MM, 60, 120)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array, bounds
+from morfax.motion.compiled import njit
 from morfax.tracer.following.line import Line
 
 
@@ -48,10 +49,8 @@ class BoxedLines(NamedTuple):
     def stretches(self, low_mm: Array, high_mm: Array) -> Iterator[Array]:
         """The stretches (n, 2) mm of the lines, from place to place, that reach into a box."""
         for k in np.flatnonzero(self.reach(low_mm, high_mm)).tolist():
-            way, comes_round = self.places_mm[k], self.lines[k].comes_round
-            yield from reaching(
-                np.vstack([way, way[:1]]) if comes_round else way, low_mm, high_mm
-            )
+            comes_round = self.lines[k].comes_round
+            yield from reaching(self.places_mm[k], low_mm, high_mm, comes_round=comes_round)
 
     def parts(
         self, low_mm: Array, high_mm: Array, but: Line | None = None, around_mm: float = 0.0
@@ -68,9 +67,20 @@ class BoxedLines(NamedTuple):
 
 def within(way: Array, low_mm: Array, high_mm: Array) -> NDArray[np.int64]:
     """The numbers of the places of a way (n, 2) mm within a box."""
-    x, y = way.T
-    (left_mm, low), (right_mm, high) = low_mm, high_mm
-    return np.flatnonzero((x > left_mm) & (x < right_mm) & (y > low) & (y < high))
+    numbers = np.empty(len(way), np.int64)
+    return numbers[: _within(way, low_mm, high_mm, numbers)]
+
+
+@njit(cache=True, _nrt=False)
+def _within(way, low_mm, high_mm, numbers):  # type: ignore[no-untyped-def]
+    """Note the numbers of the places within a box; how many they are."""
+    count = 0
+    for k in range(len(way)):
+        x, y = way[k, 0], way[k, 1]
+        if low_mm[0] < x < high_mm[0] and low_mm[1] < y < high_mm[1]:
+            numbers[count] = k
+            count += 1
+    return count
 
 
 def parts_of(way: Array, chosen: NDArray[np.int64]) -> Iterator[Array]:
@@ -88,11 +98,34 @@ def reaches(places_mm: Array, low_mm: Array, high_mm: Array) -> bool:
     return bool(np.all(first_mm < high_mm) and np.all(last_mm > low_mm))
 
 
-def reaching(way: Array, low_mm: Array, high_mm: Array) -> Iterator[Array]:
-    """The stretches of a way (n, 2) mm, from place to place, whose boxes reach into another."""
-    reach = np.ones(max(len(way) - 1, 0), bool)
-    for at, low, high in zip(way.T, low_mm.tolist(), high_mm.tolist(), strict=True):
-        reach &= (np.minimum(at[:-1], at[1:]) < high) & (np.maximum(at[:-1], at[1:]) > low)
-    edges = np.flatnonzero(np.diff(np.r_[False, reach, False].astype(np.int8)))
-    for first, last in edges.reshape(-1, 2).tolist():
-        yield way[first : last + 1]
+def reaching(
+    way: Array, low_mm: Array, high_mm: Array, *, comes_round: bool = False
+) -> Iterator[Array]:
+    """The stretches of a way (n, 2) mm, from place to place and maybe from the last to the first, whose boxes
+    reach into another.
+    """
+    edges = np.empty((len(way) // 2 + 1, 2), np.int64)
+    count = _reaching(way, low_mm, high_mm, comes_round, edges)
+    for first, last in edges[:count].tolist():
+        comes_home = last == len(way)
+        yield np.vstack([way[first:], way[:1]]) if comes_home else way[first : last + 1]
+
+
+@njit(cache=True, _nrt=False)
+def _reaching(way, low_mm, high_mm, comes_round, edges):  # type: ignore[no-untyped-def]
+    """Note the first and the last place of each stretch that reaches into a box; how many they are."""
+    count, is_before = 0, False
+    for k in range(len(way) - 1 + comes_round):
+        following, reaches_in = k + 1 if k + 1 < len(way) else 0, True
+        for axis in range(2):
+            least, most = way[k, axis], way[following, axis]
+            if least > most:
+                least, most = most, least
+            reaches_in &= least < high_mm[axis] and most > low_mm[axis]
+        if reaches_in:
+            if not is_before:
+                edges[count, 0] = k
+                count += 1
+            edges[count - 1, 1] = k + 1
+        is_before = reaches_in
+    return count

@@ -48,7 +48,7 @@ from morfax.tracer.program.laid.line_parts import (
     is_whole,
 )
 from morfax.tracer.program.laid.news import News, near_box
-from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays
+from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays, turned_less_rad
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -58,7 +58,7 @@ from morfax.tracer.tangles.seen_ink import GAIN, LIKE
 
 # In widths of the line, chosen by trial on plates with notches and tongues:
 FURTHER = 0.01  # as much more must be left for each width more of a way that runs out and back on one line
-
+LEFT_BY_RAD = 1.0  # as much more may be left for each rad by which a way turns less
 
 LeftBy = Callable[[Setup, OwnInk], tuple[Unexplained, ...]]
 
@@ -214,13 +214,20 @@ class _Bays(WayInk):
         if rule is not None and gain is not None:
             laid = self._is_laid(seen.own, rule)
             return None if laid else self.as_bay(seen.first, seen.last, rule, gain)
-        if not suspect.is_beside_itself and not len(suspect.beyond_mm):
+        is_asked = suspect.is_beside_itself or len(suspect.beyond_mm)
+        if not is_asked and self._is_explained(seen):
             return None
         bay = self._rim_bay(seen, suspect)
         longer = None
         if bay is None:
             longer = self._seen(suspect, round(LEGS[1] / STEP_WIDTHS))
         return bay if longer is None else self._rim_bay(longer, suspect)
+
+    def _is_explained(self, seen: BayInk) -> bool:
+        """Whether a stretch explains its ink."""
+        own, ink = seen.own, seen.ink
+        misfit = ink.misfit(ink.best_drawn(pen.away_from(ink.places_mm, own)))
+        return misfit < LIKE * STEP_WIDTHS * (len(own) - 1)
 
     def _is_laid(self, own: Array, rule: Rule) -> bool:
         """Whether a stretch that was looked at before runs within half a step of a rule: it was laid along
@@ -257,6 +264,8 @@ class _Bays(WayInk):
         drawn_by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
         own_misfit = ink.misfit(drawn_by_own)
         gain = own_misfit - rule.misfit + FURTHER * (STEP_WIDTHS * (len(own) - 1) - widths)
+        if suspect.is_beside_itself:
+            gain += LEFT_BY_RAD * turned_less_rad(rule.way, own, width_mm)
         is_like = rule.misfit < LIKE * widths
         if not self.is_closed and rule.misfit > STILL_LEFT * own_misfit:
             # the way may be right, and some of its ink another line's

@@ -5,8 +5,8 @@
     ╰────────╯╰───╯      line comes by: the paper within it, or that about all of them
 
 The cells feel the rim of a patch towards each area of paper; the way of the pen lies half a width within it.
-Of all sets of such ways that explain the ink of the patch one turns least: its ways are the lines, if those
-that were found leave ink, or cross where these explain it better.
+Where it runs along a line that was found it is that (see `kept_parts`). Of all sets of such ways that explain
+the ink of the patch one turns least: its ways are the lines, if those that were found leave ink, or cross.
 
 Signals: the set-up, a patch of ink and the lines that were found on it in; the lines out.
 
@@ -20,7 +20,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +27,6 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
 from morfax.motion.motion import MOTION_RATE_HZ
-from morfax.motion.plane import BEND_RAD
 from morfax.motion.polyline import (
     between_corners,
     closed_up,
@@ -36,59 +34,44 @@ from morfax.motion.polyline import (
     length_mm,
     nearest_mm,
     plain,
+    turned_rad,
 )
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.ink.crossing_on_ink import OFF
-from morfax.tracer.ink.rim import Rim, RimCorners, felt_rim
+from morfax.tracer.ink.rim import Rim, felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE, CLEAR_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.program.against_ink.window import view_about
+from morfax.tracer.program.laid.kept_parts import KeptWay
 from morfax.tracer.program.laid.line_parts import closed_anew, is_bare, is_clear
 from morfax.tracer.program.laid.patch_ink import PatchInk
-from morfax.tracer.program.laid.rim_loops import DISTINCT, LONGEST, felt_pen_mm, outlines_of
+from morfax.tracer.program.laid.rim_loops import DISTINCT, felt_pen_mm, outlines_of
+from morfax.tracer.program.laid.rim_way import RimWay, kinks_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
 
-MOST_AREAS = 8  # of paper: of more all sets would take seconds
+MOST_AREAS = 12  # of paper: of more all sets would take seconds, ...
+LONGEST = 4000.0  # widths of ink: ... and so would longer ones
 ON = 0.1  # widths: a way that is so near to another, or to a polygon, is on it
 END_RAD = math.pi / 2  # an end of a line counts as so much turning, ...
 LEFT_RAD = 1.0  # ... and so does ink that is left, a square of the width
 LESS_RAD = 0.5  # so much less turning is less
-KINK_OVER = 1.0  # widths to either side of a place, by how much a way turns there
+# ways that do not cross may turn by so much more than one that does: two that touch turn by twice the angle
+# at which that crosses itself
+SAME_RAD = 0.15
+MISSED = 0.5  # of a box: along so much ink some line was missed; a corner that is cut leaves up to 0.3
 BETTER = 0.5  # of what lines leave that cross: ways that leave less explain the ink better
 
 
-def within_own_rims(setup: Setup, patch: int, lines: Sequence[Line]) -> list[Line]:
-    """The lines of a patch of ink as they were found, or each within its own rim."""
+def within_own_rims(setup: Setup, patch: int, lines: list[Line]) -> list[Line]:
+    """The lines of a patch of ink as they were found, in the same list, or each within its own rim."""
     rims = _OwnRims(setup, patch, lines)
-    return list(lines) if not rims.are_asked else rims.lines_told()
-
-
-class _Way(NamedTuple):
-    """A closed way (n, 2) mm, not closed up, at a step from place to place; how far the ink's places are from
-    it; by how much it turns in all; and at which of its places it has a kink.
-    """
-
-    way: Array
-    even: Array
-    away_mm: Array
-    turned_rad: float
-    kinks: NDArray[np.int64]
-
-    def has_kink_on(self, other: _Way, near_mm: float, beyond: int) -> bool:
-        """Whether a kink lies on another way, or on this one further on by so many places."""
-        if other is not self:
-            return bool((nearest_mm(self.even[self.kinks], other.even) < near_mm).any())
-        count = len(self.even)
-        for kink in self.kinks.tolist():
-            further = self.even[(kink + np.arange(beyond, count - beyond)) % count]
-            if nearest_mm(self.even[kink : kink + 1], further).min(initial=math.inf) < near_mm:
-                return True
-        return False
+    return lines if not rims.are_asked else rims.lines_told()
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +80,7 @@ class _OwnRims:
 
     setup: Setup
     patch: int
-    lines: Sequence[Line]
+    lines: list[Line]
 
     @property
     def are_asked(self) -> bool:
@@ -143,53 +126,81 @@ class _OwnRims:
         return len(crossings_of(way, np.arange(len(way) - 1))) > 0
 
     def lines_told(self) -> list[Line]:
-        """The lines as they were found, or those within the rims that explain the ink."""
-        own_rad = sum(map(self._turned_rad, self.lines)) + LEFT_RAD * self.ink.left(
-            self._own_mm
-        )
-        ways = self._fewest_turns(own_rad - LESS_RAD + END_RAD)
-        if not ways or self._are_as_found(ways) or not self._are_better(ways, own_rad):
-            return list(self.lines)
+        """The lines as they were found, or those within the rims that explain the ink better."""
+        ways = self._better_ways()
+        if not ways:
+            return self.lines
         longest_first = sorted(ways, key=lambda way: -length_mm(closed_up(way.way)))
-        return [self._run(way.way) for way in longest_first]
+        return [way.kept.line(self.setup) or self._run(way.way) for way in longest_first]
 
-    def _are_as_found(self, ways: Sequence[_Way]) -> bool:
-        """Whether some ways are the lines that were found."""
-        near_mm, loops = AS_WIDE * self.pen_mm, [line.loop_mm for line in self.lines]
-        return len(ways) == len(loops) and all(
-            any(
-                nearest_mm(way.even, loop).max() < near_mm
-                and nearest_mm(loop, way.even).max() < near_mm
-                for loop in loops
-            )
-            for way in ways
-        )
-
-    def _are_better(self, ways: Sequence[_Way], own_rad: float) -> bool:
-        """Whether some ways within the rims turn and leave less than the lines that were found; one that
-        crosses itself counts as one with an end, if it leaves much more.
+    def _better_ways(self) -> list[RimWay]:
+        """Of the sets of ways within the rims that explain the ink, where the lines that were found run
+        elsewhere, the first that does so better; none if none does.
         """
-        own_mm, ink = self._own_mm, self.ink
-        away_mm = np.min([way.away_mm for way in ways], axis=0)
-        left = ink.left(away_mm)
-        leave_less = left < BETTER * ink.left(own_mm)
-        if leave_less and ink.worst(away_mm) < BETTER * ink.worst(own_mm):
-            own_rad += END_RAD * any(map(self._crosses_itself, self.lines))
-        return sum(way.turned_rad for way in ways) + LEFT_RAD * left < own_rad - LESS_RAD
+        for ways in self._sets():
+            away_mm = np.min([way.away_mm for way in ways], axis=0)
+            changed = self._changed(ways)
+            explain = changed.any() and self.ink.worst(away_mm, changed) < OFF
+            if explain and self._are_better(ways, away_mm, changed):
+                return ways
+        return []
+
+    def _changed(self, ways: Sequence[RimWay]) -> NDArray[np.bool_]:
+        """Which of the ink's places are about what is laid of some ways, or what they leave of the lines that
+        were found.
+        """
+        new, old = np.vstack([way.even for way in ways]), self._own_places
+        is_left = nearest_mm(old, new) > AS_WIDE * self.pen_mm
+        moved = np.vstack([old[is_left], *(way.kept.laid_mm for way in ways)])
+        return nearest_mm(self.ink.places_mm, moved) < CLEAR_WIDTHS * self.pen_mm
+
+    def _are_better(
+        self, ways: Sequence[RimWay], away_mm: Array, changed: NDArray[np.bool_]
+    ) -> bool:
+        """Whether some ways within the rims, so far from the ink's places (n,), that explain it where they
+        were laid, do so better than the lines that were found: these miss some ink, or turn and leave more.
+        One that crosses itself counts as one with an end, if it leaves much more; else it need not turn more.
+        """
+        own_mm, ink, own_rad = self._own_mm, self.ink, self._own_rad
+        if (most := ink.worst(own_mm)) > MISSED:
+            return ink.worst(away_mm) < BETTER * most
+        left, own_left = (ink.left(each, changed) for each in (away_mm, own_mm))
+        worst, own_worst = (ink.worst(each, changed) for each in (away_mm, own_mm))
+        less_rad = LESS_RAD
+        if any(map(self._crosses_itself, self.lines)):
+            leave_less = left < BETTER * own_left and worst < BETTER * own_worst
+            less_rad = LESS_RAD - END_RAD if leave_less else -SAME_RAD
+        turned_rad = sum(way.turned_rad for way in ways)
+        return turned_rad + LEFT_RAD * left < own_rad + LEFT_RAD * own_left - less_rad
+
+    @cached_property
+    def _own_rad(self) -> float:
+        """By how much the lines that were found turn in all."""
+        return sum(map(self._turned_rad, self.lines))
+
+    @cached_property
+    def _own_places(self) -> Array:
+        """Places along the lines that were found, a step apart, (n, 2) mm."""
+        step_mm = STEP_WIDTHS * self.pen_mm
+        return np.vstack(
+            [
+                evenly(line.places_mm if line.is_open else closed_up(line.loop_mm), step_mm)
+                for line in self.lines
+            ]
+        )
 
     def _turned_rad(self, line: Line) -> float:
         """By how much a line turns; an end of an open one counts as a corner."""
         polygon = plain(line.places_mm if line.is_open else line.loop_mm, ON * self.pen_mm)
-        return _turned_rad(polygon, is_closed=not line.is_open) + 2 * END_RAD * line.is_open
+        return turned_rad(polygon, is_closed=not line.is_open) + 2 * END_RAD * line.is_open
 
-    def _fewest_turns(self, most_rad: float) -> list[_Way]:
-        """Those of the ways within the rims that explain the ink, and turn least, and by less than that; none
-        if all do not.
+    def _sets(self) -> Iterator[list[RimWay]]:
+        """All sets of the ways within the rims, those that turn least first.
 
         No way has a kink where it lies on another: there lines end, or cross.
         """
         near_mm, beyond = ON * self.pen_mm, round(LONGER_WIDTHS / STEP_WIDTHS)
-        ways = [way for way in self._ways() if way.turned_rad < most_rad]
+        ways = list(self._ways())
         are_kinked = np.array(
             [[one.has_kink_on(other, near_mm, beyond) for other in ways] for one in ways]
         )
@@ -200,45 +211,57 @@ class _OwnRims:
             for some in combinations(numbers, count + 1)
             if not are_kinked[np.ix_(some, some)].any()
         ]
-        for turned_rad, some in sorted(sets):
-            if turned_rad > most_rad:
-                break
-            if self.ink.worst(np.min([ways[k].away_mm for k in some], axis=0)) < OFF:
-                return [ways[k] for k in some]
-        return []
+        # most leave much of the ink bare: it takes less to see that than how well they explain it
+        is_bare = np.array([self._is_bare(way.away_mm) for way in ways])
+        seen = self.ink.seen
+        most = self._is_bare(self._own_mm).sum() + MISSED * seen.width_mm**2 / seen.area_mm2
+        for _, some in sorted(sets):
+            if is_bare[list(some)].all(axis=0).sum() < most:
+                yield [ways[k] for k in some]
 
-    def _ways(self) -> Iterator[_Way]:
+    def _is_bare(self, away_mm: Array) -> NDArray[np.bool_]:
+        """Which of the ink's places are beyond a pen along ways that are so far from them (n,)."""
+        seen = self.ink.seen
+        return (seen.darkness > INK) & (away_mm > (0.5 + AS_WIDE) * seen.width_mm)
+
+    def _ways(self) -> Iterator[RimWay]:
         """The ways within the rims."""
         for outline in self.outlines:
             rim = self._felt(outline)
             if rim is None:
                 continue
-            way = self._likest(rim.corners(0.5 * self.pen_mm))
+            corners = rim.corners(0.5 * self.pen_mm)
+            way = corners.likest(self.ink.places_mm, self._left, CLEAR_WIDTHS * self.pen_mm)
             way = way[_are_apart(way, DISTINCT * STEP_WIDTHS * self.pen_mm)]
+            kept = KeptWay.of(way, self.lines, self.pen_mm)
+            way = kept.places_mm if kept.kept else way
             polygon = plain(closed_up(way), ON * self.pen_mm)
             even = evenly(closed_up(way), STEP_WIDTHS * self.pen_mm)
-            if beside_itself.stretches(even, STEP_WIDTHS * self.pen_mm, self.pen_mm):
-                continue  # it goes round a bar
-            turned_rad = _turned_rad(polygon, is_closed=True)
-            yield _Way(way, even, self.ink.away_mm(closed_up(way)), turned_rad, _kinks(even))
+            if self._goes_round_a_bar(even):
+                continue
+            away_mm = self.ink.away_mm(closed_up(way))
+            yield RimWay(
+                way, kept, even, away_mm, turned_rad(polygon, is_closed=True), kinks_of(even)
+            )
+
+    def _goes_round_a_bar(self, even: Array) -> bool:
+        """Whether a closed way (n, 2), a step from place to place, comes beside itself where no line does."""
+        step_mm, near_mm = STEP_WIDTHS * self.pen_mm, AS_WIDE * self.pen_mm
+        return any(
+            nearest_mm(even[np.arange(first, last + 1) % len(even)], self._own_places).max()
+            > near_mm
+            for first, last in beside_itself.stretches(even, step_mm, self.pen_mm)
+        )
+
+    def _left(self, way: Array) -> Array:
+        """What a pen along a way (n, 2) mm leaves at each of the ink's places, in squares of the width."""
+        return self.ink.seen.left_at(self.ink.wrong(self.ink.away_mm(way)))
 
     def _felt(self, outline: Array) -> Rim | None:
         """The rim that the cells feel about an outline."""
         sheet, aperture_mm = self.setup.sheet, self.setup.settings.aperture_mm
         reach_mm = ABOUT_WIDTHS * self.pen_mm
         return felt_rim(view_about(sheet, aperture_mm, self.pen_mm, outline, reach_mm), outline)
-
-    def _likest(self, corners: RimCorners) -> Array:
-        """The way with those corners sharp that explain the ink better so."""
-        sharp, round_ = corners.mitred(), corners.way
-        off = [self.ink.wrong(self.ink.away_mm(closed_up(way))) ** 2 for way in (sharp, round_)]
-        are_sharp = np.zeros(len(corners.at), bool)
-        near_mm = CLEAR_WIDTHS * self.pen_mm
-        for k, (first, last) in enumerate(corners.at.tolist()):
-            middle = corners.way[(first + last) // 2 % len(corners.way)]
-            about = np.hypot(*(self.ink.places_mm - middle).T) < near_mm
-            are_sharp[k] = off[0][about].sum() <= off[1][about].sum()
-        return corners.mitred(are_sharp)
 
     def _run(self, way: Array) -> Line:
         """The head's run along a closed way from memory."""
@@ -256,24 +279,3 @@ class _OwnRims:
 def _are_apart(way: Array, least_mm: float) -> NDArray[np.bool_]:
     """Which places (n, 2) of a closed way are so far from the one before."""
     return np.asarray(np.hypot(*np.diff(way, axis=0, prepend=way[-1:]).T) > least_mm)
-
-
-def _kinks(even: Array) -> NDArray[np.int64]:
-    """The places of a closed way (n, 2) at which it turns more than about them."""
-    over, count = round(KINK_OVER / STEP_WIDTHS), len(even)
-    if count <= 4 * over:
-        return np.empty(0, np.int64)
-    ahead = np.roll(even, -over, axis=0) - even
-    turns = np.arctan2(ahead[:, 1], ahead[:, 0])
-    turns = turns - np.roll(turns, over)
-    turns -= math.tau * np.round(turns / math.tau)
-    about = 0.5 * (np.roll(turns, -2 * over) + np.roll(turns, 2 * over))
-    return np.flatnonzero(np.abs(turns) - np.abs(about) > BEND_RAD)
-
-
-def _turned_rad(polygon: Array, *, is_closed: bool) -> float:
-    """By how much a polygon (n, 2), closed up, turns to either side in all."""
-    steps = np.diff(polygon, axis=0)
-    headings = np.arctan2(steps[:, 1], steps[:, 0])
-    turns = np.diff(headings, append=headings[:is_closed])
-    return float(np.abs(turns - math.tau * np.round(turns / math.tau)).sum())

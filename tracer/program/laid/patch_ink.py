@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.strokes import Sheet
@@ -57,10 +58,16 @@ class PatchInk:
         pen.ink(away_mm, self.seen.half_mm, self.seen.softness_mm, drawn)
         return np.asarray(drawn - self.seen.darkness)
 
-    def left(self, away_mm: Array) -> float:
-        """How much it leaves unexplained in all, in squares of the width."""
-        return self.seen.left(self.wrong(away_mm))
+    def left(self, away_mm: Array, where: NDArray[np.bool_] | None = None) -> float:
+        """How much it leaves unexplained in all, or at some of its places (n,), in squares of the width."""
+        wrong = self.wrong(away_mm)
+        if where is None:
+            return self.seen.left(wrong)
+        at = np.flatnonzero(where)
+        return self.seen.only(at).left(wrong[at])
 
-    def worst(self, away_mm: Array) -> float:
+    def worst(self, away_mm: Array, where: NDArray[np.bool_] | None = None) -> float:
         """The same in the worst box as wide as a line."""
-        return self._boxes.worst(self.wrong(away_mm), self.seen.width_mm)
+        wrong, seen = self.wrong(away_mm), self.seen
+        worst = self._boxes.worst(wrong if where is None else wrong * where, seen.width_mm)
+        return worst - seen.noise / len(wrong)

@@ -29,15 +29,18 @@ from morfax.motion.polyline import (
     length_mm,
     lengths_mm,
     nearest_mm,
+    plain,
+    turned_rad,
 )
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.ink.rim import felt_rim
-from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE
+from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE, CLEAR_WIDTHS
+from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.against_ink.window import SheetWindow, view_about
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import LEGS
+from morfax.tracer.program.laid.line_parts import LEGS, REACH
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.program.setup import Setup
 
@@ -45,13 +48,15 @@ from morfax.tracer.program.setup import Setup
 NEAR = 1.0  # from an end of the stretch to the rim's way
 ASIDE = 0.2  # the same, where both run side by side
 LONGER = 1.5  # than the stretch: a way that is not goes along no bay
+BENT = 0.1  # from a polygon: a way that is so near to one turns as that does
 LOOP = 2.0  # of the way: a longer loop at a crossing is none of a narrow end
 OPEN = 0.2  # in the mean between its sides: a way with less runs out and back along one line
 
 
 def rim_bays(setup: Setup, width_mm: float, own: Array, beyond: Array) -> Iterator[LaidWay]:
     """Those ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
-    its first place to its last, that are longer than the stretch and go round more than one line.
+    its first place to its last, that are longer than the stretch or turn less, and go round more than one
+    line.
     """
     for bay in ways_within_rims(setup, width_mm, own, beyond):
         if _is_bay(bay.way, own, width_mm):
@@ -68,13 +73,20 @@ def ways_within_rims(
     # the rims are about the outlines, and these about the stretch
     aperture_mm, reach_mm = setup.settings.aperture_mm, 2 * ABOUT_WIDTHS * width_mm
     view = view_about(setup.sheet, aperture_mm, width_mm, about, reach_mm)
+    ink = ink_about(setup.sheet.drawing, about, width_mm, REACH)
+
+    def left(way: Array) -> Array:
+        return ink.left_at(ink.drawn_along(way, half_mm) - ink.darkness)
+
     for outline in _outlines(setup.sheet.drawing, about, width_mm):
         if nearest_mm(own[[0, -1]], outline).max() > NEAR * width_mm:
             continue
         rim = felt_rim(view, outline)
         if rim is None:
             continue
-        for way in _between(rim.way(half_mm), own, width_mm):
+        corners = rim.corners(half_mm)
+        within = corners.likest(ink.places_mm, left, CLEAR_WIDTHS * width_mm)
+        for way in _between(within, own, width_mm):
             if not len(crossings_of(way, np.arange(len(way) - 1))):
                 yield LaidWay(tuple(between_corners(way)), half_mm)
 
@@ -123,10 +135,10 @@ def _between(way: Array, own: Array, width_mm: float) -> Iterator[Array]:
         if np.hypot(*(way[at] - ends).T).max() < ASIDE * width_mm:
             count = (side * (at[1] - at[0])) % len(way)
             part = way[(at[0] + side * np.arange(count + 1)) % len(way)]
-            yield _without_loops(_to_ends(part, ends, LEGS[0] * width_mm), LOOP * width_mm)
+            yield _without_loops(to_ends(part, ends, LEGS[0] * width_mm), LOOP * width_mm)
 
 
-def _to_ends(way: Array, ends: Array, leg_mm: float) -> Array:
+def to_ends(way: Array, ends: Array, leg_mm: float) -> Array:
     """A way (n, 2) mm that comes to two places over a leg at each of its ends."""
     come_mm = lengths_mm(way)
     leg_mm = min(leg_mm, 0.4 * float(come_mm[-1]))
@@ -150,10 +162,18 @@ def _without_loops(way: Array, most_mm: float) -> Array:
     return np.vstack([*kept, way[at:]])
 
 
+def turned_less_rad(way: Array, own: Array, width_mm: float) -> float:
+    """By how much less a way turns in all than a stretch; 0 if it does so by less than a corner."""
+    turned = [turned_rad(plain(each, BENT * width_mm)) for each in (way, own)]
+    less_rad = turned[1] - turned[0]
+    return less_rad if less_rad > math.pi / 2 else 0.0
+
+
 def _is_bay(way: Array, own: Array, width_mm: float) -> bool:
-    """Whether a way is longer than a stretch, and goes round more than one line."""
-    is_longer = length_mm(way) > length_mm(own) + LONGER * width_mm
-    return is_longer and broad_mm(way) > OPEN * width_mm
+    """Whether a way is longer than a stretch, or turns less, and goes round more than one line."""
+    is_other = length_mm(way) > length_mm(own) + LONGER * width_mm
+    is_other = is_other or turned_less_rad(way, own, width_mm) > 0
+    return is_other and broad_mm(way) > OPEN * width_mm
 
 
 def is_a_pen(sheet: Sheet, broad_mm: float) -> bool:

@@ -144,6 +144,11 @@ NO_OTHERS = Others()
 
 def lines_of(sheet: Sheet) -> NDArray[np.int64]:
     """The patches that are lines, the longest first; every patch along the edge of a filled shape is one."""
+    return sheet.once(_lines)
+
+
+def _lines(sheet: Sheet) -> NDArray[np.int64]:
+    """The same, of a sheet of which it was not asked before."""
     shortest_mm = 0.0 if sheet.drawing.edges_mm else least_mm(sheet.widths_mm)
     are_lines = (sheet.lengths_mm >= shortest_mm) | (_reach_mm(sheet) >= LETTER_MM)
     are_lines[inner_rings(sheet, are_lines)] = True

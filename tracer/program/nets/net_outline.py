@@ -109,13 +109,10 @@ def of_net(setup: Setup) -> OfNet:
 
 def _counting(sheet: Sheet, by_patch_mm: Mapping[int, float]) -> Sheet:
     """The sheet on which some patches are so long."""
-    # strokes hold their lengths
-    counted = replace(sheet, lengths_mm=sheet.lengths_mm.copy(), _known={})
-    told_mm = sheet.told.lengths_mm.copy()
+    lengths_mm, told_mm = sheet.lengths_mm.copy(), sheet.told.lengths_mm.copy()
     for patch, long_mm in by_patch_mm.items():
-        counted.lengths_mm[patch] = told_mm[patch] = long_mm
-    vars(counted)["told"] = sheet.told._replace(lengths_mm=told_mm)
-    return counted
+        lengths_mm[patch] = told_mm[patch] = long_mm
+    return sheet.counting(lengths_mm, told_mm)
 
 
 def outline_of(setup: Setup, patch: int) -> Line | None:

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.motion.arrays import Array
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines, reaching, within
 from tests.tracer.inked import polyline
 from tests.tracer.program.laid.ways import run_along
 
@@ -54,3 +55,30 @@ def test_the_stretches_that_reach_into_a_box_draw_there_what_the_whole_line_does
     assert whole.any() and not whole.all()
     assert np.array_equal(whole, some)
     assert sum(map(len, found)) < sum(len(line.places_mm) for line in lines.lines)
+
+
+def test_the_kernels_find_what_numpy_does() -> None:
+    """The same places and stretches, of open ways and of those that come round, and of none."""
+    rng = np.random.default_rng(5)
+    for count in (0, 1, 2, 3, 60):
+        way = np.cumsum(rng.normal(0, 2.0, (count, 2)), axis=0) + 20
+        for low, high in zip(
+            rng.uniform(10, 20, (9, 2)), rng.uniform(18, 30, (9, 2)), strict=True
+        ):
+            inside = ((way > low) & (way < high)).all(axis=1)
+            assert np.array_equal(within(way, low, high), np.flatnonzero(inside))
+            for comes_round in (False, True):
+                found = list(reaching(way, low, high, comes_round=comes_round))
+                expected = _reaching(
+                    np.vstack([way, way[:1]]) if comes_round else way, low, high
+                )
+                assert len(found) == len(expected)
+                assert all(map(np.array_equal, found, expected))
+
+
+def _reaching(way: Array, low: Array, high: Array) -> list[Array]:
+    """The stretches of a way whose boxes reach into another, without a kernel."""
+    first, second = way[:-1], way[1:]
+    reach = (np.minimum(first, second) < high) & (np.maximum(first, second) > low)
+    edges = np.flatnonzero(np.diff(np.r_[0, reach.all(axis=1), 0]))
+    return [way[a : b + 1] for a, b in edges.reshape(-1, 2).tolist()]

@@ -6,14 +6,16 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 
 from morfax.motion.polyline import evenly, nearest_mm, with_places
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.laid import own_rims
 from morfax.tracer.program.laid.own_rims import within_own_rims
+from morfax.tracer.program.laid.rim_way import kinks_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace_lines import found_lines, trace_lines
 from tests.tracer.inked import UM, Points, arc, inked, polyline
+from tests.tracer.program.laid.ways import run_along
 
 WIDTH_MM = 0.45
 
@@ -118,8 +120,61 @@ def test_kinks_are_where_a_way_turns_more_than_about_them() -> None:
     """A square's corners, and no place of a circle."""
     square = polyline((0, 0), (4, 0), (4, 4), (0, 4), (0, 0))
     even = evenly(square, 0.05)
-    kinks = own_rims._kinks(even)
+    kinks = kinks_of(even)
     corners = np.array([(0, 0), (4, 0), (4, 4), (0, 4)], float)
     assert nearest_mm(corners, even[kinks]).max() < 0.1
     assert nearest_mm(even[kinks], corners).max() < 1.0
-    assert not len(own_rims._kinks(evenly(arc((0, 0), 2.0), 0.05)))
+    assert not len(kinks_of(evenly(arc((0, 0), 2.0), 0.05)))
+
+
+def beam(left_mm: float, low_mm: float = 5) -> Points:
+    """The outline of a beam of 12 mm whose flanges are 8 mm long and 1 mm high, from a place up."""
+    half = [(-4, 0), (4, 0), (4, 1), (1.5, 2), (1.5, 10), (4, 11), (4, 12), (-4, 12)]
+    half += [(-4, 11), (-1.5, 10), (-1.5, 2), (-4, 1), (-4, 0)]
+    return np.array(half, float) + np.array([left_mm + 4, low_mm])
+
+
+@pytest.mark.parametrize(("apart", "seed"), [(0.4, 1), (0.4, 2), (0.6, 1), (0.6, 3)])
+def test_flanges_whose_ends_run_together_are_two_beams(apart: float, seed: int) -> None:
+    """Two letters whose serifs touch: each within 60 um; the way round both crosses between the ends."""
+    beams = [beam(5), beam(13 + apart * WIDTH_MM)]
+    trace = trace_lines(inked(*beams, width_mm=WIDTH_MM, seed=seed), "contours")
+    assert [line.ending for line in trace.lines] == ["closed", "closed"]
+    for each in beams:
+        assert min(off_mm(line, each) for line in trace.lines) < 60 * UM
+    assert not trace.unexplained
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_bar_as_broad_as_two_lines_between_two_beams_is_a_side_of_each(seed: int) -> None:
+    """One flange of each: the way round both left the bar's ink, and nothing was told."""
+    beams = [beam(5, 16), beam(13 + 0.4 * WIDTH_MM, 5)]
+    trace = trace_lines(inked(*beams, width_mm=WIDTH_MM, seed=seed), "contours")
+    assert [line.ending for line in trace.lines] == ["closed", "closed"]
+    for each in beams:
+        assert min(off_mm(line, each) for line in trace.lines) < 60 * UM
+
+
+def test_a_way_round_two_beams_that_leaves_the_bar_between_them_goes() -> None:
+    """It turns less than both do, by four corners; but half a box and more of ink is no cut corner."""
+    beams = [beam(5, 16), beam(13 + 0.4 * WIDTH_MM, 5)]
+    bar = shapely.box(13, 16, 13 + 0.4 * WIDTH_MM, 17)
+    both = shapely.unary_union([*map(shapely.Polygon, beams), bar])
+    setup = Setup(inked(*beams, width_mm=WIDTH_MM, seed=1).sheet)
+    line = run_along(np.array(both.exterior.coords))
+    lines = within_own_rims(setup, setup.sheet.patch_at(line.xy_mm[0]), [line])
+    assert len(lines) == 2
+    for each in beams:
+        assert min(off_mm(line, each) for line in lines) < 60 * UM
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_plates_whose_corners_just_meet_are_both_traced(seed: int) -> None:
+    """The first as the head ran along it, the other within its rim: it was left out, and nothing was told."""
+    x = 15 + 1.05 * WIDTH_MM
+    first = polyline((5, 5), (15, 6), (11, 20), (5, 20), (5, 5))
+    second = polyline((x, 6), (25, 5), (25, 20), (19, 20), (x, 6))
+    lines = lines_of(first, second, seed=seed)
+    assert [line.ending for line in lines] == ["closed", "closed"]
+    for each in (first, second):
+        assert min(off_mm(line, each) for line in lines) < 60 * UM

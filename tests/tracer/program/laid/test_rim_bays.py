@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 import shapely
@@ -12,8 +14,9 @@ from morfax.tracer.program.laid import rim_bays as rims
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays, ways_within_rims
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.program.trace_lines import trace_lines
 from morfax.tracer.sensing import photocell
-from tests.tracer.inked import UM, WIDTH_MM, Points, inked, polyline, together
+from tests.tracer.inked import UM, WIDTH_MM, Points, arc, inked, polyline, together
 
 NOWHERE = np.empty((0, 2))
 
@@ -99,7 +102,7 @@ def test_a_way_comes_to_the_ends_of_its_stretch_over_a_leg() -> None:
     """Its middle stays where it is; of a short way at least a fifth does."""
     way = with_places(polyline((0, 0), (10, 0)), 0.1)
     ends = np.array([[0.0, 0.2], [10.0, -0.1]])
-    moved = rims._to_ends(way, ends, 1.5)
+    moved = rims.to_ends(way, ends, 1.5)
     assert moved[[0, -1]] == pytest.approx(ends)
     off_mm = moved[:, 1] - way[:, 1]
     assert np.all(off_mm[(way[:, 0] > 1.5) & (way[:, 0] < 8.5)] == 0)
@@ -107,7 +110,7 @@ def test_a_way_comes_to_the_ends_of_its_stretch_over_a_leg() -> None:
     assert off_mm[way[:, 0] > 8.5] == pytest.approx(
         -0.1 * (way[way[:, 0] > 8.5, 0] - 8.5) / 1.5
     )
-    short = rims._to_ends(way[:11], ends - [[0, 0], [9, 0]], 1.5)
+    short = rims.to_ends(way[:11], ends - [[0, 0], [9, 0]], 1.5)
     assert np.all(short[5] == way[5]) and short[[0, -1]] == pytest.approx(
         ends - [[0, 0], [9, 0]]
     )
@@ -140,3 +143,29 @@ def test_a_bar_is_a_pens_if_a_line_of_the_sheet_is_as_broad() -> None:
         True,
         False,
     ]
+
+
+def foot(long_mm: float, gap: float, radius: float, lean_deg: float) -> Points:
+    """A plate on a foot to the left: its upper side so many widths above the lower, and its leg joined to it
+    by a bend of so many widths.
+    """
+    gap_mm, radius_mm, lean = gap * WIDTH_MM, radius * WIDTH_MM, math.radians(lean_deg)
+    bend = arc((10, 5 + gap_mm + radius_mm), radius_mm, lean_deg, -90)
+    top = bend[0] + 9 * np.array([-math.sin(lean), math.cos(lean)])
+    end = 10 - long_mm
+    return np.vstack([top, bend, [(end, 5 + gap_mm), (end, 5), (24, 5), (24, top[1]), top]])
+
+
+@pytest.mark.parametrize(
+    ("long_mm", "gap", "radius"), [(0.8, 1.0, 0.9), (1.2, 1.0, 0.9), (1.6, 0.8, 0.5)]
+)
+def test_a_foot_whose_sides_run_together_is_no_loop(
+    long_mm: float, gap: float, radius: float
+) -> None:
+    """The way that came by over its ink and back was 0.2 mm off, and told; that within the rim turns less."""
+    drawn = foot(long_mm, gap, radius, 10)
+    trace = trace_lines(inked(drawn, width_mm=WIDTH_MM, seed=3), "contours")
+    (line,) = trace.lines
+    way, true = with_places(line.loop_mm, 0.02), with_places(drawn, 0.02)
+    assert max(nearest_mm(way, true).max(), nearest_mm(true, way).max()) < 60 * UM
+    assert not trace.unexplained
