@@ -24,16 +24,17 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.polyline import between_corners, closed_up
+from morfax.motion.polyline import between_corners, closed_up, length_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
-from morfax.tracer.program.laid.bent import runs_of
+from morfax.tracer.program.laid.bent import LONGER, TURNS_OVER, runs_of
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS, is_plain
 from morfax.tracer.program.laid.rim_bays import within_outer_rims
-from morfax.tracer.program.laid.way_ink import BayInk, Relaid, WayInk
+from morfax.tracer.program.laid.spline_fit import CORNER_RAD, turns_rad
+from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import pen
@@ -152,13 +153,19 @@ class _Beside(NamedTuple):
 def _gain(seen: BayInk, laid: LaidWay) -> float:
     """How much better a laid way explains the ink of a stretch than the way does; 0 if not surely, since
     noise may gain as much where their ink differs, or if it is no more than a corner has to gain.
+
+    A longer way beside one that hardly turns goes out along a burr, and comes back.
     """
-    ink = seen.ink
+    ink, width_mm = seen.ink, seen.ink.width_mm
+    is_longer = laid.length_mm - length_mm(seen.own) > LONGER * width_mm
+    if is_longer and turns_rad(seen.own, TURNS_OVER).max() < CORNER_RAD:
+        return 0.0
     by_own, by_laid = (
         ink.best_drawn(pen.away_from(ink.places_mm, way)) for way in (seen.own, laid.way)
     )
     gain, differ = ink.misfit(by_own) - ink.misfit(by_laid), np.sum((by_own - by_laid) ** 2)
     # gain = sum of (own - laid) * (own + laid - 2 * seen), and what is seen has the paper's noise
-    of_noise = 2 * math.sqrt(differ * ink.noise / len(by_own)) * ink.area_mm2 / ink.width_mm**2
-    least = max(SIGMAS * of_noise, GAIN * laid.length_mm / ink.width_mm)
-    return gain if gain > least else 0.0
+    of_noise = 2 * math.sqrt(differ * ink.noise / len(by_own)) * ink.area_mm2 / width_mm**2
+    least = max(SIGMAS * of_noise, GAIN * laid.length_mm / width_mm)
+    is_surely = gain > least and ink.share_left(by_laid, by_own) < MOST_LEFT
+    return gain if is_surely else 0.0
