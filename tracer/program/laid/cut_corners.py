@@ -38,7 +38,7 @@ from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.corner_chains import with_chains
 from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
 from morfax.tracer.program.laid.news import near_box
-from morfax.tracer.program.laid.outer_rims import with_outer_rims
+from morfax.tracer.program.laid.outer_rims import ON, with_outer_rims
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT
@@ -61,13 +61,7 @@ def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
     if not is_clear_and_fine or setup.operator.reads_marks(own.lines):
         return own
     news: Array | None = None
-    asked = own.doubtful
-    own = with_chains(setup, own)
-    for _ in range(ROUNDS):
-        own, asked, laid_mm = with_outer_rims(setup, own, asked)
-        if not asked.any():
-            break
-        own = with_chains(setup, own, laid_mm)
+    own = _with_outer_rims(setup, with_chains(setup, own), own.doubtful)
     for _ in range(ROUNDS):
         lines = own.lines
         left = [place for place in own.beside(NEARLY) if not place.is_sure]
@@ -77,6 +71,19 @@ def with_corners(setup: Setup, own: OwnInk) -> OwnInk:
         if not len(news):
             break
         own = own.mended([relaid.line for relaid in mended])
+    return own
+
+
+def _with_outer_rims(setup: Setup, own: OwnInk, asked: NDArray[np.bool_]) -> OwnInk:
+    """Lines, held against their ink, those asked along their outer rims, and their chains of corners laid
+    from there.
+    """
+    own, asked, laid_mm = with_outer_rims(setup, own, asked)
+    for _ in range(ROUNDS):
+        if not asked.any():
+            break
+        own = with_chains(setup, own, laid_mm)
+        own, asked, laid_mm = with_outer_rims(setup, own, asked, ON)
     return own
 
 

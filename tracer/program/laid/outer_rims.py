@@ -16,7 +16,6 @@ Source: our own (see `ink.rim`). Questions: where the ink of two sides runs toge
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -24,22 +23,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import between_corners, closed_up
+from morfax.motion.neighbours import Neighbours
+from morfax.motion.polyline import between_corners, closed_up, length_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
-from morfax.tracer.program.laid.bent import runs_of
+from morfax.tracer.program.laid.bent import LONGER, TURNS_OVER, runs_of
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS, is_plain
 from morfax.tracer.program.laid.rim_bays import within_outer_rims
-from morfax.tracer.program.laid.way_ink import BayInk, Relaid, WayInk
+from morfax.tracer.program.laid.spline_fit import CORNER_RAD, turns_rad
+from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.seen_ink import GAIN
 
-ON = 0.05  # widths: a way that is so near to another is on it
+# widths: a way that is so near to another is on it; where a line was laid anew, all of it that is not is
+# asked, else what is so far off
+ON, OFF = 0.05, 0.1
 SIGMAS = 5.0  # of what noise of the paper gains: a way that gains more explains the ink better
 
 
@@ -51,11 +54,17 @@ class AlongRims(NamedTuple):
     places_mm: Array
 
 
-def with_outer_rims(setup: Setup, own: OwnInk, asked: NDArray[np.bool_]) -> AlongRims:
-    """Lines, held against their ink, those asked along their outer rims where these explain it better."""
+def with_outer_rims(
+    setup: Setup, own: OwnInk, asked: NDArray[np.bool_], least_off: float = OFF
+) -> AlongRims:
+    """Lines, held against their ink, those asked along their outer rims where these explain it better, and
+    the lines are so many widths off them.
+    """
     every = BoxedLines.of(own.lines)
     mended = [
-        _OuterRims(setup, line, every).mended() if is_asked else Relaid(line, np.empty((0, 2)))
+        _OuterRims(setup, line, every, least_off).mended()
+        if is_asked
+        else Relaid(line, np.empty((0, 2)))
         for line, is_asked in zip(own.lines, asked, strict=True)
     ]
     laid = np.array([len(relaid.places_mm) > 0 for relaid in mended], bool)
@@ -66,85 +75,97 @@ def with_outer_rims(setup: Setup, own: OwnInk, asked: NDArray[np.bool_]) -> Alon
 
 @dataclass(frozen=True, eq=False)
 class _OuterRims(WayInk):
-    """The way of one of some lines, and the ink about it."""
+    """The way of one of some lines, and the ink about it; it is asked where it is so many widths off."""
+
+    least_off: float
 
     def mended(self) -> Relaid:
         """The line as it is, or along its outer rims where these explain its ink better."""
         bays = list[Bay]()
         if is_plain(self.line) and not self.line.as_told:
             for way in within_outer_rims(self.setup, self.line.width_mm, self.way):
-                bays += [bay for each in self._off(way) for bay in self._bays(way, *each)]
+                beside = _Beside.of(self.way, way, ON * self.line.width_mm)
+                off = beside.off(self.least_off * self.line.width_mm)
+                bays += [bay for each in off if (bay := self._bay(beside, *each)) is not None]
         return self.along(bays)
 
-    def _off(self, way: Array) -> list[tuple[int, int]]:
-        """The stretches that are off a closed way (n, 2) mm: their first and last places."""
-        is_off = pen.away_from(self.way, closed_up(way)) > ON * self.line.width_mm
-        return list(runs_of(is_off, 1, True))[:MANY]
-
-    def _bays(self, way: Array, first: int, last: int) -> Iterator[Bay]:
-        """What is laid along a closed way about a stretch, on either side of the ink, if that explains it."""
-        leg, further = (round(widths / STEP_WIDTHS) for widths in LEGS)
-        begin, width_mm = first - leg - further, self.line.width_mm
-        own = self.own(begin, last + leg + further)
-        if own is None:
-            return
-        for part in _along(way, own, further, ON * width_mm):
-            laid = LaidWay(tuple(between_corners(part.way)), 0.5 * width_mm)
-            seen = self.about(begin + part.first, begin + part.last, laid.way)
-            if seen is not None and (gain := _gain(seen, laid)) > 0:
-                yield self.as_bay(seen.first, seen.last, laid, gain)
+    def _bay(self, beside: _Beside, first: int, last: int) -> Bay | None:
+        """What is laid along a way beside a stretch that is off it, if that explains the ink better."""
+        ends = beside.ends(first, last)
+        own = None if ends is None else self.own(*ends)
+        if ends is None or own is None:
+            return None
+        way = np.vstack([own[0], beside.between(*ends)[1:-1], own[-1]])
+        laid = LaidWay(tuple(between_corners(way)), 0.5 * self.line.width_mm)
+        seen = self.about(*ends, laid.way)
+        gain = 0.0 if seen is None else _gain(seen, laid)
+        return self.as_bay(*ends, laid, gain) if gain > 0 else None
 
 
-class _Part(NamedTuple):
-    """A part of a way (n, 2) mm, and from which place of a stretch to which it lies."""
+class _Beside(NamedTuple):
+    """A closed way (n, 2) mm beside that of a line: to which of its places each of the line's is nearest
+    (m,), how far from it these are, mm, which are on it, and whether it goes the same way (1) or back (-1).
+    """
 
     way: Array
-    first: int
-    last: int
+    nearest: NDArray[np.int64]
+    away_mm: Array
+    is_on: NDArray[np.bool_]
+    side: int
 
+    @classmethod
+    def of(cls, own: Array, way: Array, near_mm: float) -> _Beside:
+        """That beside the closed way (m, 2) mm of a line; what is so near to it is on it."""
+        nearest = Neighbours(way).nearest(own)[1]
+        away_mm = pen.away_from(own, closed_up(way))
+        is_on = away_mm < near_mm
+        goes = (np.roll(way, -1, axis=0) - np.roll(way, 1, axis=0))[nearest]
+        along = np.sum(goes * (np.roll(own, -1, axis=0) - np.roll(own, 1, axis=0)), axis=1)
+        side = 1 if np.sum(along[is_on]) > 0 else -1
+        return cls(way, nearest, away_mm, is_on & (side * along > 0), side)
 
-def _along(way: Array, own: Array, further: int, near_mm: float) -> Iterator[_Part]:
-    """The parts of a closed way (n, 2) mm along a stretch (m, 2) mm, on either side of its ink: from the last
-    of so many first places of that at which both are near to one another, to the first of as many last.
-    """
-    steps = np.gradient(own, axis=0)
-    for side in (1, -1):
-        on = dict(_on(way, side, own, steps, near_mm))
-        firsts = [place for place in range(further, -1, -1) if place in on]
-        lasts = [place for place in range(len(own) - 1 - further, len(own)) if place in on]
-        if firsts and lasts:
-            first, last = firsts[0], lasts[0]
-            count = side * (on[last] - on[first]) % len(way)
-            part = way[(on[first] + side * np.arange(count + 1)) % len(way)]
-            yield _Part(np.vstack([own[first], part[1:-1], own[last]]), first, last)
+    def off(self, least_mm: float) -> list[tuple[int, int]]:
+        """The stretches of the line that are further off than that somewhere, the furthest first."""
+        runs = list(runs_of(~self.is_on, 1, True))
+        count = len(self.away_mm)
+        furthest_mm = [self.away_mm[np.arange(a, b + 1) % count].max() for a, b in runs]
+        order = np.argsort(furthest_mm)[::-1][:MANY].tolist()
+        return [runs[k] for k in order if furthest_mm[k] > least_mm]
 
+    def ends(self, first: int, last: int) -> tuple[int, int] | None:
+        """The places on the way that are nearest before and behind a stretch with its legs."""
+        leg, further = (round(widths / STEP_WIDTHS) for widths in LEGS)
+        reach, count = np.arange(leg, leg + further + 1), len(self.is_on)
+        before, after = (
+            np.flatnonzero(self.is_on[at % count]) for at in (first - reach, last + reach)
+        )
+        if not len(before) or not len(after):
+            return None
+        return first - int(reach[before[0]]), last + int(reach[after[0]])
 
-def _on(
-    way: Array, side: int, own: Array, steps: Array, near_mm: float
-) -> Iterator[tuple[int, int]]:
-    """The places of a stretch (m, 2) mm at which a closed way (n, 2) mm, which goes the same way on one side
-    of the ink and back on the other, is near to it; each with the place of the way.
-    """
-    goes = side * (np.roll(way, -1, axis=0) - np.roll(way, 1, axis=0))
-    low, high = own.min(axis=0) - near_mm, own.max(axis=0) + near_mm
-    within = np.flatnonzero(((way > low) & (way < high)).all(axis=1))
-    for place, (place_mm, step) in enumerate(zip(own, steps, strict=True)):
-        along = within[goes[within] @ step > 0]
-        away_mm = np.hypot(*(way[along] - place_mm).T)
-        if away_mm.min(initial=math.inf) < near_mm:
-            yield place, int(along[np.argmin(away_mm)])
+    def between(self, first: int, last: int) -> Array:
+        """The way (k, 2) mm from one place of the line to another."""
+        at, to = self.nearest[np.array([first, last]) % len(self.nearest)]
+        count = self.side * (to - at) % len(self.way)
+        return np.asarray(self.way[(at + self.side * np.arange(count + 1)) % len(self.way)])
 
 
 def _gain(seen: BayInk, laid: LaidWay) -> float:
     """How much better a laid way explains the ink of a stretch than the way does; 0 if not surely, since
     noise may gain as much where their ink differs, or if it is no more than a corner has to gain.
+
+    A longer way beside one that hardly turns goes out along a burr, and comes back.
     """
-    ink = seen.ink
+    ink, width_mm = seen.ink, seen.ink.width_mm
+    is_longer = laid.length_mm - length_mm(seen.own) > LONGER * width_mm
+    if is_longer and turns_rad(seen.own, TURNS_OVER).max() < CORNER_RAD:
+        return 0.0
     by_own, by_laid = (
         ink.best_drawn(pen.away_from(ink.places_mm, way)) for way in (seen.own, laid.way)
     )
     gain, differ = ink.misfit(by_own) - ink.misfit(by_laid), np.sum((by_own - by_laid) ** 2)
     # gain = sum of (own - laid) * (own + laid - 2 * seen), and what is seen has the paper's noise
-    of_noise = 2 * math.sqrt(differ * ink.noise / len(by_own)) * ink.area_mm2 / ink.width_mm**2
-    least = max(SIGMAS * of_noise, GAIN * laid.length_mm / ink.width_mm)
-    return gain if gain > least else 0.0
+    of_noise = 2 * math.sqrt(differ * ink.noise / len(by_own)) * ink.area_mm2 / width_mm**2
+    least = max(SIGMAS * of_noise, GAIN * laid.length_mm / width_mm)
+    is_surely = gain > least and ink.share_left(by_laid, by_own) < MOST_LEFT
+    return gain if is_surely else 0.0

@@ -93,7 +93,7 @@ def test_what_noise_may_gain_is_no_gain() -> None:
     noise = np.random.default_rng(4).normal(0, 0.16, quiet.darkness.shape)
     loud = Drawing((quiet.darkness + noise).astype(np.float32), quiet.pitch_mm)
     for drawing, is_gain in ((quiet, True), (loud, False)):
-        way = _OuterRims(Setup(drawing.sheet), line, BoxedLines.of([line]))
+        way = _OuterRims(Setup(drawing.sheet), line, BoxedLines.of([line]), 0.0)
         seen = way.about(110, 210, np.empty((0, 2)))
         assert seen is not None
         is_aside = (seen.own[:, 0] > 12) & (seen.own[:, 0] < 14)
@@ -113,3 +113,15 @@ def test_chains_are_asked_where_a_line_was_laid_anew() -> None:
     assert with_chains(Setup(drawing.sheet), own) is own
     (line,) = with_chains(Setup(drawing.sheet), own, drawn[8:10]).lines
     assert furthest_mm(drawn, line.loop_mm) < 30 * UM < furthest_mm(drawn, aside)
+
+
+def test_a_way_out_along_a_burr_and_back_is_none() -> None:
+    """A tick of 0.6 mm aside of a straight line, which a way out and back explains."""
+    drawn = polyline((5, 5), (25, 5), (25, 15), (5, 15), (5, 5))
+    drawing, line = inked(drawn, polyline((13, 5), (13, 5.6)), seed=3), run_along(drawn)
+    way = _OuterRims(Setup(drawing.sheet), line, BoxedLines.of([line]), 0.0)
+    seen = way.about(110, 210, np.empty((0, 2)))
+    assert seen is not None
+    out = polyline(tuple(seen.own[0]), (13, 5), (13, 5.6), (13, 5), tuple(seen.own[-1]))
+    assert seen.ink.misfit_along(out) < 0.2 * seen.ink.misfit_along(seen.own)
+    assert _gain(seen, LaidWay((out,), 0.25)) == 0
