@@ -32,7 +32,7 @@ from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.bent import LONGER, TURNS_OVER, runs_of
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS, is_plain
-from morfax.tracer.program.laid.rim_bays import within_outer_rims
+from morfax.tracer.program.laid.rim_bays import runs_back, within_outer_rims
 from morfax.tracer.program.laid.spline_fit import CORNER_RAD, turns_rad
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
@@ -159,6 +159,8 @@ def _gain(seen: BayInk, laid: LaidWay) -> float:
     ink, width_mm = seen.ink, seen.ink.width_mm
     is_longer = laid.length_mm - length_mm(seen.own) > LONGER * width_mm
     if is_longer and turns_rad(seen.own, TURNS_OVER).max() < CORNER_RAD:
+        return 0.0
+    if runs_back(laid.way, width_mm) and not runs_back(seen.own, width_mm):
         return 0.0
     by_own, by_laid = (
         ink.best_drawn(pen.away_from(ink.places_mm, way)) for way in (seen.own, laid.way)

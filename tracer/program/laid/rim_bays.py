@@ -25,7 +25,7 @@ from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import (
     area_mm2,
     between_corners,
-    broad_mm,
+    evenly,
     length_mm,
     lengths_mm,
     nearest_mm,
@@ -43,6 +43,8 @@ from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS, REACH
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.program.setup import Setup
+from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.tangles.beside_itself import partners
 
 # In widths of the pen:
 NEAR = 1.0  # from an end of the stretch to the rim's way
@@ -50,7 +52,8 @@ ASIDE = 0.2  # the same, where both run side by side
 LONGER = 1.5  # than the stretch: a way that is not goes along no bay
 BENT = 0.1  # from a polygon: a way that is so near to one turns as that does
 LOOP = 2.0  # of the way: a longer loop at a crossing is none of a narrow end
-OPEN = 0.2  # in the mean between its sides: a way with less runs out and back along one line
+OPEN = 0.2  # between its sides: a way with less runs out and back along one line, ...
+BACK = 1.5  # ... if it does so for half as long: a tip of 15 degrees comes as near to itself
 
 
 def rim_bays(setup: Setup, width_mm: float, own: Array, beyond: Array) -> Iterator[LaidWay]:
@@ -170,10 +173,17 @@ def turned_less_rad(way: Array, own: Array, width_mm: float) -> float:
 
 
 def _is_bay(way: Array, own: Array, width_mm: float) -> bool:
-    """Whether a way is longer than a stretch, or turns less, and goes round more than one line."""
+    """Whether a way is longer than a stretch, or turns less, and goes nowhere out and back along one line."""
     is_other = length_mm(way) > length_mm(own) + LONGER * width_mm
     is_other = is_other or turned_less_rad(way, own, width_mm) > 0
-    return is_other and broad_mm(way) > OPEN * width_mm
+    return is_other and not runs_back(way, width_mm)
+
+
+def runs_back(way: Array, width_mm: float) -> bool:
+    """Whether a way (n, 2) mm goes out along a line, and back along the same one."""
+    step_mm = STEP_WIDTHS * width_mm
+    apart = round(BACK / STEP_WIDTHS)
+    return bool((partners(evenly(way, step_mm), OPEN * width_mm, apart) >= 0).any())
 
 
 def is_a_pen(sheet: Sheet, broad_mm: float) -> bool:
