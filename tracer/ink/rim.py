@@ -41,9 +41,9 @@ PARABOLA = 0.4
 TIGHT = 1.0  # radius: where the rim turns so towards the ink, the line has a corner
 BEYOND = 0.25  # before and after such a corner the parabolas are bent by it
 LONGEST_MITRE = 3.0
-# squared, less ink is left by another corner: a round one of half a width leaves 0.16 less than a sharp one,
-# noise less than that
-BETTER = 0.01
+# squared, less ink is left by another corner, by root of the places that tell: a round one of half a width
+# leaves 0.16 less in all than a sharp one, noise at 66 places less than 0.02
+BETTER = 0.16
 FEWEST = 20  # places of a rim
 TIMES = 2  # it is felt: across the steps of pixels, and across what was felt
 
@@ -89,6 +89,11 @@ class RimCorners(NamedTuple):
     at: NDArray[np.int64]
     longest_mm: float
 
+    @property
+    def middles_mm(self) -> Array:
+        """The middles of its corners, (m, 2) mm."""
+        return self.way[self.at.sum(axis=1) // 2 % len(self.way)]
+
     def mitred(self, at: NDArray[np.int64] | None = None) -> Array:
         """The way with all its corners sharp, or those from some of its places to others (m, 2)."""
         at = self.at if at is None else at
@@ -112,8 +117,9 @@ class RimCorners(NamedTuple):
             middle = self.way[(group[0, 0] + group[-1, 1]) // 2 % len(self.way)]
             about = np.hypot(*(places_mm - middle).T) < near_mm
             sums, best = [float(wrong[about].sum()) for wrong in tried], 0
+            least = BETTER / math.sqrt(max(np.count_nonzero(about), 1))
             for other in (1, 2):
-                best = other if sums[other] < sums[best] - BETTER else best
+                best = other if sums[other] < sums[best] - least else best
             chosen.append(each[best][k])
         return self.mitred(np.vstack(chosen))
 

@@ -21,7 +21,7 @@ from morfax.tracer.program.laid.loop_ink import ink_of
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.seen_ink import SeenInk
 
-EVERY_PLACE = 1 << 24  # more than any patch has
+MOST_PLACES = 60_000  # of a patch: with more its largest would take seconds
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class PatchInk:
     @classmethod
     def of(cls, sheet: Sheet, patch: int, width_mm: float) -> PatchInk:
         """That of a patch that a pen of a width has drawn."""
-        return cls(ink_of(sheet, patch, width_mm, EVERY_PLACE), sheet.drawing.pitch_mm)
+        return cls(ink_of(sheet, patch, width_mm, MOST_PLACES), sheet.drawing.pitch_mm)
 
     @property
     def places_mm(self) -> Array:
@@ -70,4 +70,5 @@ class PatchInk:
         """The same in the worst box as wide as a line."""
         wrong, seen = self.wrong(away_mm), self.seen
         worst = self._boxes.worst(wrong if where is None else wrong * where, seen.width_mm)
-        return worst - seen.noise / len(wrong)
+        # a place may stand for some more pixels
+        return worst * seen.area_mm2 / self.pitch_mm**2 - seen.noise / len(wrong)

@@ -35,12 +35,12 @@ from morfax.motion.polyline import (
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.strokes import Sheet
-from morfax.tracer.ink.rim import felt_rim
+from morfax.tracer.ink.rim import RimCorners, felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE, CLEAR_WIDTHS
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.against_ink.window import SheetWindow, view_about
 from morfax.tracer.program.laid.laid_way import LaidWay
-from morfax.tracer.program.laid.line_parts import LEGS, REACH
+from morfax.tracer.program.laid.line_parts import LEGS
 from morfax.tracer.program.lines.selection import lines_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
@@ -76,22 +76,28 @@ def ways_within_rims(
     # the rims are about the outlines, and these about the stretch
     aperture_mm, reach_mm = setup.settings.aperture_mm, 2 * ABOUT_WIDTHS * width_mm
     view = view_about(setup.sheet, aperture_mm, width_mm, about, reach_mm)
-    ink = ink_about(setup.sheet.drawing, about, width_mm, REACH)
-
-    def left(way: Array) -> Array:
-        return ink.left_at(ink.drawn_along(way, half_mm) - ink.darkness)
-
     for outline in _outlines(setup.sheet.drawing, about, width_mm):
         if nearest_mm(own[[0, -1]], outline).max() > NEAR * width_mm:
             continue
         rim = felt_rim(view, outline)
         if rim is None:
             continue
-        corners = rim.corners(half_mm)
-        within = corners.likest(ink.places_mm, left, CLEAR_WIDTHS * width_mm)
+        within = _likest(setup.sheet.drawing, rim.corners(half_mm), width_mm)
         for way in _between(within, own, width_mm):
             if not len(crossings_of(way, np.arange(len(way) - 1))):
                 yield LaidWay(tuple(between_corners(way)), half_mm)
+
+
+def _likest(drawing: Drawing, corners: RimCorners, width_mm: float) -> Array:
+    """The way of a pen of a width within a rim, with its corners as their ink has them."""
+    if not len(corners.at):
+        return corners.way
+    ink = ink_about(drawing, corners.middles_mm, width_mm, CLEAR_WIDTHS)
+
+    def left(way: Array) -> Array:
+        return ink.left_at(ink.drawn_along(way, 0.5 * width_mm) - ink.darkness)
+
+    return corners.likest(ink.places_mm, left, CLEAR_WIDTHS * width_mm)
 
 
 def within_outer_rims(setup: Setup, width_mm: float, own: Array) -> Iterator[Array]:
