@@ -21,7 +21,7 @@ from morfax.tracer.program.laid.loop_ink import ink_of
 from morfax.tracer.tangles import pen
 from morfax.tracer.tangles.seen_ink import SeenInk
 
-MOST_PLACES = 60_000  # of a patch: with more its largest would take seconds
+MOST_PLACES = 100_000  # of a patch: with more its largest would take seconds
 
 
 @dataclass(frozen=True, eq=False)
