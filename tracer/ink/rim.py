@@ -117,7 +117,7 @@ class RimCorners(NamedTuple):
             middle = self.way[(group[0, 0] + group[-1, 1]) // 2 % len(self.way)]
             about = np.hypot(*(places_mm - middle).T) < near_mm
             sums, best = [float(wrong[about].sum()) for wrong in tried], 0
-            least = BETTER / math.sqrt(max(np.count_nonzero(about), 1))
+            least = BETTER / math.sqrt(max(int(about.sum()), 1))
             for other in (1, 2):
                 best = other if sums[other] < sums[best] - least else best
             chosen.append(each[best][k])
