@@ -201,7 +201,7 @@ def _most_left(own: float, touch: Touch, rims: BothWays) -> float:
     """
     if own < LEAVES:
         return own - GAIN if rims.is_exchanged else -math.inf
-    return LEAVES if touch.turns_back else own
+    return LEAVES if touch.turns_back else own - GAIN
 
 
 def _steepest_rad(ways: _Ways) -> float:
