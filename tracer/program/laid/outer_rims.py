@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
-from morfax.motion.polyline import between_corners, closed_up, length_mm
+from morfax.motion.polyline import at_lengths, between_corners, closed_up, length_mm
 from morfax.tracer.effort import MANY
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
@@ -96,10 +97,19 @@ class _OuterRims(WayInk):
         if ends is None or own is None:
             return None
         way = np.vstack([own[0], beside.between(*ends)[1:-1], own[-1]])
+        if not _is_along(way, own, ABOUT_WIDTHS * self.line.width_mm):
+            return None
         laid = LaidWay(tuple(between_corners(way)), 0.5 * self.line.width_mm)
         seen = self.about(*ends, laid.way)
         gain = 0.0 if seen is None else _gain(seen, laid)
         return self.as_bay(*ends, laid, gain) if gain > 0 else None
+
+
+def _is_along(way: Array, own: Array, near_mm: float) -> bool:
+    """Whether a way (n, 2) mm goes along another (m, 2) mm, and not round one of its lobes the other way."""
+    each = np.linspace(0.0, 1.0, max(len(way), len(own)))
+    both = [at_lengths(line, each * length_mm(line)) for line in (way, own)]
+    return bool(np.hypot(*(both[0] - both[1]).T).max() < near_mm)
 
 
 class _Beside(NamedTuple):
