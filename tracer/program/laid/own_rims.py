@@ -54,6 +54,7 @@ from morfax.tracer.program.laid.rim_way import RimWay, kinks_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
+from morfax.tracer.tangles.seen_ink import DIFFER
 
 MOST_AREAS = 12  # of paper: of more all sets would take seconds, ...
 LONGEST = 4000.0  # widths of ink: ... and so would longer ones
@@ -164,9 +165,11 @@ class _OwnRims:
         own_mm, ink, own_rad = self._own_mm, self.ink, self._own_rad
         if (most := ink.worst(own_mm)) > MISSED:
             return ink.worst(away_mm) < BETTER * most
+        # where both leave as much, the head's own parts are kept
+        changed = changed & (np.abs(ink.wrong(away_mm) - ink.wrong(own_mm)) > DIFFER)
         left, own_left = (ink.left(each, changed) for each in (away_mm, own_mm))
         worst, own_worst = (ink.worst(each, changed) for each in (away_mm, own_mm))
-        less_rad = LESS_RAD
+        less_rad = -SAME_RAD if worst < BETTER * own_worst and own_worst > OFF else LESS_RAD
         if any(map(self._crosses_itself, self.lines)):
             leave_less = left < BETTER * own_left and worst < BETTER * own_worst
             less_rad = LESS_RAD - END_RAD if leave_less else -SAME_RAD
