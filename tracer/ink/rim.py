@@ -41,14 +41,14 @@ PARABOLA = 0.4
 TIGHT = 1.0  # radius: where the rim turns so towards the ink, the line has a corner
 BEYOND = 0.25  # before and after such a corner the parabolas are bent by it
 LONGEST_MITRE = 3.0
-# squared, less ink is left by another corner, by root of the places that tell: a round one of half a width
-# leaves 0.16 less in all than a sharp one, noise at 66 places less than 0.02
+# squared, over the root of the number of places that tell: so much less ink another corner must leave. A
+# round one of half a width leaves 0.16 less than a sharp one; noise, at 66 places, less than 0.02
 BETTER = 0.16
 FEWEST = 20  # places of a rim
 TIMES = 2  # it is felt: across the steps of pixels, and across what was felt
 
 # what a pen along a way (n, 2) mm leaves unexplained at each of some places, (m,) squares of its width
-Left = Callable[[Array], Array]
+LeftAt = Callable[[Array], Array]
 
 
 class Rim(NamedTuple):
@@ -97,11 +97,11 @@ class RimCorners(NamedTuple):
     def mitred(self, at: NDArray[np.int64] | None = None) -> Array:
         """The way with all its corners sharp, or those from some of its places to others (m, 2)."""
         at = self.at if at is None else at
-        return (
-            _mitred(self.way, self.headings_rad, at, self.longest_mm) if len(at) else self.way
-        )
+        if not len(at):
+            return self.way
+        return _mitred(self.way, self.headings_rad, at, self.longest_mm)
 
-    def likest(self, places_mm: Array, left: Left, near_mm: float) -> Array:
+    def likest(self, places_mm: Array, left: LeftAt, near_mm: float) -> Array:
         """The way with all its corners sharp but for those where one corner in place of several into which
         noise broke it, or a round one, leaves less of the ink at places (n, 2) mm so near.
         """

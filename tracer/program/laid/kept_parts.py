@@ -32,7 +32,7 @@ from morfax.tracer.sensing.view import STEP_WIDTHS
 
 # In widths of the pen:
 ON = 0.02  # a way that is so near to a line runs along it
-LEAST = 4.0  # of a part: one leg and a place where the next begins are its ends
+LEAST = 4.0  # of a part: a leg of what is laid lies on either end of it
 CUT = 3.0  # the longest corner at which the rim's way is aside of a line, ...
 LONGER = 0.5  # ... if it is no longer than the line's own by more than that
 # places that show where the way comes to a corner from, and where it goes on
@@ -58,6 +58,11 @@ class Kept:
         return self.to_mm < self.from_mm
 
     @property
+    def sign(self) -> int:
+        """Of a length along the line in its direction: -1 for one that goes back."""
+        return -1 if self.is_back else 1
+
+    @property
     def length_mm(self) -> float:
         """Its length."""
         return abs(self.to_mm - self.from_mm)
@@ -67,7 +72,7 @@ class Kept:
         if other.line is not self.line or other.is_back is not self.is_back:
             return False
         apart_mm, width_mm = (other.first - self.last) * step_mm, step_mm / STEP_WIDTHS
-        own_mm = (other.from_mm - self.to_mm) * (-1 if self.is_back else 1) % self.round_mm
+        own_mm = self.sign * (other.from_mm - self.to_mm) % self.round_mm
         if apart_mm > CUT * width_mm or abs(own_mm - apart_mm) > LONGER * width_mm:
             return False
         if apart_mm < width_mm:  # on the threshold
@@ -82,9 +87,8 @@ class Kept:
 
     def with_more(self, other: Kept) -> Kept:
         """It with another one behind it."""
-        side = -1 if self.is_back else 1
-        more_mm = side * (other.to_mm - self.to_mm) % self.round_mm
-        return replace(self, last=other.last, to_mm=self.to_mm + side * more_mm)
+        more_mm = self.sign * (other.to_mm - self.to_mm) % self.round_mm
+        return replace(self, last=other.last, to_mm=self.to_mm + self.sign * more_mm)
 
     @cached_property
     def part(self) -> Line:
@@ -228,7 +232,9 @@ def _joined(found: Sequence[Kept], way: Array, step_mm: float) -> list[Kept]:
         return joined
     if len(joined) > 1:
         return [*joined[1:-1], joined[-1].with_more(again)]
-    kept, side = joined[0], -1 if joined[0].is_back else 1  # all of it
+    kept = joined[0]  # all of it
     return [
-        replace(kept, last=kept.first + count - 1, to_mm=kept.from_mm + side * kept.round_mm)
+        replace(
+            kept, last=kept.first + count - 1, to_mm=kept.from_mm + kept.sign * kept.round_mm
+        )
     ]

@@ -66,7 +66,9 @@ LESS_RAD = 0.5  # so much less turning is less
 # at which that crosses itself
 SAME_RAD = 0.15
 MISSED = 0.5  # of a box: along so much ink some line was missed; a corner that is cut leaves up to 0.3
-BETTER = 0.5  # of what lines leave that cross: ways that leave less explain the ink better
+BETTER = (
+    0.5  # of what the lines that were found leave: ways that leave less explain the ink better
+)
 
 
 def within_own_rims(setup: Setup, patch: int, lines: list[Line]) -> list[Line]:
@@ -116,8 +118,7 @@ class _OwnRims:
     @cached_property
     def _own_mm(self) -> Array:
         """How far the ink's places are from the lines that were found."""
-        ways = [line.places_mm if line.is_open else line.loop_mm for line in self.lines]
-        return np.min([self.ink.away_mm(way) for way in ways], axis=0)
+        return np.min([self.ink.away_mm(_way_of(line)) for line in self.lines], axis=0)
 
     def _crosses_itself(self, line: Line) -> bool:
         """Whether a closed line crosses itself."""
@@ -194,7 +195,7 @@ class _OwnRims:
 
     def _turned_rad(self, line: Line) -> float:
         """By how much a line turns; an end of an open one counts as a corner."""
-        polygon = plain(line.places_mm if line.is_open else line.loop_mm, ON * self.pen_mm)
+        polygon = plain(_way_of(line), ON * self.pen_mm)
         return turned_rad(polygon, is_closed=not line.is_open) + 2 * END_RAD * line.is_open
 
     def _sets(self) -> Iterator[list[RimWay]]:
@@ -277,6 +278,11 @@ class _OwnRims:
         carriage.run(stretches, leader=REDRAWN)
         xy_mm = carriage.positions_mm
         return closed_anew(self.lines[0], xy_mm, carriage.led, width_mm, length_mm(xy_mm))
+
+
+def _way_of(line: Line) -> Array:
+    """Places along a line, without the lead line of a closed one, (n, 2) mm."""
+    return line.places_mm if line.is_open else line.loop_mm
 
 
 def _are_apart(way: Array, least_mm: float) -> NDArray[np.bool_]:

@@ -58,8 +58,8 @@ BACK = 1.5  # ... if it does so for half as long: a tip of 15 degrees comes as n
 
 def rim_bays(setup: Setup, width_mm: float, own: Array, beyond: Array) -> Iterator[LaidWay]:
     """Those ways within the rims of the ink about a stretch (n, 2) mm and what belongs to it (m, 2) mm, from
-    its first place to its last, that are longer than the stretch or turn less, and go round more than one
-    line.
+    its first place to its last, that are longer than the stretch or turn less, and go nowhere out and back
+    along one line.
     """
     for bay in ways_within_rims(setup, width_mm, own, beyond):
         if _is_bay(bay.way, own, width_mm):
