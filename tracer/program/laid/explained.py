@@ -34,19 +34,29 @@ class Explained(NamedTuple):
 def explained(setup: Setup, lines: Sequence[Line]) -> Explained:
     """The lines as they explain the ink: those of a patch that is one outline as that, unless the lines that
     were found leave less of its ink when they are mended.
+
+    A patch that goes round several areas of paper is asked at once; another one if its lines leave some ink
+    when they are mended.
     """
-    outlines = _outlines(setup, lines)
+    # 1. with the outlines of the patches that are asked at once
+    goes_round = setup.sheet.loops() > 1
+    outlines = _outlines(setup, lines, set(np.flatnonzero(goes_round).tolist()))
     found = _mended(setup, lines, outlines)
-    if all(outline.is_sure for outline in outlines.values()):
-        return found
+    # 2. the other way about, where that is in doubt
+    is_left = {patch for patch in _told(setup, found) if not goes_round[patch]}
+    others = _outlines(setup, lines, is_left)
     sure = {patch: outline for patch, outline in outlines.items() if outline.is_sure}
-    other = _mended(setup, lines, sure)
+    doubtful = {p: o for p, o in outlines.items() if not o.is_sure} | others
+    if not doubtful:
+        return found
+    other = _mended(setup, lines, sure | others)
+    # 3. of each patch what leaves less
     patches = [_patches(setup, each.lines) for each in (found, other)]
     better = frozenset(
         patch
-        for patch in outlines.keys() - sure.keys()
-        if outlines[patch].left(_on(patch, other, patches[1]))
-        < outlines[patch].left(_on(patch, found, patches[0]))
+        for patch, outline in doubtful.items()
+        if outline.left(_on(patch, other, patches[1]))
+        < outline.left(_on(patch, found, patches[0]))
     )
     return _put_together(setup, (found, other), patches, better) if better else found
 
@@ -65,17 +75,22 @@ def _mended(
     return Explained(mended, left, frozenset(outlines))
 
 
-def _outlines(setup: Setup, lines: Sequence[Line]) -> dict[int, OneOutline]:
-    """The patches of ink on which lines were found that are one outline each, by their numbers."""
-    sheet, found = setup.sheet, dict[int, list[Line]]()
-    goes_round = sheet.loops()
-    if goes_round.max(initial=0) < 2 or setup.operator.reads_marks(lines):
+def _outlines(setup: Setup, lines: Sequence[Line], patches: set[int]) -> dict[int, OneOutline]:
+    """Those of some patches of ink that are one outline each, by their numbers."""
+    if not patches or setup.operator.reads_marks(lines):
         return {}
-    for line in lines:
-        if goes_round[patch := sheet.patch_at(line.places_mm[0])] > 1:
+    found = dict[int, list[Line]]()
+    for line, patch in zip(lines, _patches(setup, lines), strict=True):
+        if patch in patches:
             found.setdefault(patch, []).append(line)
     outlines = {patch: as_one_outline(setup, patch, those) for patch, those in found.items()}
     return {patch: each for patch, each in outlines.items() if each is not None}
+
+
+def _told(setup: Setup, found: Explained) -> set[int]:
+    """The patches of which ink is left."""
+    places = [np.array(place.place_mm) for place in found.left if place.kind == "ink"]
+    return {setup.sheet.patch_at(place) for place in places}
 
 
 def _patches(setup: Setup, lines: Sequence[Line]) -> list[int]:
@@ -106,4 +121,4 @@ def _put_together(
             if (patch in better) == n
         ]
     longest_first = sorted(left, key=lambda place: -place.length_mm)
-    return Explained(lines, tuple(longest_first), both[0].one - better)
+    return Explained(lines, tuple(longest_first), both[0].one ^ better)

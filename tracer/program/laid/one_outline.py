@@ -35,7 +35,7 @@ from morfax.tracer.program.laid.rim_way import kinks_of
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import ON_WIDTHS, partners, stretches
-from morfax.tracer.tangles.seen_ink import DIFFER, LIKE
+from morfax.tracer.tangles.seen_ink import DIFFER
 
 MOST_SIDES = 60  # of a patch, towards areas of paper: to feel all rims of more takes seconds
 # of the length of its ink: as long are both the longest sides of one line together, and of a net they are not
@@ -89,7 +89,7 @@ def as_one_outline(setup: Setup, patch: int, lines: list[Line]) -> OneOutline | 
 
 def _may_be_one(rims: OwnRims) -> bool:
     """Whether the lines that were found leave ink of a patch that may be one line."""
-    if not rims.are_of(MOST_SIDES):
+    if not rims.are_of(range(2, MOST_SIDES + 1)):
         return False
     sides_mm = sorted(map(_length_mm, rims.outlines))
     ink_mm = float(rims.setup.sheet.lengths_mm[rims.patch])
@@ -98,11 +98,9 @@ def _may_be_one(rims: OwnRims) -> bool:
 
 def _left(rims: OwnRims, way: Array) -> tuple[float, float]:
     """How much of the ink the lines that were found leave, and a closed way, where these differ, in squares
-    of the width; all of it, if the way is none of a line that explains its ink.
+    of the width.
     """
     ink, away_mm = rims.ink, rims.ink.away_mm(closed_up(way))
-    if ink.left(away_mm) > LIKE * _length_mm(way) / rims.pen_mm:
-        return 0.0, np.inf
     differ = np.abs(ink.wrong(away_mm) - ink.wrong(rims.own_mm)) > DIFFER
     return ink.left(rims.own_mm, differ), ink.left(away_mm, differ)
 

@@ -88,15 +88,15 @@ class OwnRims:
     @property
     def are_asked(self) -> bool:
         """Whether the patch may be closed lines that touch, and those that were found may be others."""
-        return self.are_of(MOST_AREAS)
+        # of most patches it is no more than two outlines; to feel a pen takes longer
+        return self.are_of(range(3, MOST_AREAS + 1))
 
-    def are_of(self, most_areas: int) -> bool:
-        """Whether the patch has sides towards so many areas of paper at the most, shows where a pen was, and
-        may be other closed lines than those that were found.
+    def are_of(self, areas: range) -> bool:
+        """Whether the patch has sides towards so many areas of paper, shows where a pen was, and may be other
+        closed lines than those that were found.
         """
         sheet, operator = self.setup.sheet, self.setup.operator
-        # of most patches it is no more than two outlines; to feel a pen takes longer
-        if not 2 < len(self.outlines) <= most_areas:
+        if len(self.outlines) not in areas:
             return False
         if float(sheet.lengths_mm[self.patch]) > LONGEST * self.pen_mm:
             return False
