@@ -277,12 +277,22 @@ def _column_of_spot(lines, begin, middle, weights, seen):  # type: ignore[no-unt
 
 @njit(cache=True, nogil=True)
 def _crossed(seen, level, crossings):  # type: ignore[no-untyped-def]
-    """Fill in where a line gets darker than a level, and lighter, in turn; returns how many places."""
+    """Fill in where a line gets darker than a level, and lighter, in turn; returns how many places.
+
+    Most pixels are as the one before: they are told in vectors.
+    """
     inside, count = False, 0
-    for j in range(len(seen)):
-        if (seen[j] > level) != inside:
-            crossings[count] = j
-            inside, count = not inside, count + 1
+    for begin in range(0, len(seen), GAP_PX):
+        part = seen[begin : begin + GAP_PX]
+        differs = False
+        for j in range(len(part)):
+            differs |= (part[j] > level) != inside
+        if not differs:
+            continue
+        for j in range(len(part)):
+            if (part[j] > level) != inside:
+                crossings[count] = begin + j
+                inside, count = not inside, count + 1
     if inside:
         crossings[count] = len(seen)
         count += 1

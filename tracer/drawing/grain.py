@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
-from morfax.tracer.drawing.paper import disc
+from morfax.tracer.drawing.discs import disc
 from morfax.tracer.effort import FEW_PX
 from morfax.tracer.limits import PAPER
 

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.tracer.drawing.blocks import Blocks
+from morfax.tracer.drawing.discs import disc, without_dark, without_light
 from morfax.tracer.drawing.lighting import Lighting, from_beside
 from morfax.tracer.drawing.polarity import Polarity, polarity_of
 
@@ -169,11 +170,4 @@ def _stroke_px(by: int, pitch_mm: float) -> int:
 
 def _closed(small: Levels, is_light: bool, across: int) -> Levels:
     """A reduced picture without its strokes."""
-    closing = cv2.MORPH_CLOSE if is_light else cv2.MORPH_OPEN
-    return np.asarray(cv2.morphologyEx(small, closing, disc(across // 2)), np.float32)
-
-
-def disc(radius_px: int) -> NDArray[np.uint8]:
-    """Mask of a disc."""
-    across = 2 * radius_px + 1
-    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across)), np.uint8)
+    return (without_dark if is_light else without_light)(small, across // 2)

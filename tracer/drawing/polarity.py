@@ -27,6 +27,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.tracer.drawing.discs import without_dark, without_light
+
 Levels = NDArray[np.float32]
 
 # of the edges: with less between them a picture is not told clearly; by trial on made photographs of bold
@@ -51,10 +53,8 @@ class Polarity(NamedTuple):
 
 def polarity_of(small: Levels, crossing_px: int) -> Polarity:
     """The polarity of a reduced picture on which no place where strokes cross is broader; an odd number."""
-    crossing = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (crossing_px, crossing_px))
     closed, opened = (
-        _edges(np.asarray(cv2.morphologyEx(small, kind, crossing), np.float32))
-        for kind in (cv2.MORPH_CLOSE, cv2.MORPH_OPEN)
+        _edges(without(small, crossing_px // 2)) for without in (without_dark, without_light)
     )
     if opened < closed:
         return Polarity(False, (LIGHT_LINES,))
@@ -63,5 +63,5 @@ def polarity_of(small: Levels, crossing_px: int) -> Polarity:
 
 def _edges(levels: Levels) -> float:
     """How much each pixel differs from the next one across and down, altogether."""
-    steps = (np.abs(np.diff(levels, axis=k)).sum(dtype=float) for k in (0, 1))
-    return float(sum(steps))
+    across = cv2.norm(levels[:, 1:], levels[:, :-1], cv2.NORM_L1)
+    return float(across + cv2.norm(levels[1:], levels[:-1], cv2.NORM_L1))

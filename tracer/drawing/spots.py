@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from morfax.motion.median import MIDDLE, ONE_BELOW, TWO_BELOW, percentile
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.contrast import EVERY_COLUMN
-from morfax.tracer.drawing.paper import disc
+from morfax.tracer.drawing.discs import disc
 
 Darkness = NDArray[np.float32]
 

@@ -27,13 +27,13 @@ from morfax.motion.median import median
 from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.contrast import LEAST_STROKE_MM, LEAST_STROKE_PX
 from morfax.tracer.drawing.depth import depth_along
+from morfax.tracer.drawing.discs import disc
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import DEEPEST_PX, are_solid, depths_px, inked
 from morfax.tracer.drawing.lengths import PIXELS_OFF, Told, one_pen_mm, told
 from morfax.tracer.drawing.middles import deepest, ink_about
 from morfax.tracer.drawing.nearest_ink import nearest_run
 from morfax.tracer.drawing.numbering import InkSpread, longest_first
-from morfax.tracer.drawing.paper import disc
 from morfax.tracer.effort import MANY
 
 Pixels = NDArray[Any]

@@ -26,7 +26,7 @@ from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.sensing import photocell
 from morfax.tracer.sensing.leg import ABOUT_LEGS, FACING, Leg, centre_at, turn
-from morfax.tracer.sensing.parabola import bend_at
+from morfax.tracer.sensing.parabola import leg_about
 from morfax.tracer.sensing.photocell import (
     LEVEL,
     Cells,
@@ -246,7 +246,7 @@ def _felt_about(cells, place, arcs, sizes_mm):  # type: ignore[no-untyped-def]
         for column in range(3):
             both[shorter - 1 - n, column] = behind[n, column]
             both[shorter - 1 + n, column] = ahead[n, column]
-    bend = abs(bend_at(both, shorter - 1, CENTRED * own_mm))
+    bend = abs(leg_about(both, shorter - 1, CENTRED * own_mm)[3])
     if bend * own_mm > BENT:
-        bend = abs(bend_at(both, shorter - 1, FELT_LEGS * own_mm))
+        bend = abs(leg_about(both, shorter - 1, FELT_LEGS * own_mm)[3])
     return (shorter - 1) * step_mm, bend

@@ -97,6 +97,7 @@ class Tuning(NamedTuple):
         float  # share of the turn rate's error that the servo makes good in one period
     )
     square: bool  # the sweep stands square to bends
+    square_on_clean: bool  # it does where the line was felt clean
     direct_rad_s_mm: float  # turn rate per mm that the cell sees the line aside; 0: by the drum
     cell_gain: float  # of the swinging cell's current
     detector_gain: float  # of the synchronous detector

@@ -83,9 +83,10 @@ def swing(cells, state, t, way):  # type: ignore[no-untyped-def]
 @njit(cache=True, inline="always")
 def _across(state, t):  # type: ignore[no-untyped-def]
     """Sine and cosine of the angle from the heading to the line where the cell swings: on the arc that
-    touches the heading, if the sweep stands square to bends; else along the heading.
+    touches the heading, if the sweep stands square to bends, or does so where the line was felt clean; else
+    along the heading.
     """
-    if not t.square:
+    if not t.square and (not t.square_on_clean or state.travel_mm >= state.trusted_mm):
         return 0.0, 1.0
     lead = state.lead_mm
     aside = min(max(state.middle_mm, -MOST_ASLANT * lead), MOST_ASLANT * lead)

@@ -24,6 +24,7 @@ from morfax.motion.compiled import njit
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Tuning
+from morfax.tracer.limits import DETAIL_PX
 from morfax.tracer.sensing.photocell import TWO_PI, sweep
 from morfax.tracer.sensing.view import View
 
@@ -98,6 +99,8 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     narrow_mm = NARROW_LEGS * view.leg_mm
     narrowest_rad = (EDGE if view.on_edge else LINE).narrowest_rad
     slope, mean, balance = _calibrate(stance, placed.amplitude_mm)
+    # no cell parts the edges of a line that is thinner, and steps of pixels bend it more than it is bent
+    is_thin = bool(view.width_mm < DETAIL_PX * view.pitch_mm)
     pin = _pin(max(LEAST_SWEEP_PERIODS, round(rate_hz / settings.sweep_hz)))
     return Tuning(
         period_s=1 / rate_hz,
@@ -125,6 +128,7 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
         drive_change_mm_s=settings.drive.acceleration_mm_s2 / rate_hz,
         steering_gain=_steering_gain(settings.steering_lag_s, rate_hz),
         square=view.square,
+        square_on_clean=not view.on_edge and not is_thin,
         direct_rad_s_mm=settings.direct_rad_s_mm,
         cell_gain=settings.cell_gain,
         detector_gain=settings.detector_gain,

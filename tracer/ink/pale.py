@@ -26,8 +26,8 @@ from morfax.tracer.drawing.contrast import ABOVE_NOISE
 from morfax.tracer.drawing.deepening import ABOVE_NOISE as STANDS_OUT
 from morfax.tracer.drawing.deepening import LEAST, shaded
 from morfax.tracer.drawing.depth import depth_at
+from morfax.tracer.drawing.discs import disc
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.paper import disc
 from morfax.tracer.drawing.spots import SPOT_PX, noise_of_spots, of_pixels, times_as_noisy
 from morfax.tracer.drawing.thinning import Indices, neighbours, thinned
 from morfax.tracer.effort import FEW_PX

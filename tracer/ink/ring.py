@@ -12,7 +12,8 @@ The fast cell narrows its window where a bend was felt clean, and stays three ti
 square to the bend, as the slow cell's does: aslant across a line of 0.8 mm on a circle of 2.4 mm the middle
 between both edges is 4 um inside the line.
 
-Source: our own. Questions: contours sweep square to their heading; theirs would move by as much.
+Source: our own. Questions: contours sweep square only where their lines were felt clean and the cells part
+their edges; by trial, with a square sweep all along, 7 of 22 paths of hand-drawn sheets went other ways.
 """
 
 from __future__ import annotations

@@ -59,16 +59,35 @@ class HeadPath:
         return bool(np.abs(aside).max() < within_mm)
 
 
-@njit(cache=True)
-def _walked(block, step_mm, number, at):  # type: ignore[no-untyped-def]
+def _walked(block: Array, step_mm: float, number: int, at: Array) -> Array:
     """Place and position (n, 3) at each multiple of a step from a number on, as far as a block of positions
     goes.
 
     `at` is moved along: the number of the block's first position, the length up to there, and the newest
     position to which the head came by moving.
     """
-    out, count = np.empty((1024, 3)), 0
-    first, come_mm, moved = at
+    count = math.ceil(_end_mm(block, at[1]) / step_mm) - number + 1
+    walked = np.empty((max(count, 0), 3))
+    return walked[: _walk(block, step_mm, number, at, walked)]
+
+
+@njit(cache=True, _nrt=False)
+def _end_mm(block, come_mm):  # type: ignore[no-untyped-def]
+    """The length at the end of a block of positions, rounded otherwise than by hypot, which takes longer."""
+    for k in range(len(block) - 1):
+        dx = block[k + 1, 0] - block[k, 0]
+        dy = block[k + 1, 1] - block[k, 1]
+        come_mm += math.sqrt(dx * dx + dy * dy)
+    return come_mm
+
+
+@njit(cache=True, _nrt=False)
+def _walk(block, step_mm, number, at, walked):  # type: ignore[no-untyped-def]
+    """Fill in what is walked, and give how many places that are: with room that grows it takes five times as
+    long.
+    """
+    count = 0
+    first, come_mm, moved = at[0], at[1], at[2]
     for k in range(len(block) - 1):
         x = block[k, 0]
         y = block[k, 1]
@@ -80,15 +99,13 @@ def _walked(block, step_mm, number, at):  # type: ignore[no-untyped-def]
         long_mm = next_mm - come_mm
         while (number + count) * step_mm < next_mm:
             on_mm = (number + count) * step_mm - come_mm
-            if count == len(out):
-                out = np.concatenate((out, np.empty_like(out)))
-            out[count, 0] = dx / long_mm * on_mm + x
-            out[count, 1] = dy / long_mm * on_mm + y
-            out[count, 2] = (first + k + 1 - moved) / long_mm * on_mm + moved
+            walked[count, 0] = dx / long_mm * on_mm + x
+            walked[count, 1] = dy / long_mm * on_mm + y
+            walked[count, 2] = (first + k + 1 - moved) / long_mm * on_mm + moved
             count += 1
         come_mm, moved = next_mm, first + k + 1
     at[1], at[2] = come_mm, moved
-    return out[:count]
+    return count
 
 
 def _along(places: Array) -> Array:

@@ -23,7 +23,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, lengths_mm, nearest_mm
-from morfax.tracer.drawing.paper import disc
+from morfax.tracer.drawing.discs import disc
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN

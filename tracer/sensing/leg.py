@@ -16,12 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import ROBUST, median
-from morfax.motion.moments import LEAST_WEIGHT, bend_of
-from morfax.motion.plane import CORNER_RAD, direction, heading_of, left_of
+from morfax.motion.compiled import njit
+from morfax.motion.plane import CORNER_RAD, direction, left_of
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.limits import AHEAD_RAD, BACK_RAD, NEARLY_PARALLEL
-from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, leg_through, parabola
+from morfax.tracer.sensing.parabola import leg_about, leg_through
 from morfax.tracer.sensing.scout import FEWEST
 
 # straight on is within this, and a leg turns off to a side by more than that
@@ -97,30 +96,9 @@ def leg_of(seen: Array, last: bool, length_mm: float) -> Leg:
 
 
 def centre_at(seen: Array, i: int, half_mm: float) -> Leg:
-    """The line about station i: the parabola through the stations within `half_mm`, weighted to the middle.
-
-    A station whose width differs is spoiled by a speck on one edge, and counts less.
-    """
-    d = seen[:, :2] - seen[i, :2]
-    near = np.flatnonzero(np.hypot(*d.T) < half_mm)
-    heading, t, n = _chord(d[near[-1]] - d[near[0]])
-    x = d[near] @ t
-    y = d[near] @ n
-    width = median(seen[near, 2])
-    off = np.abs(seen[near, 2] / width - 1)
-    usual = max(OUTLIERS * ROBUST * median(off), BITTEN)
-    weights = np.maximum(1 - (x / half_mm) ** 2, LEAST_WEIGHT) / (1 + (off / usual) ** 4)
-    offset, slope, bend = parabola(x, y, weights, 2)[0]
-    curvature = bend_of(slope, 2 * bend)
-    place = seen[i, :2] + offset * n
-    return Leg(place, heading + math.atan(slope), curvature, width, seen[i:])
-
-
-def _chord(chord: Array) -> tuple[float, Array, Array]:
-    """Heading of a chord, and the unit vectors along it and to its left."""
-    heading = heading_of(chord)
-    t = direction(heading)
-    return heading, t, left_of(t)
+    """The line about station i, seen within `half_mm` to both sides (see `parabola.leg_about`)."""
+    x, y, heading, bend, width = leg_about(np.ascontiguousarray(seen), i, half_mm)
+    return Leg(np.array([x, y]), heading, bend, width, seen[i:])
 
 
 # two legs
@@ -133,22 +111,43 @@ def turn(a: float, b: float) -> float:
 
 def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
     """Distances (beyond the incoming leg's end, before the outgoing leg's) where they cross, mm, or None."""
+    lines = (
+        (*leg.end_mm.tolist(), leg.heading_rad, leg.bend_per_mm) for leg in (incoming, outgoing)
+    )
+    they_meet, s, u = _meet(*lines)
+    return (s, u) if they_meet else None
+
+
+@njit(cache=True, _nrt=False)
+def _meet(incoming, outgoing):  # type: ignore[no-untyped-def]
+    """Whether two lines (x, y, heading, bend) meet, and those distances, by Newton's steps."""
     s = u = 0.0
     for _ in range(ROUNDS):
-        a = incoming.heading_at(s)
-        b = outgoing.heading_at(-u)
-        cross = math.sin(turn(a, b))
+        a = incoming[2] + math.atan(incoming[3] * s)
+        b = outgoing[2] + math.atan(outgoing[3] * -u)
+        turned = b - a
+        turned -= math.tau * round(turned / math.tau)
+        cross = math.sin(turned)
         if abs(cross) < NEARLY_PARALLEL:
-            return None
-        from_x, from_y = incoming.place(s)
-        to_x, to_y = outgoing.place(-u)
+            return False, s, u
+        from_x, from_y = _place(incoming, s)
+        to_x, to_y = _place(outgoing, -u)
         dx, dy = to_x - from_x, to_y - from_y
         ds = (dx * math.sin(b) - dy * math.cos(b)) / cross
         du = (dx * math.sin(a) - dy * math.cos(a)) / cross
         s, u = s + ds, u - du
         if max(abs(s), abs(u)) > FARTHEST_MM:
-            return None
-    return s, u
+            return False, s, u
+    return True, s, u
+
+
+@njit(cache=True, _nrt=False)
+def _place(line, along_mm):  # type: ignore[no-untyped-def]
+    """The place at a distance along a line, as `Leg.place` has it."""
+    x, y, heading, bend = line
+    c, s = math.cos(heading), math.sin(heading)
+    aside = 0.5 * bend * along_mm * along_mm
+    return x + along_mm * c + aside * -s, y + along_mm * s + aside * c
 
 
 def turns_off(incoming: Leg, leg: Leg) -> bool:

@@ -195,35 +195,40 @@ def _inverse(matrix):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def bend_at(seen, i, half_mm):  # type: ignore[no-untyped-def]
-    """The bend of `leg.centre_at`, 1/mm, for kernels: to rounding the same."""
-    # 1. the stations about it
+def leg_about(seen, i, half_mm):  # type: ignore[no-untyped-def]
+    """(x, y, heading, bend, width) of the line about station i: the parabola through the stations within
+    `half_mm`, weighted to the middle.
+
+    A station whose width differs is spoiled by a speck on one edge, and counts less.
+    """
+    # 1. the stations about it, along and across their chord
     near = np.empty(len(seen), np.int64)
     count = 0
     for k in range(len(seen)):
         if length_between(seen, i, k) < half_mm:
             near[count] = k
             count += 1
-    first, last = near[0], near[count - 1]
-    heading = heading_between(seen, first, last)
-    c, s = math.cos(heading), math.sin(heading)
-    # 2. their weights
-    x = np.empty(count)
-    y = np.empty(count)
+    places = np.empty((count, 2))
     weights = np.empty(count)
     for k in range(count):
+        places[k, 0] = seen[near[k], 0] - seen[i, 0]
+        places[k, 1] = seen[near[k], 1] - seen[i, 1]
         weights[k] = seen[near[k], 2]
+    heading = heading_between(places, 0, count - 1)
+    c, s = math.cos(heading), math.sin(heading)
+    # 2. their weights
     width = median_of(weights)
     for k in range(count):
         weights[k] = abs(weights[k] / width - 1.0)
     usual = max(OUTLIERS * ROBUST * median_of(weights), BITTEN)
+    x = np.empty(count)
+    y = np.empty(count)
     for k in range(count):
-        dx = seen[near[k], 0] - seen[i, 0]
-        dy = seen[near[k], 1] - seen[i, 1]
-        x[k] = dx * c + dy * s
-        y[k] = dy * c - dx * s
+        x[k] = _along(places[k, 0], places[k, 1], c, s)
+        y[k] = _across(places[k, 0], places[k, 1], c, s)
         spoiled = (weights[k] / usual) ** 4
         weights[k] = max(1.0 - (x[k] / half_mm) ** 2, LEAST_WEIGHT) / (1.0 + spoiled)
     # 3. the parabola
-    found = parabola(x, y, weights, 2)[0]
-    return bend_of(found[1], 2.0 * found[2])
+    offset, slope, second = parabola(x, y, weights, 2)[0]
+    place = seen[i, 0] + offset * -s, seen[i, 1] + offset * c
+    return place[0], place[1], heading + math.atan(slope), bend_of(slope, 2.0 * second), width

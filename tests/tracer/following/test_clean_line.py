@@ -21,8 +21,10 @@ from morfax.tracer.head.carriage import Carriage
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.state import Home
 from morfax.tracer.head.trail import Trail, mark_along
+from morfax.tracer.head.tuning import tune
+from morfax.tracer.program.trace import trace
 from morfax.tracer.sensing.scout import scout
-from tests.tracer.inked import arc, inked, polyline
+from tests.tracer.inked import UM, arc, inked, polyline
 
 CIRCLE = arc((8.0, 8.0), 3.0)
 LONGEST_MM = 200.0
@@ -140,3 +142,21 @@ def test_a_line_is_felt_once_for_its_corners_too_unless_a_station_is_spoilt(
     assert len(asked) == times
     np.testing.assert_array_equal(seen, view.feel(pose[:2], pose[2], 2 * own_mm))
     assert (len(more) > len(seen)) == (times == 1)
+
+
+@pytest.mark.parametrize(("radius_mm", "within_um"), [(2.4, 4.0), (3.0, 3.5)])
+def test_a_cell_sweeps_square_to_a_bend_that_was_felt_clean(
+    radius_mm: float, within_um: float
+) -> None:
+    """Aslant to a line of 0.8 mm it saw a middle that was 9.3 and 5.4 um within the circle."""
+    (line,) = trace(inked(arc((8.0, 8.0), radius_mm), width_mm=0.8)).lines
+    off_mm = np.hypot(*(line.xy_mm - (8.0, 8.0)).T) - radius_mm
+    assert abs(float(np.mean(off_mm))) < within_um * UM
+
+
+def test_a_line_whose_edges_no_cell_parts_is_swept_as_it_was() -> None:
+    """Steps of pixels bend it more than it is bent: two grey levels went from 0.08 to 0.14 mm off."""
+    stances = (next(put_down(inked(CIRCLE, width_mm=width_mm)))[0] for width_mm in (0.45, 0.55))
+    thin, wide = (tune(stance, Settings(), MOTION_RATE_HZ) for stance in stances)
+    assert not thin.square_on_clean  # 5.3 pixels
+    assert wide.square_on_clean  # 6.5

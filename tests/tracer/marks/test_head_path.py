@@ -62,7 +62,8 @@ def test_a_long_path_is_kept_in_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_plain_python_walks_the_same_way(monkeypatch: pytest.MonkeyPatch) -> None:
     places = positions(300)
-    monkeypatch.setattr(organ, "_walked", organ._walked.py_func)
+    for name in ("_walk", "_end_mm"):
+        monkeypatch.setattr(organ, name, getattr(organ, name).py_func)
     check(organ.HeadPath(places, STEP_MM), places)
 
 

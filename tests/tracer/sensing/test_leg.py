@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from morfax.motion.arrays import Array
 from morfax.tracer.sensing.leg import Leg, centre_at, leg_of, meet, turn
-from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS, bend_at
+from morfax.tracer.sensing.parabola import BITTEN, OUTLIERS
 from tests.tracer.inked import UM, WIDTH_MM, arc
 
 NOTHING = np.empty((0, 3))
@@ -136,7 +136,6 @@ def test_the_centre_of_what_was_felt_is_a_weighted_parabola(widths_off: float) -
     assert leg.end_mm == pytest.approx(seen[i, :2] + offset * n, abs=1e-9)
     assert leg.heading_rad == pytest.approx(heading + math.atan(slope), abs=1e-9)
     assert leg.bend_per_mm == pytest.approx(2 * bend / (1 + slope**2) ** 1.5, abs=1e-8)
-    assert bend_at(seen, i, half_mm) == pytest.approx(leg.bend_per_mm, abs=1e-9)
 
 
 @pytest.mark.parametrize("deflection_deg", [30.0, 60.0, 90.0, 144.0, -90.0])

@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm
 from morfax.tracer.drawing.components import FRINGE_PX
+from morfax.tracer.drawing.discs import disc
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.paper import disc
 from morfax.tracer.tangles.tangle import DARKEST
 
 Darkness = NDArray[np.float64]
