@@ -150,7 +150,7 @@ def read(
     if _has_own_unit(content):
         stated = Stated(stated.dpi, OWN_UNIT)
     notes = page_notes(file, taken, pages) if page is None else ()
-    return Scan(file, pixels, stated, camera, taken, pages, notes)
+    return Scan(file, pixels, stated, camera, taken, pages, notes, not is_scan)
 
 
 def _why(error: Any) -> str:

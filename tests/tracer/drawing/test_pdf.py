@@ -129,6 +129,7 @@ def test_a_page_of_lines_needs_no_scale(tmp_path: Path) -> None:
     drawing = Drawing.open(written(tmp_path / "x.pdf", "0.5 w 15 10 m 15 40 l S", (50, 50)))
     assert drawing.pitch_mm == pytest.approx(MM_PER_INCH / 600)
     assert drawing.width_mm == pytest.approx(50, abs=drawing.pitch_mm)
+    assert drawing.is_rendered
 
 
 def test_red_lines_are_dark_and_colours_are_kept(tmp_path: Path) -> None:
@@ -181,7 +182,7 @@ def test_a_scanned_page_keeps_its_pixels(tmp_path: Path, mode: str, turned: int)
     document[0].set_rotation(turned)
     document.save(tmp_path / "b.pdf")
     scan = opened(tmp_path / "b.pdf")
-    assert scan.stated == ((300, 300), None)
+    assert scan.stated == ((300, 300), None) and not scan.is_rendered
     assert (scan.pixels == np.rot90(told.reshape(700, 500), -turned // 90)).all()
 
 
