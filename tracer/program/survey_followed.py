@@ -58,7 +58,7 @@ def followed(seen: Survey, setup: Setup) -> Survey:
         seen,
         entries=tuple(nested),
         lines=tuple(found.lines),
-        not_followed_mm=found.left_out_mm,
+        not_followed_mm=found.left_out_mm(),
     )
 
 

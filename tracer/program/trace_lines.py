@@ -27,8 +27,8 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.arrows import with_arrows
 from morfax.tracer.program.cutting_order import in_cutting_order
 from morfax.tracer.program.joined_lines import joined_to
-from morfax.tracer.program.laid.bent import bent
-from morfax.tracer.program.laid.narrow_bays import explained, with_bars
+from morfax.tracer.program.laid.explained import explained
+from morfax.tracer.program.laid.narrow_bays import with_bars
 from morfax.tracer.program.laid.own_rims import within_own_rims
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import selection
@@ -69,11 +69,15 @@ class FoundLines:
 
     lines: list[Line]
     left_out: int
-    left_out_mm: float
+    left_mm: dict[int, float]
     patch_of: dict[int, int] = field(default_factory=dict)
     letters_out: tuple[int, ...] = ()
     unclear: tuple[SmallPatch, ...] = ()
     slots: frozenset[int] = frozenset()
+
+    def left_out_mm(self, but: frozenset[int] = frozenset()) -> float:
+        """How much ink of all patches but some is joined to lines, but none."""
+        return sum(mm for patch, mm in self.left_mm.items() if patch not in but)
 
 
 def trace_lines(
@@ -94,15 +98,14 @@ def trace_lines(
     found = found_lines(setup.part(0.0, FOUND), which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines, found.unclear)
-    lines = bent(setup.part(FOUND, BENT), lines)
-    lines, left = explained(setup.part(BENT, EXPLAINED), lines)
+    lines, left, one = explained(setup.part(FOUND, EXPLAINED), lines)
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
     return Trace(
         tuple(in_cutting_order(setup.part(EXPLAINED, 1.0), lines)),
         operator,
         left_out=found.left_out,
-        left_out_mm=found.left_out_mm,
+        left_out_mm=found.left_out_mm(but=one),
         unread=unread,
         unexplained=left if which == "contours" else (),
         letters=_letters(sheet, lines) if which == "contours" else (),
@@ -157,7 +160,7 @@ def trace_places(
     setup = replace(setup, progress=None)  # all that is told has come to its end
     _refuse_none_begun(lines)
     lines, unread = with_marks_read(with_arrows(setup, lines), operator)
-    lines, left = explained(setup, bent(setup, lines))
+    lines, left, _ = explained(setup, lines)
     beside = left if alone else ()
     return Trace(
         tuple(in_cutting_order(setup, lines)), operator, unread=unread, unexplained=beside
@@ -223,11 +226,11 @@ def _small_asked(setup: Setup, which: Which, are_numbered: bool) -> list[tuple[i
 
 def _joined(
     setup: Setup, asked: list[Contour], lines: list[Line], strokes: dict[int, list[Line]]
-) -> tuple[list[tuple[Line, int]], float]:
+) -> tuple[list[tuple[Line, int]], dict[int, float]]:
     """Further lines of the patches on which a line was followed, each with its patch's number: the strokes
-    that are known, or those that the head finds; and the length of ink left over, mm.
+    that are known, or those that the head finds; and the length of ink left over of each, mm.
     """
-    joined, left_mm = list[tuple[Line, int]](), 0.0
+    joined, left_mm = list[tuple[Line, int]](), dict[int, float]()
     own, taken = {line.number: k for k, line in enumerate(lines)}, taken_by(setup, lines)
     for k, contour in enumerate(asked):
         setup.come(k, len(asked))
@@ -240,7 +243,7 @@ def _joined(
             if told is not found:
                 (lines[n], *others), more_mm = told, 0.0
             joined += [(other, contour.number) for other in others]
-            left_mm += more_mm
+            left_mm[contour.stroke.patch] = more_mm
     begins_mm = references_of(lines)
     kept = [each for each in joined if not selection.are_about(each[0].places_mm, begins_mm)]
     return kept, left_mm

@@ -171,6 +171,13 @@ class SeenInk(NamedTuple):
         tried = [self._drawn(away_mm, share * self.half_mm) for share in OF_WIDTH]
         return min(tried, key=self.misfit)
 
+    def left_where(self, drawn: Array, other: Array) -> float:
+        """How much darkness (n,) that is drawn leaves unexplained where another is drawn otherwise, in
+        squares of the line's width.
+        """
+        differ = np.flatnonzero(np.abs(drawn - other) > DIFFER)
+        return self.only(differ).misfit(drawn[differ])
+
     def share_left(self, drawn: Array, other: Array) -> float:
         """How much is left by what is drawn (n,) in shares of what another leaves, where these differ."""
         differ = np.abs(drawn - other) > DIFFER

@@ -37,6 +37,7 @@ CUT = 3.0  # the longest corner at which the rim's way is aside of a line, ...
 LONGER = 0.5  # ... if it is no longer than the line's own by more than that
 # places that show where the way comes to a corner from, and where it goes on
 LEG = round(0.5 / STEP_WIDTHS)
+NOWHERE = np.empty((0, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,11 +117,18 @@ class KeptWay:
     kept: Sequence[Kept]
 
     @classmethod
-    def of(cls, way: Array, lines: Sequence[Line], width_mm: float) -> KeptWay:
-        """The way with the parts of some lines along which it runs."""
+    def of(
+        cls, way: Array, lines: Sequence[Line], width_mm: float, doubts_mm: Array = NOWHERE
+    ) -> KeptWay:
+        """The way with the parts of some lines along which it runs, but for what is about some places (n, 2)
+        mm in doubt.
+        """
         even = evenly(closed_up(way), STEP_WIDTHS * width_mm)[:-1]
         found = [
-            kept for line in lines if is_plain(line) for kept in _along(even, line, width_mm)
+            kept
+            for line in lines
+            if is_plain(line)
+            for kept in _along(even, line, width_mm, doubts_mm)
         ]
         apart, taken = list[Kept](), np.zeros(len(even), bool)
         for kept in sorted(found, key=lambda kept: kept.first - kept.last):
@@ -191,14 +199,15 @@ class KeptWay:
         return run_on(setup, [kept.part for kept in self.kept], self.sides)
 
 
-def _along(way: Array, line: Line, width_mm: float) -> list[Kept]:
-    """The parts of a closed way (n, 2) mm that run along a line."""
+def _along(way: Array, line: Line, width_mm: float, doubts_mm: Array) -> list[Kept]:
+    """The parts of a closed way (n, 2) mm that run along a line, apart from some places (m, 2) mm."""
     step_mm, count = STEP_WIDTHS * width_mm, len(way)
     loop = closed_up(line.places_mm)
     round_mm, fine_mm = length_mm(loop), 0.5 * ON * width_mm
     places = evenly(loop, fine_mm)
     away_mm, nearest = Neighbours(places).nearest(way)
     is_on = away_mm < ON * width_mm
+    is_on &= Neighbours(doubts_mm).nearest(way)[0] > LEAST * width_mm
     # 1. begun where it is not on the line
     begin = int(np.argmin(is_on))
     changes = np.flatnonzero(

@@ -266,10 +266,14 @@ class _Bays(WayInk):
         gain = own_misfit - rule.misfit + FURTHER * (STEP_WIDTHS * (len(own) - 1) - widths)
         if suspect.is_beside_itself:
             gain += LEFT_BY_RAD * turned_less_rad(rule.way, own, width_mm)
-        is_like = rule.misfit < LIKE * widths
+        drawn = ink.drawn_along(rule.way, rule.half_mm)
+        misfit = rule.misfit
+        if len(suspect.beyond_mm):
+            # what both leave alike is no matter of this choice
+            misfit = ink.left_where(drawn, drawn_by_own)
+        is_like = misfit < LIKE * widths
         if not self.is_closed and rule.misfit > STILL_LEFT * own_misfit:
             # the way may be right, and some of its ink another line's
             is_like &= not is_beside(own, self.line, self.lines)
-        drawn = ink.drawn_along(rule.way, rule.half_mm)
         is_like &= suspect.is_beside_itself or ink.share_left(drawn, drawn_by_own) < MOST_LEFT
         return gain if is_like and gain >= GAIN * widths else None

@@ -73,12 +73,12 @@ BETTER = (
 
 def within_own_rims(setup: Setup, patch: int, lines: list[Line]) -> list[Line]:
     """The lines of a patch of ink as they were found, in the same list, or each within its own rim."""
-    rims = _OwnRims(setup, patch, lines)
+    rims = OwnRims(setup, patch, lines)
     return lines if not rims.are_asked else rims.lines_told()
 
 
 @dataclass(frozen=True, eq=False)
-class _OwnRims:
+class OwnRims:
     """The rims of a patch of ink, and the lines that were found on it."""
 
     setup: Setup
@@ -88,9 +88,15 @@ class _OwnRims:
     @property
     def are_asked(self) -> bool:
         """Whether the patch may be closed lines that touch, and those that were found may be others."""
+        return self.are_of(MOST_AREAS)
+
+    def are_of(self, most_areas: int) -> bool:
+        """Whether the patch has sides towards so many areas of paper at the most, shows where a pen was, and
+        may be other closed lines than those that were found.
+        """
         sheet, operator = self.setup.sheet, self.setup.operator
         # of most patches it is no more than two outlines; to feel a pen takes longer
-        if not 2 < len(self.outlines) <= MOST_AREAS:
+        if not 2 < len(self.outlines) <= most_areas:
             return False
         if float(sheet.lengths_mm[self.patch]) > LONGEST * self.pen_mm:
             return False
@@ -116,9 +122,9 @@ class _OwnRims:
         return PatchInk.of(self.setup.sheet, self.patch, self.pen_mm)
 
     @cached_property
-    def _own_mm(self) -> Array:
+    def own_mm(self) -> Array:
         """How far the ink's places are from the lines that were found."""
-        return np.min([self.ink.away_mm(_way_of(line)) for line in self.lines], axis=0)
+        return np.min([self.ink.away_mm(way_of(line)) for line in self.lines], axis=0)
 
     def _crosses_itself(self, line: Line) -> bool:
         """Whether a closed line crosses itself."""
@@ -133,7 +139,7 @@ class _OwnRims:
         if not ways:
             return self.lines
         longest_first = sorted(ways, key=lambda way: -length_mm(closed_up(way.way)))
-        return [way.kept.line(self.setup) or self._run(way.way) for way in longest_first]
+        return [way.kept.line(self.setup) or self.run(way.way) for way in longest_first]
 
     def _better_ways(self) -> list[RimWay]:
         """Of the sets of ways within the rims that explain the ink, where the lines that were found run
@@ -163,7 +169,7 @@ class _OwnRims:
         were laid, do so better than the lines that were found: these miss some ink, or turn and leave more.
         One that crosses itself counts as one with an end, if it leaves much more; else it need not turn more.
         """
-        own_mm, ink, own_rad = self._own_mm, self.ink, self._own_rad
+        own_mm, ink, own_rad = self.own_mm, self.ink, self._own_rad
         if (most := ink.worst(own_mm)) > MISSED:
             return ink.worst(away_mm) < BETTER * most
         # where both leave as much, the head's own parts are kept
@@ -195,7 +201,7 @@ class _OwnRims:
 
     def _turned_rad(self, line: Line) -> float:
         """By how much a line turns; an end of an open one counts as a corner."""
-        polygon = plain(_way_of(line), ON * self.pen_mm)
+        polygon = plain(way_of(line), ON * self.pen_mm)
         return turned_rad(polygon, is_closed=not line.is_open) + 2 * END_RAD * line.is_open
 
     def _sets(self) -> Iterator[list[RimWay]]:
@@ -218,7 +224,7 @@ class _OwnRims:
         # most leave much of the ink bare: it takes less to see that than how well they explain it
         is_bare = np.array([self._is_bare(way.away_mm) for way in ways])
         seen = self.ink.seen
-        most = self._is_bare(self._own_mm).sum() + MISSED * seen.width_mm**2 / seen.area_mm2
+        most = self._is_bare(self.own_mm).sum() + MISSED * seen.width_mm**2 / seen.area_mm2
         for _, some in sorted(sets):
             if is_bare[list(some)].all(axis=0).sum() < most:
                 yield [ways[k] for k in some]
@@ -229,6 +235,12 @@ class _OwnRims:
         return (seen.darkness > INK) & (away_mm > (0.5 + AS_WIDE) * seen.width_mm)
 
     def _ways(self) -> Iterator[RimWay]:
+        """The ways within the rims that go round no bar."""
+        for way in self.within():
+            if not self._goes_round_a_bar(way.even):
+                yield way
+
+    def within(self) -> Iterator[RimWay]:
         """The ways within the rims."""
         for outline in self.outlines:
             rim = self._felt(outline)
@@ -241,8 +253,6 @@ class _OwnRims:
             way = kept.places_mm if kept.kept else way
             polygon = plain(closed_up(way), ON * self.pen_mm)
             even = evenly(closed_up(way), STEP_WIDTHS * self.pen_mm)
-            if self._goes_round_a_bar(even):
-                continue
             away_mm = self.ink.away_mm(closed_up(way))
             yield RimWay(
                 way, kept, even, away_mm, turned_rad(polygon, is_closed=True), kinks_of(even)
@@ -267,7 +277,7 @@ class _OwnRims:
         reach_mm = ABOUT_WIDTHS * self.pen_mm
         return felt_rim(view_about(sheet, aperture_mm, self.pen_mm, outline, reach_mm), outline)
 
-    def _run(self, way: Array) -> Line:
+    def run(self, way: Array) -> Line:
         """The head's run along a closed way from memory."""
         sheet, settings, width_mm = self.setup.sheet, self.setup.settings, self.pen_mm
         stretches = between_corners(closed_up(way))
@@ -280,7 +290,7 @@ class _OwnRims:
         return closed_anew(self.lines[0], xy_mm, carriage.led, width_mm, length_mm(xy_mm))
 
 
-def _way_of(line: Line) -> Array:
+def way_of(line: Line) -> Array:
     """Places along a line, without the lead line of a closed one, (n, 2) mm."""
     return line.places_mm if line.is_open else line.loop_mm
 

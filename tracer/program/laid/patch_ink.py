@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
+from morfax.motion.neighbours import Neighbours
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.ink.crossing_ink import Boxes
 from morfax.tracer.program.laid.loop_ink import ink_of
@@ -57,6 +58,15 @@ class PatchInk:
         drawn = np.empty(len(away_mm))
         pen.ink(away_mm, self.seen.half_mm, self.seen.softness_mm, drawn)
         return np.asarray(drawn - self.seen.darkness)
+
+    def left_by(self, way: Array, at: NDArray[np.int64]) -> float:
+        """How much a pen leaves unexplained of some of its places that goes along places (m, 2) mm a step
+        apart, in squares of the width.
+        """
+        away_mm, _ = Neighbours(way).nearest(self.places_mm[at])
+        drawn = np.empty(len(at))
+        pen.ink(away_mm, self.seen.half_mm, self.seen.softness_mm, drawn)
+        return self.seen.only(at).misfit(drawn)
 
     def left(self, away_mm: Array, where: NDArray[np.bool_] | None = None) -> float:
         """How much it leaves unexplained in all, or at some of its places (n,), in squares of the width."""

@@ -144,7 +144,9 @@ def _between(way: Array, own: Array, width_mm: float) -> Iterator[Array]:
         if np.hypot(*(way[at] - ends).T).max() < ASIDE * width_mm:
             count = (side * (at[1] - at[0])) % len(way)
             part = way[(at[0] + side * np.arange(count + 1)) % len(way)]
-            yield _without_loops(to_ends(part, ends, LEGS[0] * width_mm), LOOP * width_mm)
+            yield with_corners_for_loops(
+                to_ends(part, ends, LEGS[0] * width_mm), LOOP * width_mm
+            )
 
 
 def to_ends(way: Array, ends: Array, leg_mm: float) -> Array:
@@ -156,7 +158,7 @@ def to_ends(way: Array, ends: Array, leg_mm: float) -> Array:
     return np.asarray(way + near_first * (ends[0] - way[0]) + near_last * (ends[1] - way[-1]))
 
 
-def _without_loops(way: Array, most_mm: float) -> Array:
+def with_corners_for_loops(way: Array, most_mm: float) -> Array:
     """A way (n, 2) mm with a corner in place of loops no longer than that: within a round end as narrow as
     the pen the way comes to a point, and past it.
     """

@@ -121,12 +121,12 @@ def test_small_loops_of_a_way_become_corners_and_large_ones_stay() -> None:
     first = polyline((0, 0.4), (9, 0.4), (10, 0.55), (10.2, 0.5), (10, 0.45), (9, 0.6))
     second = polyline((9, 2.4), (1, 2.4), (0, 2.55), (-0.2, 2.5), (0, 2.45), (1, 2.6), (9, 2.6))
     way = np.vstack([first, second])
-    cut = rims._without_loops(way, 2.0)
+    cut = rims.with_corners_for_loops(way, 2.0)
     assert not len(crossings_of(cut, np.arange(len(cut) - 1)))
     assert nearest_mm(np.array([[29 / 3, 0.5], [1 / 3, 2.5]]), cut).max() < 1e-9
     assert len(cut) == len(way) - 4
     assert cut[:2] == pytest.approx(way[:2]) and cut[-2:] == pytest.approx(way[-2:])
-    assert np.array_equal(rims._without_loops(way, 0.5), way)
+    assert np.array_equal(rims.with_corners_for_loops(way, 0.5), way)
 
 
 def test_a_bar_is_a_pens_if_a_line_of_the_sheet_is_as_broad() -> None:
