@@ -10,6 +10,7 @@ Source: our own. Questions: how much ink lettering has is not known, so a low sh
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from html import escape
 from pathlib import Path
@@ -33,7 +34,11 @@ th[aria-sort] button::after { content: " ↑"; } th[aria-sort=descending] button
 td.figure { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 img { display: block; width: 200px; height: 150px; object-fit: contain; background: #fff; }
 .fault { color: var(--bad); } td:nth-child(2), td:nth-child(4) { overflow-wrap: anywhere; }
+td:nth-child(2) { min-width: 9em; } td p { margin: .4em 0 0; } .option { white-space: nowrap; }
 """
+OPTION = re.compile(r"--[a-z][a-z-]*")  # which a browser breaks behind each of its hyphens
+IN_ONE_PIECE = r'<span class="option">\g<0></span>'
+
 SORT = """
 document.querySelectorAll("th button").forEach((button) => button.addEventListener("click", () => {
   const head = button.parentElement, column = head.cellIndex, body = document.querySelector("tbody");
@@ -113,13 +118,18 @@ def _line(folder: Path, row: BatchRow) -> str:
         _figure(wants_eye(row), f"{wants_eye(row):.2f}"),
         f'<td data-key="{escape(" ".join([row.ending, *told]))}"'
         f"{'' if row.is_well else ' class=fault'}>{escape(row.ending)}"
-        f"{''.join(f'<br>{escape(text)}' for text in told)}</td>",
+        f"{''.join(map(_paragraph, told))}</td>",
         _figure(share, "" if share is None else f"{100 * share:.1f} %"),
         _figure(length_mm, "" if length_mm is None else f"{length_mm:.1f} mm"),
         _figure(row.seconds, f"{row.seconds:.1f} s"),
         _figure(row.memory_mb, f"{row.memory_mb:.0f} MB"),
     )
     return f"<tr>{''.join(cells)}</tr>\n"
+
+
+def _paragraph(text: str) -> str:
+    """What is told of a drawing, with its options in one piece."""
+    return f"<p>{OPTION.sub(IN_ONE_PIECE, escape(text))}</p>"
 
 
 def _figure(value: float | None, shown: str) -> str:

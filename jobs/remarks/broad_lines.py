@@ -28,8 +28,8 @@ LOOKED_AT = 12  # lines that were not followed: they only show the pen
 
 @dataclass(frozen=True, slots=True)
 class BroadLines(OnLines):
-    """The broad stretches of lines, the longest first; the width of the sheet's pen, mm, and a resolution
-    that may show two lines, dpi.
+    """The broad stretches of lines, the longest first; the width of the sheet's pen, mm, and how to see
+    two lines.
     """
 
     called, marked = "broad_lines", "broad line"
@@ -41,7 +41,7 @@ class BroadLines(OnLines):
 
     of_lines: tuple[tuple[int, Broad], ...] = ()
     pen_mm: float = 0.0
-    wants_dpi: int = 0
+    finer: str = ""
 
     @classmethod
     def along(cls, drawing: Drawing, trace: Trace, told: frozenset[int]) -> BroadLines:
@@ -73,7 +73,8 @@ class BroadLines(OnLines):
         ]
         found.sort(key=lambda row: -row[1].length_mm)
         wants_dpi = coarse.finer_dpi(pitch_mm * drawing.finer, FINER)
-        return cls(tuple(found), pen_mm, wants_dpi)
+        finer = coarse.at_dpi(wants_dpi, is_rendered=drawing.is_rendered)
+        return cls(tuple(found), pen_mm, finer)
 
     def _of(self, line: str, worst: Broad, at: str, others: int) -> str:
         """That a line may be two, of which the path follows neither."""
@@ -82,7 +83,7 @@ class BroadLines(OnLines):
             f"{line} is {worst.width_mm:.2g} mm wide along {worst.length_mm:.0f} mm, about "
             f"{at}{and_so(others, 'is', 'are')}, twice as wide as the sheet's pen "
             f"draws ({self.pen_mm:.2g} mm): if two lines run side by side there, the path runs between them, "
-            f"{off_mm:.2g} mm or more off; scan at {self.wants_dpi} dpi, or draw them further apart; if a "
+            f"{off_mm:.2g} mm or more off; {self.finer}, or draw them further apart; if a "
             "broader pen has drawn it, the path is right"
         )
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HollowLines(OnLines):
-    """The hollow stretches of lines, the longest first, and a resolution that may part them, dpi."""
+    """The hollow stretches of lines, the longest first, and how to part them."""
 
     called, marked = "hollow_lines", "pale middle"
     rows = (
@@ -32,7 +32,7 @@ class HollowLines(OnLines):
     )
 
     of_lines: tuple[tuple[int, Hollow], ...] = ()
-    wants_dpi: int = 0
+    finer: str = ""
 
     @classmethod
     def along(cls, drawing: Drawing, trace: Trace) -> HollowLines:
@@ -53,13 +53,13 @@ class HollowLines(OnLines):
         wants_dpi = coarse.finer_dpi(scanned_mm, FINER)
         if drawing.seen_px < coarse.SEEN_PX:  # the drawing's own note advises that
             wants_dpi = max(wants_dpi, coarse.wanted_dpi(scanned_mm))
-        return cls(tuple(found), wants_dpi)
+        return cls(tuple(found), coarse.at_dpi(wants_dpi, is_rendered=drawing.is_rendered))
 
     def _of(self, line: str, worst: Hollow, at: str, others: int) -> str:
         """That a line may be two, of which the path follows neither."""
         return (
             f"{line} is paler in its middle than at its sides along {worst.length_mm:.0f} mm, about "
             f"{at}{and_so(others, 'is', 'are')}: if two lines {worst.apart_mm:.2g} mm apart are drawn there, "
-            f"the path runs between them; scan at {self.wants_dpi} dpi or more to part them; if the pen has "
+            f"the path runs between them; {self.finer} or more to part them; if the pen has "
             "left the middle paler, the path is right"
         )

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class NarrowGaps(OnLines):
-    """The narrow gaps that lines run over, the longest first; the width of two pixels, mm, and a resolution
-    that parts the lines, dpi.
+    """The narrow gaps that lines run over, the longest first; the width of two pixels, mm, and how to part
+    the lines.
     """
 
     called, marked = "narrow_gaps", "narrow gap"
@@ -32,7 +32,7 @@ class NarrowGaps(OnLines):
 
     of_lines: tuple[tuple[int, NarrowGap], ...] = ()
     wide_mm: float = 0.0
-    wants_dpi: int = 0
+    finer: str = ""
 
     @classmethod
     def along(cls, drawing: Drawing, trace: Trace) -> NarrowGaps:
@@ -48,12 +48,13 @@ class NarrowGaps(OnLines):
         found.sort(key=lambda row: -row[1].length_mm)
         scanned_mm = drawing.pitch_mm * drawing.finer
         wants_dpi = coarse.finer_dpi(scanned_mm, PARTED)
-        return cls(tuple(found), NARROW_PX * scanned_mm, wants_dpi)
+        finer = coarse.at_dpi(wants_dpi, is_rendered=drawing.is_rendered)
+        return cls(tuple(found), NARROW_PX * scanned_mm, finer)
 
     def _of(self, line: str, worst: NarrowGap, at: str, others: int) -> str:
         """That a path may go over from one line to another."""
         return (
             f"{line} runs over the paper between two lines at {at}{and_so(others, 'does', 'do')}: that is at "
             f"most two pixels ({self.wide_mm:.2g} mm) wide along {worst.length_mm:.0f} mm, and the path may "
-            f"go over from one line to the other; scan at {self.wants_dpi} dpi or more to part the two lines"
+            f"go over from one line to the other; {self.finer} or more to part the two lines"
         )

@@ -96,6 +96,11 @@ def finer_dpi(pitch_mm: float, times: float) -> int:
     return DPI_STEP * math.ceil(times * MM_PER_INCH / pitch_mm / DPI_STEP)
 
 
+def at_dpi(dpi: int, *, is_rendered: bool) -> str:
+    """How the operator comes to a drawing at a resolution."""
+    return f"give --dpi {dpi}" if is_rendered else f"scan at {dpi} dpi"
+
+
 def note(seen_px: float, pitch_mm: float) -> str:
     """What the operator should know of lines that look so wide."""
     return (

@@ -54,7 +54,7 @@ Darkness = NDArray[np.float32]
 class Reading(NamedTuple):
     """How a scan is read: the edges of filled shapes alone; printed lines of what kind of paper are left out;
     or filled shapes as ink, which is as dark as the lines that end at them; or pale lines as ink; lines of a
-    polarity if it is known.
+    polarity if it is known; of drawn lines that were rendered.
     """
 
     edge: bool = False
@@ -62,6 +62,7 @@ class Reading(NamedTuple):
     shapes_are_ink: bool = False
     pale_is_ink: bool = False
     polarity: Polarity | None = None
+    is_rendered: bool = False
 
 
 AS_LINES = Reading()
@@ -80,7 +81,7 @@ class Drawing:
     Of `both` solid areas are as dark as lines. Lines look `seen_px` wide on the picture's own pixels, paper
     or ink alone if it `is_hard`, or with rims laid through their steps if it `has_rims`; a `grainy` one is
     seen through a slit. `paper_noise` is the deviation of the paper's darkness, if that was measured before
-    it was made 0.
+    it was made 0. Drawn lines of a PDF that `is_rendered` have any resolution that is asked for.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -102,6 +103,7 @@ class Drawing:
     has_rims: bool = False
     grainy: bool = False
     paper_noise: float | None = None
+    is_rendered: bool = False
     drawn: Darkness | None = None
     narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
 
@@ -219,7 +221,8 @@ class Drawing:
         notes = (*scan.notes, *scale.notes(scan))
         if reading.edge:
             return cls._of_shapes(scan.file, np.asarray(grey), pitch[0], notes)
-        reading = reading._replace(polarity=inks.polarity_of(ink))
+        polarity = inks.polarity_of(ink)
+        reading = reading._replace(polarity=polarity, is_rendered=scan.is_rendered)
         return cls._of_lines(scan.file, grey, pitch[0], notes, reading)
 
     @classmethod
@@ -288,6 +291,7 @@ class Drawing:
             has_rims=has_rims,
             grainy=averaged is not None,
             paper_noise=paper_noise,
+            is_rendered=reading.is_rendered,
             drawn=averaged.drawn if averaged is not None and finer == 1 else None,
         )
         if averaged is None and finer == 1 and not has_rims:  # the darkness that was measured

@@ -4,7 +4,8 @@ Signals in: a PDF. Signals out: a Scan of one page, on white paper, upright; its
 page, so that no scale need be given.
 
 A page that shows pictures, maybe words, and no drawn lines is a scan: it is rendered on the pixels of its
-finest picture, so that every pixel stays as it was scanned. Drawn lines are rendered at 600 dpi, or as asked:
+finest picture, so that every pixel stays as it was scanned. Drawn lines are rendered at 600 dpi, or as asked,
+and `hairlines` three pixels wide:
 
     X, Y of the page, 1/72 inch  ->  columns, rows:  (X, Y) · dpi / 72, moved so that the picture's corner is
                                                      a pixel's corner
@@ -30,7 +31,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.faults import DrawingFault
 from morfax.motion.units import MM_PER_INCH, POINTS_PER_INCH
-from morfax.tracer.drawing import exif
+from morfax.tracer.drawing import exif, hairlines
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.coarse import DPI_STEP
 from morfax.tracer.drawing.components import strips
@@ -135,7 +136,9 @@ def read(
         pictures = _pictures(sheet)
         grid = _grid_of_scan(sheet, pictures)
         is_scan = grid is not None
-        grid = grid or _grid_of_lines(dpi)
+        if grid is None:
+            grid = _grid_of_lines(dpi)
+            hairlines.widen(sheet, grid.x.per_pt)
         camera = _camera(pictures) if is_scan else None
         pixels = _rendered(file, sheet, grid, coloured)
     except pdfium.PdfiumError as error:
@@ -147,7 +150,7 @@ def read(
     if _has_own_unit(content):
         stated = Stated(stated.dpi, OWN_UNIT)
     notes = page_notes(file, taken, pages) if page is None else ()
-    return Scan(file, pixels, stated, camera, taken, pages, notes)
+    return Scan(file, pixels, stated, camera, taken, pages, notes, not is_scan)
 
 
 def _why(error: Any) -> str:

@@ -60,6 +60,7 @@ class Scan:
     page: int = 1
     pages: int = 1
     notes: tuple[str, ...] = ()  # what the operator should know
+    is_rendered: bool = False  # of drawn lines, at any resolution
 
     @property
     def columns(self) -> int:

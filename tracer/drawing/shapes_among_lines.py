@@ -54,7 +54,8 @@ def drawing_of_both(scan: Scan, scale: Scale, ink: Ink | None = None) -> Drawing
     edges = without_border(darkness)
     if edges:
         notes = (*notes, border_note(edges))
-    return Drawing(darkness, pitch_mm, scan.file, notes=notes, both=True)
+    file, is_rendered = scan.file, scan.is_rendered
+    return Drawing(darkness, pitch_mm, file, notes=notes, both=True, is_rendered=is_rendered)
 
 
 def drawing_of_all_ink(

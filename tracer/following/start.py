@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from morfax.motion.faults import Fault, LineFault
-from morfax.tracer.drawing.coarse import finer_dpi
+from morfax.tracer.drawing.coarse import at_dpi, finer_dpi
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.inked import is_filled
 from morfax.tracer.drawing.narrow import PARTED, narrow_strip_of
@@ -203,7 +203,7 @@ def _nowhere_clean(
             f": at most two pixels of paper part two lines along {gap.length_mm:.0f} mm, as at "
             f"{x:.1f},{y:.1f} mm"
         )
-        edge = f"scan at {dpi} dpi or more, "
+        edge = f"{at_dpi(dpi, is_rendered=drawing.is_rendered)} or more, "
     give = "give" if told_width_mm is None else "give another"
     return LineFault(
         f"no clean stretch of line {width_mm:.2f} mm wide to start on{why}; {edge}follow all the ink with "

@@ -68,13 +68,14 @@ class Rim(NamedTuple):
         width_mm, none = 2 * within_mm, np.empty((0, 2), np.int64)
         longest_mm = LONGEST_MITRE * width_mm
         tight = self.bends_per_mm * TIGHT * width_mm < -1.0
-        if not tight.any() or tight.all():
+        apart_mm = float(np.hypot(*(self.places_mm[1] - self.places_mm[0])))
+        beyond = max(1, round(BEYOND * width_mm / apart_mm))
+        # no corner of a way that is all within one
+        if not tight.any() or tight.all() or beyond >= len(way):
             return RimCorners(way, self.headings_rad, none, longest_mm)
         first = _farthest(tight)
         way, headings = np.roll(way, -first, axis=0), np.roll(self.headings_rad, -first)
         changes = np.diff(np.roll(tight, -first).astype(np.int8), prepend=0, append=0)
-        apart_mm = float(np.hypot(*(self.places_mm[1] - self.places_mm[0])))
-        beyond = max(1, round(BEYOND * width_mm / apart_mm))
         corners = np.flatnonzero(changes).reshape(-1, 2) + np.array([-beyond, beyond])
         return RimCorners(way, headings, corners, longest_mm)
 

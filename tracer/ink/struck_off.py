@@ -47,6 +47,7 @@ ALONG_COS = 0.97  # 14 degrees: a line that turns off by more crosses the other
 PAST = 2.0  # places: another line is beside one so little beyond its own end
 MANY = 16  # nearest places, of which some are another line's
 HALF = 0.5  # of a line's darkness: what is darker is ink
+COMES_AND_LEAVES = 2  # places of a stroke in others' ink that are left it
 LEAST = 0.5  # widths: so little is not cut off, and so little that is left is no stroke
 
 
@@ -190,14 +191,17 @@ def _of_end(votes: Indices, some: int) -> int:
 
 
 def _most(votes: Indices, some: int) -> tuple[int, int] | None:
-    """Between which of a stroke's places most votes are for it, more than some; None if nowhere."""
+    """Between which of a stroke's places most votes are for it, more than some; None if nowhere.
+
+    The places where it comes there and leaves are the stroke's.
+    """
     come = np.r_[0, np.cumsum(votes)]
     gained = come - np.minimum.accumulate(come)
     behind = int(np.argmax(gained))
-    if gained[behind] <= some:
+    if gained[behind] <= max(some, COMES_AND_LEAVES):
         return None
     first = behind - int(np.argmin(come[behind::-1]))
-    return first + 1, behind - 1  # without the places where it comes there and leaves
+    return first + 1, behind - 1
 
 
 def _directions(way: Array) -> Array:

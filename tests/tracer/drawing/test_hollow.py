@@ -70,7 +70,7 @@ def test_the_place_that_is_told_is_the_middle_of_the_longest_stretch() -> None:
 def test_the_resolution_that_the_remark_advises_parts_the_lines() -> None:
     told = rings(0.75, 120.0)
     remarks = HollowLines.along(told, trace(told))
-    assert remarks.wants_dpi == 250
+    assert remarks.finer == "scan at 250 dpi"
     (said,) = remarks.remarks()
     assert "scan at 250 dpi or more" in said and "two lines 0.7" in said
     finer = rings(0.75, 250.0)

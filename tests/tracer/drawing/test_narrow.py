@@ -7,6 +7,7 @@ here fail.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -84,6 +85,8 @@ def test_lines_that_the_head_mixes_up_are_told_in_words_figures_and_picture() ->
     (said,) = told.remarks()
     assert "over the paper between two lines" in said and "scan at 200 dpi" in said
     assert told.figures()["narrow_gaps"] and told.marked_mm
+    (said,) = NarrowGaps.along(replace(drawing, is_rendered=True), traced).remarks()
+    assert "line to the other; give --dpi 200 or more to part" in said
 
 
 def test_lines_side_by_side_that_are_followed_well_are_not_told() -> None:

@@ -106,10 +106,30 @@ def test_drawn_lines_are_where_the_page_has_them(tmp_path: Path, dpi: float | No
     assert level.rows * pixel_mm - centre_mm(level, 0) == pytest.approx(20.7, abs=1 * UM)
 
 
+@pytest.mark.parametrize("dpi", [300.0, 600.0, 1800.0])
+@pytest.mark.parametrize("width", ["0 w", "0.01 w", "0.02 0 0 0.02 44.1 0 cm 0.5 w"])
+def test_a_hairline_is_three_pixels_wide_at_any_resolution(
+    tmp_path: Path, width: str, dpi: float
+) -> None:
+    """0 is what CAD writes; the last is thin by its own scale. It stays where the page has it."""
+    way = "45 500 m 45 2000 l" if "cm" in width else "45 10 m 45 40 l"
+    scan = opened(written(tmp_path / "x.pdf", f"{width} {way} S", (60.3, 50.7)), dpi=dpi)
+    ink = 1 - scan.pixels[scan.rows // 2] / 255.0
+    assert ink.sum() == pytest.approx(3, abs=0.05)  # pixels are rounded to grey levels
+    assert centre_mm(scan, 1) == pytest.approx(45, abs=1 * UM)
+
+
+def test_a_line_of_three_pixels_keeps_its_width(tmp_path: Path) -> None:
+    scan = opened(written(tmp_path / "x.pdf", "0.4 w 45 10 m 45 40 l S", (60.3, 50.7)))
+    ink = 1 - scan.pixels[scan.rows // 2] / 255.0
+    assert ink.sum() * MM_PER_INCH / 600 == pytest.approx(0.4, abs=2 * UM)
+
+
 def test_a_page_of_lines_needs_no_scale(tmp_path: Path) -> None:
     drawing = Drawing.open(written(tmp_path / "x.pdf", "0.5 w 15 10 m 15 40 l S", (50, 50)))
     assert drawing.pitch_mm == pytest.approx(MM_PER_INCH / 600)
     assert drawing.width_mm == pytest.approx(50, abs=drawing.pitch_mm)
+    assert drawing.is_rendered
 
 
 def test_red_lines_are_dark_and_colours_are_kept(tmp_path: Path) -> None:
@@ -162,7 +182,7 @@ def test_a_scanned_page_keeps_its_pixels(tmp_path: Path, mode: str, turned: int)
     document[0].set_rotation(turned)
     document.save(tmp_path / "b.pdf")
     scan = opened(tmp_path / "b.pdf")
-    assert scan.stated == ((300, 300), None)
+    assert scan.stated == ((300, 300), None) and not scan.is_rendered
     assert (scan.pixels == np.rot90(told.reshape(700, 500), -turned // 90)).all()
 
 

@@ -116,6 +116,11 @@ def test_a_corner_beyond_the_place_behind_it_is_none() -> None:
     assert np.array_equal(rim_module._mitred(way, headings, np.array([[2, 4]]), 99.0), way)
 
 
+def test_a_rim_that_is_all_within_one_corner_of_its_pen_has_none() -> None:
+    """A quarter of a broad pen's width beyond its corner is further than all round the rim."""
+    assert not len(square_rim(0).corners(200.0).at)
+
+
 def test_corners_that_are_nearer_than_a_mitre_are_both_sharp() -> None:
     """A slot in the ink of 0.3 mm: what bends the parabolas at one of its corners comes up to the other."""
     at = np.arange(0.025, 6.0, 0.05)

@@ -51,6 +51,25 @@ def test_an_end_of_less_than_half_a_width_is_not_cut_off(
     assert struck_off(inked(LINE), [stroke], NOWHERE) == [stroke]
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_few_places_of_a_hairline_in_others_ink_are_left_it(
+    count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its widths are less than a place, since most strokes are broad: nothing is between two of them."""
+
+    asked = iter(range(100))
+
+    def votes(_: _Struck, some: Array) -> Array:
+        assert next(asked, None) is not None, "it comes to no end"
+        return np.where((some >= 5) & (some < 5 + count), 1, -1)
+
+    monkeypatch.setattr(_Struck, "_votes", votes)
+    hairline = stroke_along(LINE)._replace(width_mm=0.01 * WIDTH_MM)
+    broad = stroke_along(polyline((5, 20), (45, 20))), stroke_along(polyline((5, 30), (45, 30)))
+    strokes = [hairline, *broad]
+    assert struck_off(inked(LINE), strokes, NOWHERE) == strokes
+
+
 @pytest.mark.parametrize("share", [0.25, 0.45])
 def test_where_the_ink_is_that_of_two_lines_both_go_on(share: float) -> None:
     way = leads_into(share * WIDTH_MM, 6.0)

@@ -105,10 +105,11 @@ def felt_at(drawing: Drawing, ways: Sequence[Clean], width_mm: float) -> UsualPe
             inks.append(ink.only(np.flatnonzero(beside)))
             away.append(away_mm[beside])
     every_mm = np.concatenate([np.empty(0), *away])
-    # of a line along coarse pixels none may lie where paper begins
-    if len(every_mm) < FEWEST or not (every_mm > PAPER_FROM * width_mm).any():
+    dark = np.concatenate([np.empty(0), *(ink.darkness for ink in inks)])
+    paper = dark[every_mm > PAPER_FROM * width_mm]
+    # of a line along coarse pixels none may lie where paper begins; in a broad area there is none
+    if len(every_mm) < FEWEST or not len(paper) or median(paper) > INK:
         return None
-    dark = np.concatenate([ink.darkness for ink in inks])
     pen = FeltPen.of(every_mm, inks[0]._replace(darkness=dark))
     left = [
         wrong_about(pen.sees(ink), own, np.zeros(len(own), bool), STEP_WIDTHS)[around]

@@ -91,6 +91,11 @@ class Kept:
         more_mm = self.sign * (other.to_mm - self.to_mm) % self.round_mm
         return replace(self, last=other.last, to_mm=self.to_mm + self.sign * more_mm)
 
+    @property
+    def is_once(self) -> bool:
+        """Whether it goes along no place of the line twice, as a way does that goes round a loop and on."""
+        return self.length_mm < self.round_mm or math.isclose(self.length_mm, self.round_mm)
+
     @cached_property
     def part(self) -> Line:
         """The part of the line."""
@@ -225,7 +230,7 @@ def _along(way: Array, line: Line, width_mm: float, doubts_mm: Array) -> list[Ke
     return [
         kept.moved(kept.first // count * -count)
         for kept in joined
-        if kept.last - kept.first > least
+        if kept.last - kept.first > least and kept.is_once
     ]
 
 

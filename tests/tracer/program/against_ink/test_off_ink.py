@@ -49,6 +49,13 @@ def test_the_pen_is_felt_true() -> None:
     assert abs(felt.usual) < 0.3 * OFF
 
 
+def test_no_pen_is_felt_in_a_broad_area() -> None:
+    """Beyond the line there is no paper to tell its ink from."""
+    way = evenly(LINE, STEP_WIDTHS * WIDTH_MM)[10:-10]
+    drawing = inked(LINE, width_mm=5.0, dpi=DPI)
+    assert felt_at(drawing, [Clean(way, np.arange(20, len(way) - 20))], WIDTH_MM) is None
+
+
 def test_a_broader_line_that_is_crossed_leaves_no_ink() -> None:
     """It is known, and as broad as it was felt: 1.1 mm across one of 0.5 mm."""
     drawing = together((LINE, WIDTH_MM), (ACROSS, 1.1), seed=1)

@@ -87,3 +87,11 @@ def test_what_a_line_passed_by_is_laid_and_the_rest_is_the_lines_own(way: Points
     own = set(map(tuple, line.xy_mm.tolist()))
     count = sum(place in own for place in map(tuple, anew.xy_mm.tolist()))
     assert count * FEED_MM_S / MOTION_RATE_HZ == pytest.approx(80 - 4 - 2 * 0.75, abs=1.0)
+
+
+def test_a_way_that_goes_round_a_line_and_on_is_no_part_of_it() -> None:
+    """All of the square and half of its lower side again, and home below that."""
+    way = polyline(*SQUARE.tolist(), (15, 5), (15, 2), (2, 2), (2, 5), (5, 5))
+    kept = KeptWay.of(way[:-1], [run_along(SQUARE)], WIDTH_MM)
+    assert not kept.kept
+    assert off_mm(kept.places_mm, way) < 0.05
