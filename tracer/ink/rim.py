@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.motion.median import median
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import cross, direction, left_of_headings, meeting
 from morfax.motion.polyline import at_lengths, closed_up, length_mm
@@ -68,7 +69,8 @@ class Rim(NamedTuple):
         width_mm, none = 2 * within_mm, np.empty((0, 2), np.int64)
         longest_mm = LONGEST_MITRE * width_mm
         tight = self.bends_per_mm * TIGHT * width_mm < -1.0
-        apart_mm = float(np.hypot(*(self.places_mm[1] - self.places_mm[0])))
+        # of all its places: the first two may be felt at nearly one spot
+        apart_mm = median(np.hypot(*np.diff(self.places_mm, axis=0).T))
         beyond = max(1, round(BEYOND * width_mm / apart_mm))
         # no corner of a way that is all within one
         if not tight.any() or tight.all() or beyond >= len(way):
@@ -77,7 +79,7 @@ class Rim(NamedTuple):
         way, headings = np.roll(way, -first, axis=0), np.roll(self.headings_rad, -first)
         changes = np.diff(np.roll(tight, -first).astype(np.int8), prepend=0, append=0)
         corners = np.flatnonzero(changes).reshape(-1, 2) + np.array([-beyond, beyond])
-        return RimCorners(way, headings, corners, longest_mm)
+        return RimCorners(way, headings, np.clip(corners, 0, len(way) - 1), longest_mm)
 
 
 class RimCorners(NamedTuple):
@@ -126,7 +128,7 @@ class RimCorners(NamedTuple):
 
     def _as_one(self, group: NDArray[np.int64]) -> NDArray[np.int64]:
         """Corners (m, 2) as one if any of them turns to the left, which none does; else as they are."""
-        before, after = self.headings_rad[np.minimum(group, len(self.way) - 1)].T
+        before, after = self.headings_rad[group].T
         turns = np.sin(after - before)
         return np.array([[group[0, 0], group[-1, 1]]]) if (turns > 0).any() else group
 
@@ -139,7 +141,7 @@ class RimCorners(NamedTuple):
         """The way with one of some others (n, 2) mm in place of each of its corners, which runs the other way
         along the same ink, and comes so near before and behind that; as it is where none does.
         """
-        ends = self.way[np.minimum(self.at, len(self.way) - 1)]
+        ends = self.way[self.at]
         found = [Neighbours(other).nearest(ends.reshape(-1, 2)) for other in others]
         parts, begin = list[Array](), 0
         for k, (before, after) in enumerate(self.at.tolist()):
@@ -198,7 +200,7 @@ def _mitred(way: Array, headings: Array, corners: NDArray[np.int64], most_mm: fl
     (n, 2), no longer than that.
     """
     parts, at = list[Array](), 0
-    for first, after in np.minimum(corners, len(way) - 1).tolist():
+    for first, after in corners.tolist():
         before = max(first, at)  # where two corners are near they share their leg
         into, out_of = direction(headings[before]), direction(headings[after])
         if before >= after or abs(cross(into, out_of)) < NEARLY_PARALLEL:

@@ -106,6 +106,29 @@ def test_a_corner_at_which_the_rim_begins_is_as_sharp_as_any(begin: int) -> None
         assert np.hypot(*(way - corner).T).min() < 1 * UM
 
 
+def test_places_at_one_spot_make_no_corner_wider() -> None:
+    """Two places felt 1 um apart, at which the rim begins: its corners lie 0.125 mm before and behind the
+    tight places; they were 125 places wide, more than the rim has: no index of it.
+    """
+    rim = square_rim(40)
+    rim.places_mm[1] = rim.places_mm[0] + (0.0, 1 * UM)
+    corners = rim.corners(HALF_MM)
+    assert np.ptp(corners.at, axis=1).max() <= 10
+    other = closed_up(corners.way)[::-1]
+    assert len(corners.over_to([other], HALF_MM)) > 0
+
+
+def test_a_corner_lies_on_the_rim() -> None:
+    """Hardly longer than what bends the parabolas at its corner: no place before its first, or after its
+    last.
+    """
+    turned = np.linspace(0, math.tau, 21)[:-1]
+    places = 0.01 * np.column_stack([np.cos(turned), np.sin(turned)])
+    bends = np.where(np.arange(20) == 7, -8.0, 0.0)
+    at = Rim(places, turned + 0.5 * math.pi, bends).corners(HALF_MM).at
+    assert (at.min(), at.max()) == (0, 19)
+
+
 def test_a_corner_beyond_the_place_behind_it_is_none() -> None:
     """A speck beside a straight rim turned it to the left, and then further: the lines through both meet
     further on.
