@@ -123,7 +123,7 @@ def test_a_corner_lies_on_the_rim() -> None:
     last.
     """
     turned = np.linspace(0, math.tau, 21)[:-1]
-    places = 0.01 * np.column_stack([np.cos(turned), np.sin(turned)])
+    places = 0.03 * np.column_stack([np.cos(turned), np.sin(turned)])
     bends = np.where(np.arange(20) == 7, -8.0, 0.0)
     at = Rim(places, turned + 0.5 * math.pi, bends).corners(HALF_MM).at
     assert (at.min(), at.max()) == (0, 19)
