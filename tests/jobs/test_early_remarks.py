@@ -1,16 +1,14 @@
-"""What is told before a sheet is traced: nearly all ink is too short to be lines, or lines are too bold."""
+"""What is told before a sheet is traced: nearly all ink is too short to be lines."""
 
 from pathlib import Path
 
 import cv2
 import numpy as np
-import pytest
 from PIL import Image
 
 from morfax.jobs.remarks.many_pieces import of_many_pieces
 from morfax.jobs.settings.settings import DrawingFile
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.levelling import of_bold_lines
 
 WIDTH_MM, PX = 100.0, 1000
 
@@ -32,13 +30,3 @@ def test_short_print_of_another_colour_is_told_and_the_advice_works(tmp_path: Pa
     own = opened(sheet, tmp_path / "a.png", "black")
     assert not list(of_many_pieces(own))
     assert own.sheet.patches.count < 20
-
-
-@pytest.mark.parametrize(("wide_mm", "is_told"), [(1.0, False), (2.5, False), (4.0, True)])
-def test_bold_lines_are_told(tmp_path: Path, wide_mm: float, is_told: bool) -> None:
-    sheet = np.full((PX, PX), 240, np.uint8)
-    cv2.line(sheet, (150, 150), (850, 800), 20, round(wide_mm * PX / WIDTH_MM))
-    cv2.line(sheet, (150, 850), (850, 200), 20, round(wide_mm * PX / WIDTH_MM))
-    notes = opened(sheet, tmp_path / "a.png").notes
-    assert any("--scale 2" in note for note in notes) == is_told
-    assert of_bold_lines(float("nan")) == ()

@@ -30,7 +30,7 @@ from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.cleared import cleared
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.deepening import deepened, deepened_note
-from morfax.tracer.drawing.levelling import Levelled, levelled, of_bold_lines
+from morfax.tracer.drawing.levelling import BOLD_MM, Levelled, levelled
 from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, measured, within
 from morfax.tracer.drawing.polarity import Polarity
@@ -54,7 +54,8 @@ Darkness = NDArray[np.float32]
 class Reading(NamedTuple):
     """How a scan is read: the edges of filled shapes alone; printed lines of what kind of paper are left out;
     or filled shapes as ink, which is as dark as the lines that end at them; or pale lines as ink; lines of a
-    polarity if it is known; of drawn lines that were rendered.
+    polarity if it is known; of drawn lines that were rendered; and bold ones, so that strokes are up to twice
+    as broad as on other sheets.
     """
 
     edge: bool = False
@@ -63,6 +64,7 @@ class Reading(NamedTuple):
     pale_is_ink: bool = False
     polarity: Polarity | None = None
     is_rendered: bool = False
+    bold: bool = False
 
 
 AS_LINES = Reading()
@@ -249,23 +251,30 @@ class Drawing:
     ) -> Drawing:
         """The lines in grey levels on square pixels."""
         # 1. darkness, without what is printed and the scan's border
-        darkness, shapes, paper_noise, has_shapes, remarks = _levelled(grey, pitch_mm, reading)
+        darkness, shapes, paper_noise, has_shapes, polarity = _levelled(grey, pitch_mm, reading)
         darkness, ink, told = cleared(darkness, pitch_mm, reading.printed, reading.pale_is_ink)
         paper_noise /= ink
         lines, pale_mm = within(darkness, paper_noise), 0.0
+        if lines.width_px * pitch_mm >= BOLD_MM and not reading.bold:
+            bold = reading._replace(polarity=polarity, bold=True)
+            return cls._of_lines(file, grey, pitch_mm, notes, bold)
         times = speckled.times_larger(darkness, lines, pitch_mm)
         if times > 1:
             notes = (*notes, speckled.note(times, pitch_mm))
             larger = speckled.on_larger_pixels(np.asarray(grey), times)
             return cls._of_lines(file, larger, times * pitch_mm, notes, reading)
-        notes = (*notes, *remarks, *of_bold_lines(lines.width_px * pitch_mm))
         # 2. pale lines
         drawn_grain = lines.grain
         is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None
         if reading.pale_is_ink and not isinstance(darkness, Tiles):
             pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
             lines = within(darkness, paper_noise) if pale_mm else lines
-        notes = (*notes, *told, *grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm))
+        notes = (
+            *notes,
+            *polarity.notes,
+            *told,
+            *grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm),
+        )
         most = None if isinstance(darkness, Tiles) else darkest(np.asarray(darkness))
         hard = most is not None and coarse.is_hard(np.asarray(darkness), most)
         # 3. grain, of lines as they are drawn
@@ -301,7 +310,8 @@ class Drawing:
 
 
 def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Levelled:
-    """The sheet as darkness; a large one as tiles of it."""
+    """The sheet as darkness, one of bold lines as if it were half as large; a large one as tiles of it."""
+    seen_mm = pitch_mm / 2 if reading.bold else pitch_mm
     if grey.size >= large.LARGE_PX:
-        return large.levelled(grey, pitch_mm, reading.polarity)
-    return levelled(grey, pitch_mm, reading.shapes_are_ink, reading.polarity)
+        return large.levelled(grey, seen_mm, reading.polarity)
+    return levelled(grey, seen_mm, reading.shapes_are_ink, reading.polarity)

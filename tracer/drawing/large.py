@@ -84,7 +84,7 @@ def levelled(grey: Any, pitch_mm: float, known: Polarity | None = None) -> Level
     noise_of_paper = paper_noise(sample / np.float32(ink))
     shapes = paper.shapes(ink)
     kept, has_shapes = replace(tiles, unit=1 / ink), bool(shapes.any())
-    return Levelled(kept, shapes, noise_of_paper, has_shapes, paper.polarity.notes)
+    return Levelled(kept, shapes, noise_of_paper, has_shapes, paper.polarity)
 
 
 def _look(grey: Any, by: int) -> _Look:

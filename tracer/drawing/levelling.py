@@ -41,7 +41,9 @@ from morfax.tracer.effort import FEW_PX
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 # of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen
 STEP = 0.1
-BOLD_MM = WIDEST_STROKE_MM / 2  # two such lines side by side are broader than a stroke may be
+BOLD_MM = (
+    WIDEST_STROKE_MM / 2
+)  # where two such lines meet their ink is broader than a stroke may be
 
 Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]
@@ -50,14 +52,14 @@ Shapes = NDArray[np.bool_]
 class Levelled(NamedTuple):
     """A sheet as darkness, paper 0, the strokes 1, or tiles of it; where filled shapes are that are no ink,
     on a picture reduced by a whole number; the noise of the paper; whether there are filled shapes; and
-    what there is to tell of its polarity.
+    its polarity, with what there is to tell of that.
     """
 
     darkness: Darkness | Tiles
     shapes: Shapes
     paper_noise: float
     has_shapes: bool
-    notes: tuple[str, ...]
+    polarity: Polarity
 
 
 def levelled(
@@ -79,24 +81,13 @@ def levelled(
         shapes,
         paper_noise(sample / np.float32(ink)),
         has_shapes,
-        contrast.paper.polarity.notes,
+        contrast.paper.polarity,
     )
     if everywhere is None:
         return Levelled(contrast.darkness(ink), *told)
     if everywhere.nbytes > SHEET_BYTES:
         give_back()
     return Levelled(contrast.in_parts_of(ink, everywhere), *told)
-
-
-def of_bold_lines(width_mm: float) -> tuple[str, ...]:
-    """What the operator should know of lines so wide that their ink looks like dark paper where they meet."""
-    if not width_mm >= BOLD_MM:  # not a number without any line
-        return ()
-    return (
-        f"the lines are {width_mm:.1f} mm wide: where lines broader than {BOLD_MM:g} mm meet at a sharp angle"
-        " or cross, strokes may end short; read the sheet half as large (half the --width, or twice the"
-        " --dpi), and --scale 2 gives the program its size back",
-    )
 
 
 def _in_even_light(contrast: Contrast, pitch_mm: float) -> Contrast:
