@@ -59,7 +59,8 @@ class DrawingFile:
         for a bad file, CardFault for corrections that are not its own.
         """
         from morfax.tracer.drawing import inks
-        from morfax.tracer.drawing.drawing import Drawing, Reading
+        from morfax.tracer.drawing.drawing import Drawing
+        from morfax.tracer.drawing.reading import Reading
 
         self.check()
         ink = None if self.ink is None else inks.parsed(self.ink)

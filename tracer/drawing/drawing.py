@@ -20,21 +20,17 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.tracer.drawing import coarse, grain, inks, large, raster, speckled
+from morfax.tracer.drawing import inks, raster
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
-from morfax.tracer.drawing.cleared import cleared
 from morfax.tracer.drawing.components import INK
-from morfax.tracer.drawing.deepening import deepened, deepened_note
-from morfax.tracer.drawing.levelling import BOLD_MM, Levelled, levelled
 from morfax.tracer.drawing.narrow import Strips
-from morfax.tracer.drawing.noise import Noise, measured, within
-from morfax.tracer.drawing.polarity import Polarity
-from morfax.tracer.drawing.ruling import PaperKind
+from morfax.tracer.drawing.noise import Noise, measured
+from morfax.tracer.drawing.reading import AS_LINES, Reading
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan
 from morfax.tracer.drawing.tiles import Tiles
@@ -49,25 +45,6 @@ EDGE_PITCH_MM, SMALLEST = 0.0847, 0.2
 LEAST_RADIUS_MM, MOST_ENLARGED = 1.3, 4  # of an edge; by trial on round holes
 
 Darkness = NDArray[np.float32]
-
-
-class Reading(NamedTuple):
-    """How a scan is read: the edges of filled shapes alone; printed lines of what kind of paper are left out;
-    or filled shapes as ink, which is as dark as the lines that end at them; or pale lines as ink; lines of a
-    polarity if it is known; of drawn lines that were rendered; and bold ones, so that strokes are up to twice
-    as broad as on other sheets.
-    """
-
-    edge: bool = False
-    printed: PaperKind = "auto"
-    shapes_are_ink: bool = False
-    pale_is_ink: bool = False
-    polarity: Polarity | None = None
-    is_rendered: bool = False
-    bold: bool = False
-
-
-AS_LINES = Reading()
 
 
 @dataclass(frozen=True)
@@ -250,68 +227,24 @@ class Drawing:
         cls, file: Path, grey: Any, pitch_mm: float, notes: tuple[str, ...], reading: Reading
     ) -> Drawing:
         """The lines in grey levels on square pixels."""
-        # 1. darkness, without what is printed and the scan's border
-        darkness, shapes, paper_noise, has_shapes, polarity = _levelled(grey, pitch_mm, reading)
-        darkness, ink, told = cleared(darkness, pitch_mm, reading.printed, reading.pale_is_ink)
-        paper_noise /= ink
-        lines, pale_mm = within(darkness, paper_noise), 0.0
-        if lines.width_px * pitch_mm >= BOLD_MM and not reading.bold:
-            bold = reading._replace(polarity=polarity, bold=True)
-            return cls._of_lines(file, grey, pitch_mm, notes, bold)
-        times = speckled.times_larger(darkness, lines, pitch_mm)
-        if times > 1:
-            notes = (*notes, speckled.note(times, pitch_mm))
-            larger = speckled.on_larger_pixels(np.asarray(grey), times)
-            return cls._of_lines(file, larger, times * pitch_mm, notes, reading)
-        # 2. pale lines
-        drawn_grain = lines.grain
-        is_pencil = grain.slit_for(drawn_grain, lines.width_px, pitch_mm) is not None
-        if reading.pale_is_ink and not isinstance(darkness, Tiles):
-            pale_mm = deepened(darkness, pitch_mm, paper_noise, shapes, is_pencil=is_pencil)
-            lines = within(darkness, paper_noise) if pale_mm else lines
-        notes = (
-            *notes,
-            *polarity.notes,
-            *told,
-            *grain.notes_of_few_pixels(lines, drawn_grain, pitch_mm),
-        )
-        most = None if isinstance(darkness, Tiles) else darkest(np.asarray(darkness))
-        hard = most is not None and coarse.is_hard(np.asarray(darkness), most)
-        # 3. grain, of lines as they are drawn
-        averaged = grain.averaged(darkness, drawn_grain, lines.width_px, pitch_mm)
-        if averaged is not None:
-            darkness, notes = averaged.darkness, (*notes, averaged.note)
-        # 4. steps of pixels, and too large pixels
-        steps = most if hard and averaged is None else None
-        darkness, finer, has_rims = coarse.without_steps(darkness, lines, steps)
-        if finer > 1 and reading.pale_is_ink:  # a line of a pixel is paler now
-            pale_mm += deepened(darkness, pitch_mm / finer, None, shapes)
-        notes = (*notes, deepened_note(pale_mm)) if pale_mm else notes
+        from morfax.tracer.drawing.lines_read import lines_read
+
+        lines = lines_read(grey, pitch_mm, reading)
         drawing = cls(
-            darkness,
-            pitch_mm / finer,
+            lines.darkness,
+            lines.pitch_mm,
             file,
-            shapes=shapes,
-            has_shapes=has_shapes,
-            notes=notes,
-            finer=finer,
+            shapes=lines.shapes,
+            has_shapes=lines.has_shapes,
+            notes=(*notes, *lines.notes),
+            finer=lines.finer,
             seen_px=lines.seen_px,
-            is_hard=hard and not has_rims,
-            has_rims=has_rims,
-            grainy=averaged is not None,
-            paper_noise=paper_noise,
+            is_hard=lines.is_hard,
+            has_rims=lines.has_rims,
+            grainy=lines.grainy,
+            paper_noise=lines.paper_noise,
             is_rendered=reading.is_rendered,
-            drawn=averaged.drawn if averaged is not None and finer == 1 else None,
+            drawn=lines.drawn,
         )
-        if averaged is None and finer == 1 and not has_rims:  # the darkness that was measured
-            known = {} if most is None else {"darkest": most}
-            vars(drawing).update(known, noise=lines.found.noise(pitch_mm))
+        vars(drawing).update(lines.measured)
         return drawing
-
-
-def _levelled(grey: Any, pitch_mm: float, reading: Reading) -> Levelled:
-    """The sheet as darkness, one of bold lines as if it were half as large; a large one as tiles of it."""
-    seen_mm = pitch_mm / 2 if reading.bold else pitch_mm
-    if grey.size >= large.LARGE_PX:
-        return large.levelled(grey, seen_mm, reading.polarity)
-    return levelled(grey, seen_mm, reading.shapes_are_ink, reading.polarity)

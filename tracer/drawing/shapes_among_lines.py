@@ -24,9 +24,10 @@ from morfax.tracer.drawing.border import border_note, without_border
 from morfax.tracer.drawing.components import FRINGE_PX, INK, SOFTENED_PX, Mask
 from morfax.tracer.drawing.depth import depth_px
 from morfax.tracer.drawing.discs import disc
-from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
+from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.inks import Ink, grey_of
 from morfax.tracer.drawing.lengths import ONE_PEN
+from morfax.tracer.drawing.reading import Reading
 from morfax.tracer.drawing.ruling import PaperKind
 from morfax.tracer.drawing.scale import Scale, on_square_pixels
 from morfax.tracer.drawing.scan import Scan

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.drawing.deepening import ABOVE_NOISE, LEAST, _lines
-from morfax.tracer.drawing.drawing import Drawing, Reading
+from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.reading import Reading
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.shapes_among_lines import drawing_of_all_ink

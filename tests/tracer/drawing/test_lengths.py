@@ -18,8 +18,9 @@ from morfax.motion.polyline import length_mm
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import lengths
 from morfax.tracer.drawing.components import INK, runs_of
-from morfax.tracer.drawing.drawing import Drawing, Reading
+from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.lengths import told as told_of
+from morfax.tracer.drawing.reading import Reading
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated
 from morfax.tracer.drawing.strokes import Sheet

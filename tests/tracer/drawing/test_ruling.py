@@ -16,8 +16,9 @@ from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.motion.units import MM_PER_INCH
 from morfax.tracer.drawing import ruling
-from morfax.tracer.drawing.drawing import Darkness, Drawing, Reading
+from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.printed_lines import families
+from morfax.tracer.drawing.reading import Reading
 from morfax.tracer.drawing.ruling import PaperKind, left_out
 from morfax.tracer.drawing.scale import Scale
 from morfax.tracer.drawing.scan import Scan, Stated

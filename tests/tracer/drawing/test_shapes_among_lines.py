@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from morfax.motion.polyline import nearest_mm
-from morfax.tracer.drawing import drawing as drawing_module
+from morfax.tracer.drawing import lines_read as lines_read_module
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.levelling import Levelled
 from morfax.tracer.drawing.paper import Paper
@@ -89,13 +89,13 @@ def test_a_line_that_ends_at_a_black_area_is_followed_up_to_it(
 def test_filled_shapes_are_told_and_a_sheet_with_lines_is_read_once(
     monkeypatch: pytest.MonkeyPatch, lines: bool
 ) -> None:
-    levelled, read_as_ink = drawing_module.levelled, list[bool]()
+    levelled, read_as_ink = lines_read_module.levelled, list[bool]()
 
     def counted(grey: Any, pitch_mm: float, shapes_are_ink: bool, *known: Any) -> Levelled:
         read_as_ink.append(shapes_are_ink)
         return levelled(grey, pitch_mm, shapes_are_ink, *known)
 
-    monkeypatch.setattr(drawing_module, "levelled", counted)
+    monkeypatch.setattr(lines_read_module, "levelled", counted)
     assert read(box(25, 45, 85, 58), lines=lines).has_shapes
     assert read_as_ink == ([True] if lines else [True, False])
 
