@@ -21,7 +21,8 @@ from typing import Any
 
 from morfax.jobs.machine.recording import RecordingUnit
 from morfax.jobs.settings.correction_settings import sha256_of
-from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.settings import TraceSettings
 
 PROGRAM = Path("program.ngc")  # G-code is about a hundredth of a tape's size
 HASH_DIGITS = 12  # of 64: among a million drawings two are alike once in 500 batches

@@ -27,7 +27,7 @@ def warm_up() -> None:
     import cv2
     import numpy as np
 
-    from morfax.jobs.settings.settings import DrawingFile
+    from morfax.jobs.settings.drawing_file import DrawingFile
     from morfax.jobs.trace import TraceJob, TraceOutputs
 
     sheet = np.full((SIDE_PX, SIDE_PX), 255, np.uint8)

@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.phone import FOCAL_35MM, Phone
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.flattening import FlattenSettings
-from morfax.jobs.settings.settings import DrawingFile
 from morfax.motion.contour import distances_mm
 from morfax.motion.motion import thin
 from morfax.reports import marked_sheet

@@ -12,7 +12,7 @@ from morfax.jobs.media import files as medium
 from morfax.jobs.media import outlines
 from morfax.jobs.readings import comparison
 from morfax.jobs.settings import correction_settings, flattening
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.zero import OF_PART, Zero, refuse_of_part, said_by
 from morfax.jobs.wrong_use import WrongUse
 

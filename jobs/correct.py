@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.settings.correction_settings import sha256_of
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.wrong_use import WrongUse, settings_checked
 from morfax.motion.faults import CardFault, DrawingFault
 

@@ -11,8 +11,9 @@ from morfax.jobs.media import files as medium
 from morfax.jobs.remarks.on_survey import remarks_on_lines
 from morfax.jobs.remarks.scale_doubts import scale_doubts
 from morfax.jobs.settings import correction_settings
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.line_settings import LineSettings
-from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.tracing import trace_figures
 from morfax.jobs.tracing.skips import gap_across_skips
 

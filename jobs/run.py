@@ -13,7 +13,8 @@ from morfax.jobs.machine.recording import RecordingUnit
 from morfax.jobs.media import files as medium
 from morfax.jobs.readings import comparison, following
 from morfax.jobs.settings import correction_settings, flattening
-from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.tracing.tracing import Tracing
 from morfax.motion.faults import FileFault
 

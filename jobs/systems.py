@@ -24,7 +24,8 @@ from morfax.jobs.media import files as medium
 from morfax.jobs.readings import comparison, following
 from morfax.jobs.results import NAMES, SystemResult
 from morfax.jobs.settings import correction_settings, flattening
-from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.tracing.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.arrays import NOT_ZERO

@@ -13,7 +13,8 @@ from morfax.jobs.media import files as medium
 from morfax.jobs.settings import flattening
 from morfax.jobs.settings.correction_settings import figures as figures_of
 from morfax.jobs.settings.correction_settings import named
-from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.tracing.tracing import Tracing
 from morfax.jobs.wrong_use import WrongUse
 

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 from morfax.jobs.listener import SILENT, Listener
 from morfax.jobs.machine.recording import RecordingUnit
 from morfax.jobs.media import files as medium
-from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.trace import NAME, TraceJob, TraceOutputs, TraceResult
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import Fault

@@ -33,7 +33,7 @@ from morfax.panel.page_words import in_page_words
 if TYPE_CHECKING:
     from morfax.jobs.play import PlayJob
     from morfax.jobs.run import RunJob
-    from morfax.jobs.settings.settings import DrawingFile
+    from morfax.jobs.settings.drawing_file import DrawingFile
     from morfax.jobs.trace import TraceJob
     from morfax.jobs.tracing.traced import Traced
     from morfax.jobs.tracing.tracing import Tracing

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from morfax.jobs.compare import CompareResult
     from morfax.jobs.play import PlayResult
     from morfax.jobs.run import RunResult
-    from morfax.jobs.settings.settings import DrawingFile
+    from morfax.jobs.settings.drawing_file import DrawingFile
     from morfax.jobs.systems import SystemsResult
     from morfax.jobs.trace import TraceResult
     from morfax.motion.faults import LineFault

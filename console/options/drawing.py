@@ -12,8 +12,8 @@ from morfax.console.options.files import FILE
 from morfax.console.options.groups import Decorator, given_all, option
 from morfax.console.options.types import BAR, FLATTEN, LENGTH, PIXELS
 from morfax.jobs.settings.correction_settings import CorrectionSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.flattening import FlattenSettings
-from morfax.jobs.settings.settings import DrawingFile
 from morfax.recorder.drawings.drawn_units import UNITS_MM
 
 if TYPE_CHECKING:

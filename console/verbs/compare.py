@@ -25,7 +25,7 @@ from morfax.jobs.systems import SystemsJob
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
     from morfax.jobs.machine.playing import ByHand
-    from morfax.jobs.settings.settings import DrawingFile
+    from morfax.jobs.settings.drawing_file import DrawingFile
 
 BEYOND_TOLERANCE = 1
 OF_SYSTEMS = ("report", "head_mm", "lines", "speed_mm_s")  # options that only --systems takes

@@ -15,7 +15,7 @@ from morfax.jobs.correct import CorrectJob
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.settings.settings import DrawingFile
+    from morfax.jobs.settings.drawing_file import DrawingFile
     from morfax.tracer.corrections.corrections import Correction
 
 EXAMPLES = """\b

@@ -13,7 +13,8 @@ from morfax.console.options.files import FILE
 from morfax.console.options.groups import Verb, option
 from morfax.console.verbs.run import run_and_show
 from morfax.jobs.run import RunJob
-from morfax.jobs.settings.settings import DrawingFile, ProgramSettings, TraceSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.settings import ProgramSettings, TraceSettings
 from morfax.motion.faults import FileFault
 
 if TYPE_CHECKING:

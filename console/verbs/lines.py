@@ -17,7 +17,7 @@ from morfax.jobs.settings.line_settings import LineSettings
 
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
-    from morfax.jobs.settings.settings import DrawingFile
+    from morfax.jobs.settings.drawing_file import DrawingFile
 
 EXAMPLES = """\b
 Examples:

@@ -19,7 +19,8 @@ from morfax.jobs.trace import NAME, TraceJob, TraceOutputs
 if TYPE_CHECKING:
     from morfax.console.terminal.desk import Desk
     from morfax.jobs.machine.recording import RecordingUnit
-    from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+    from morfax.jobs.settings.drawing_file import DrawingFile
+    from morfax.jobs.settings.settings import TraceSettings
     from morfax.tracer.operator.operator import Panel
 
 EXAMPLES = """\b

@@ -26,7 +26,8 @@ from morfax.batch.order import Order
 from morfax.batch.page import wants_eye, write_page
 from morfax.batch.results import LocalResults
 from morfax.batch.row import BatchRow
-from morfax.jobs.settings.settings import DrawingFile, HeadSettings, TraceSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.settings import HeadSettings, TraceSettings
 from morfax.motion.faults import FileFault
 from tests.console.conftest import Morfax, here, morfax
 

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from morfax.jobs.listener import SILENT
-from morfax.jobs.settings.settings import DrawingFile, ProgramSettings, TraceSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.settings import ProgramSettings, TraceSettings
 from morfax.jobs.tracing.tracing import Tracing
 from morfax.motion.motion import Path as MotionPath
 from morfax.motion.motion import thin

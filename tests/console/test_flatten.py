@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from morfax.jobs.listener import Silent
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.motion.contour import distances_mm
 from morfax.motion.pathfile import read_path
 from tests.console.conftest import Morfax

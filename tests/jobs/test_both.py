@@ -10,8 +10,9 @@ from PIL import Image
 from morfax.jobs.compare import CompareJob
 from morfax.jobs.lines import LinesJob
 from morfax.jobs.run import RunJob, RunResult
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.line_settings import LineSettings
-from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.settings import TraceSettings
 from tests.tracer.inked import UM
 from tests.tracer.program.test_ink_and_edges import (
     DISC,

@@ -13,8 +13,9 @@ from PIL import Image
 from morfax.jobs.correct import CorrectJob
 from morfax.jobs.lines import LinesJob
 from morfax.jobs.settings.correction_settings import CorrectionSettings
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.line_settings import LineSettings
-from morfax.jobs.settings.settings import DrawingFile, ProgramSettings, TraceSettings
+from morfax.jobs.settings.settings import ProgramSettings, TraceSettings
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import CardFault, DrawingFault

@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image
 
 from morfax.jobs.remarks.many_pieces import of_many_pieces
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.tracer.drawing.drawing import Drawing
 
 WIDTH_MM, PX = 100.0, 1000

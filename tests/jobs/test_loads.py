@@ -52,7 +52,7 @@ def test_jobs_know_no_terminal_and_load_no_machine() -> None:
         f"print([name for name in {absent} if name in sys.modules])\n"
         "from pathlib import Path\n"
         "from morfax.jobs import TraceJob\n"
-        "from morfax.jobs.settings.settings import DrawingFile\n"
+        "from morfax.jobs.settings.drawing_file import DrawingFile\n"
         "from morfax.jobs.trace import TraceOutputs\n"
         "import tempfile\n"
         "with tempfile.TemporaryDirectory() as folder:\n"

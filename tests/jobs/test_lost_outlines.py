@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.line_settings import LineSettings
-from morfax.jobs.settings.settings import DrawingFile, TraceSettings
+from morfax.jobs.settings.settings import TraceSettings
 from morfax.jobs.trace import TraceJob, TraceOutputs, TraceResult
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line

@@ -9,13 +9,9 @@ import pytest
 
 from morfax.jobs.machine.recording import RecordingUnit
 from morfax.jobs.run import RunJob
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.line_settings import LineSettings
-from morfax.jobs.settings.settings import (
-    DrawingFile,
-    ProgramSettings,
-    ToolSettings,
-    TraceSettings,
-)
+from morfax.jobs.settings.settings import ProgramSettings, ToolSettings, TraceSettings
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.recorder.gcode.machine import as_toml
 

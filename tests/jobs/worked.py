@@ -8,9 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from morfax.jobs.settings.settings import (
-    DrawingFile,
-)
+from morfax.jobs.settings.drawing_file import DrawingFile
 from tests.console.conftest import SAMPLES
 
 UM = 1e-3

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from morfax.jobs.lines import LinesJob
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.panel import result_data, sheet_data
 from morfax.panel.lookout import STEP_MM, Lookout
 from morfax.panel.tape_levels import levels

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import LineFault
 from morfax.motion.placement import Placement

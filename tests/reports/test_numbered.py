@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from morfax.jobs.lines import LinesJob
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.reports import labels, numbered, vector
 from morfax.reports.plate import Caption, Mark
 

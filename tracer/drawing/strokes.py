@@ -43,8 +43,7 @@ Window = tuple[int, int, int, int]  # first row and column, row and column after
 TILE_PX = 2048  # the places of a line come tile by tile, so that its size decides where the head begins
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial
-# areas of paper less than so many widths across are flaws of the ink that goes round them; by trial
-FLAW_WIDTHS = 1.0
+FLAW_WIDTHS = 1.0  # areas of paper less than so many across are flaws of the ink about them; by trial
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 
 
@@ -106,9 +105,8 @@ class Sheet:
         patches = Patches.of([runs])
         areas, shape = patches.areas, drawing.darkness.shape
         deep = np.bincount(patches.patch, depths_px(runs, shape), patches.count) / areas
-        widths = np.maximum(
-            4 * deep - 2, 1.0
-        )  # a line of w pixels has depths 1, 2 … w/2 … 2, 1
+        # a line of w pixels has depths 1, 2 … w/2 … 2, 1
+        widths = np.maximum(4 * deep - 2, 1.0)
         lengths_mm, widths_mm = areas / widths * drawing.pitch_mm, widths * drawing.pitch_mm
         solid = are_solid(drawing, patches, widths_mm)
         sheet = cls(drawing, patches, lengths_mm, widths_mm, solid)

@@ -20,7 +20,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly
 from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.ink.partners import Pair, without_partner
-from morfax.tracer.tangles import pen, settling
+from morfax.tracer.tangles import distances, pen, settling
 from morfax.tracer.tangles.sketch import ALL, softness_of
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -82,19 +82,21 @@ class CrossingInk:
         # 1. pixels of a window that are near
         reach_mm = REACH * width_mm
         seen, _, grid = view.seen_about(about, reach_mm)
-        places, away_mm = grid.reshape(-1, 2), np.full(seen.size, pen.NOWHERE_MM)
+        places, away_mm = grid.reshape(-1, 2), np.full(seen.size, distances.NOWHERE_MM)
         for way in (*ways, *felt):
-            away_mm = np.minimum(away_mm, pen.away_from(places, _thinned(way)))
+            away_mm = np.minimum(away_mm, distances.away_from(places, _thinned(way)))
         near = np.flatnonzero(away_mm < reach_mm)
         # 2. their ink, and how far the legs are
         dark = np.minimum(seen.ravel()[near] / (2 * view.level), DARKEST).astype(float)
-        known_mm = np.full(len(near), pen.NOWHERE_MM)
+        known_mm = np.full(len(near), distances.NOWHERE_MM)
         low_mm, high_mm = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
         for leg in crossing.near:
             if len(leg) > 1:
                 within = np.all((leg > low_mm) & (leg < high_mm), axis=1)
                 if within.sum() > 1:
-                    known_mm = np.minimum(known_mm, pen.away_from(places[near], leg[within]))
+                    known_mm = np.minimum(
+                        known_mm, distances.away_from(places[near], leg[within])
+                    )
         softness_mm = softness_of(view, crossing.legs[0])
         ink = pen.Ink(places[near], dark, known_mm, 0.5 * width_mm, softness_mm)
         rows, columns = np.unravel_index(near, seen.shape)
@@ -111,7 +113,7 @@ class CrossingInk:
         for way in ways:
             if len(way) > 1:
                 known_mm = np.minimum(
-                    known_mm, pen.away_from(self.ink.places_mm, _thinned(way))
+                    known_mm, distances.away_from(self.ink.places_mm, _thinned(way))
                 )
         return known_mm
 

@@ -40,7 +40,7 @@ from morfax.tracer.program.one_of_each import one_of_each
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import beside_itself
-from morfax.tracer.tangles.pen import NOWHERE_MM
+from morfax.tracer.tangles.distances import NOWHERE_MM
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE, SeenInk
 
 # In widths of the line, chosen by trial on plates with notches and tongues:

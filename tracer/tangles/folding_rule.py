@@ -32,7 +32,7 @@ from morfax.motion.crossings import crossings_of
 from morfax.motion.polyline import area_mm2, evenly, length_mm
 from morfax.tracer.sensing.leg import TURNS_BACK
 from morfax.tracer.sensing.view import STEP_WIDTHS
-from morfax.tracer.tangles import bent_rule, beside_itself, pen
+from morfax.tracer.tangles import bent_rule, beside_itself, distances
 from morfax.tracer.tangles.figured import Figured
 from morfax.tracer.tangles.least_squares import fitted
 from morfax.tracer.tangles.seen_ink import LIKE, PRICE, STEPS, SeenInk, best_of
@@ -132,7 +132,7 @@ def sharp(first_mm: Array, last_mm: Array, corners_mm: Array, half_mm: float) ->
 def round_bar(ink: SeenInk, legs: Array) -> Iterator[Rule]:
     """Rules round the bar of ink beside a line, of which the legs (n, 2) mm on either side are known."""
     half_mm = ink.half_mm
-    away_mm = np.minimum(pen.away_from(ink.places_mm, legs), ink.known_mm)
+    away_mm = np.minimum(distances.away_from(ink.places_mm, legs), ink.known_mm)
     bar = ink.without_specks((away_mm > BESIDE * half_mm) & (ink.darkness > 0.5))
     if len(bar) < FEWEST:
         return
@@ -140,7 +140,7 @@ def round_bar(ink: SeenInk, legs: Array) -> Iterator[Rule]:
     middle = bar.mean(axis=0)
     around = cv2.minAreaRect((bar - middle).astype(np.float32))
     box = middle + cv2.boxPoints(around).astype(float)
-    beyond_mm = pen.away_from(box, legs)
+    beyond_mm = distances.away_from(box, legs)
     tip = int(np.argmax(beyond_mm + np.roll(beyond_mm, -1)))
     left, right, foot = box[tip], box[(tip + 1) % 4], box[tip - 1]
     across, out = right - left, left - foot
@@ -194,7 +194,7 @@ def _reduced(way: Array, count: int) -> Array:
 def _foot(place: Array, out: Array, legs: Array, furthest_mm: float) -> Array:
     """Where a side that comes from a place against a direction is nearest to the legs."""
     side = place - np.linspace(0.0, furthest_mm, 200)[:, None] * out
-    return np.asarray(side[int(np.argmin(pen.away_from(side, legs)))])
+    return np.asarray(side[int(np.argmin(distances.away_from(side, legs)))])
 
 
 def _drawn(ink: SeenInk, rule: Rule) -> Rule:
@@ -264,7 +264,7 @@ def _is_apart(rule: Rule, width_mm: float) -> bool:
         if max(at_first, at_last) > TURNS_BACK:
             return False
         mouth = corners[[0, -1]]
-        deep_mm = float(pen.away_from(corners, mouth).max())
+        deep_mm = float(distances.away_from(corners, mouth).max())
         is_open = float(np.hypot(*(mouth[1] - mouth[0]))) > APART * width_mm
         is_open &= deep_mm > DEEP * width_mm
         return is_open and abs(area_mm2(corners)) > WITHIN * APART * width_mm * deep_mm

@@ -15,7 +15,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import distances, pen
 from morfax.tracer.tangles.sketch import softness_of
 from morfax.tracer.tangles.tangle import DARKEST
 
@@ -61,12 +61,15 @@ class Patch:
 
     def wrong(self, way: Array) -> Array:
         """What a pen on a way (n, 2) mm draws too dark or too light at each place, 1 for ink or none."""
-        distance, drawn = pen.away_from(self.places_mm, way), np.empty(len(self.places_mm))
+        distance, drawn = (
+            distances.away_from(self.places_mm, way),
+            np.empty(len(self.places_mm)),
+        )
         pen.ink(distance, self.half_mm, self.softness_mm, drawn)
         return drawn - self.darkness
 
     def for_kernel(self) -> pen.Ink:
         """The same for kernels; nothing is drawn there anyway."""
-        known_mm = np.full(len(self.darkness), pen.NOWHERE_MM)
+        known_mm = np.full(len(self.darkness), distances.NOWHERE_MM)
         places = np.ascontiguousarray(self.places_mm)
         return pen.Ink(places, self.darkness, known_mm, self.half_mm, self.softness_mm)

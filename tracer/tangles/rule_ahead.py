@@ -32,7 +32,7 @@ from morfax.tracer.junctions.width_change import STEP
 from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles import folding_rule, pen
+from morfax.tracer.tangles import distances, folding_rule
 from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.redrawing import NONE
 from morfax.tracer.tangles.seen_ink import SURE, SeenInk
@@ -151,7 +151,7 @@ def _ink(
     """The ink ahead as far as a front; what lies on the way behind is drawn there."""
     inside = (fronts.label >= 0) & (fronts.label <= last)
     places, darkness, area_mm2 = ink_of(view, inside, fronts.corner)
-    known_mm, each_mm2 = pen.away_from(places, behind_mm), area_mm2 / max(len(places), 1)
+    known_mm, each_mm2 = distances.away_from(places, behind_mm), area_mm2 / max(len(places), 1)
     return SeenInk(places, darkness, known_mm, 0.5 * view.width_mm, softness_mm, each_mm2, 0.0)
 
 

@@ -22,7 +22,7 @@ from morfax.motion.polyline import evenly, nearest_mm
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.limits import CLEAR_WIDTHS
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import distances, pen
 from morfax.tracer.tangles.tangle import DARKEST
 
 OF_WIDTH = (0.9, 0.95, 1.0, 1.05, 1.1)  # of the width that was felt: a way is tried with these
@@ -128,7 +128,7 @@ class SeenInk(NamedTuple):
 
     def drawn_along(self, way: Array, half_mm: float) -> Array:
         """Darkness (n,) that a pen of half a width leaves along a way (m, 2) mm and the known lines."""
-        return self._drawn(pen.away_from(self.places_mm, way), half_mm)
+        return self._drawn(distances.away_from(self.places_mm, way), half_mm)
 
     def _drawn(self, away_mm: Array, half_mm: float) -> Array:
         """The same of ways that are so far (n,) from the places."""
@@ -162,7 +162,7 @@ class SeenInk(NamedTuple):
 
     def misfit_along(self, way: Array) -> float:
         """How much a pen along a way (m, 2) mm leaves unexplained, of the width that explains most."""
-        return self.misfit(self.best_drawn(pen.away_from(self.places_mm, way)))
+        return self.misfit(self.best_drawn(distances.away_from(self.places_mm, way)))
 
     def best_drawn(self, away_mm: Array) -> Array:
         """Darkness (n,) that a pen leaves along ways that are so far (n,) from the places, of the width that

@@ -42,7 +42,8 @@ LEAST_GAIN = 1e-3  # of what is wrong: a smaller gain ends the fit
 def _near(places, lines, first, last, squares):  # type: ignore[no-untyped-def]
     """Lower the squares (n,), mm2, of distances of places (2, n) to those from some pieces of lines (4, k).
 
-    Piece by piece and not place by place, as `pen.away` goes: so four places are held against it at a time.
+    Piece by piece and not place by place, as `distances.away` goes: so four places are held against a piece
+    at a time.
     """
     x, y = places[0], places[1]
     for i in range(first, last):

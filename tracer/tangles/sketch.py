@@ -30,7 +30,7 @@ from morfax.tracer.sensing.leg import Leg, meet
 from morfax.tracer.sensing.photocell import darkness_along
 from morfax.tracer.sensing.probe import end_of
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles import pen, settling
+from morfax.tracer.tangles import distances, pen, settling
 from morfax.tracer.tangles.redrawing import (
     DOUBLED,
     IN_GRAIN,
@@ -75,7 +75,7 @@ class Sketch:
     def of(cls, view: View, tangle: Tangle) -> Sketch:
         """Set the pen to the width and softness of the legs, and draw these."""
         # 1. the legs, the first of which heads in and the others out
-        known = np.full(len(tangle.darkness), pen.NOWHERE_MM)
+        known = np.full(len(tangle.darkness), distances.NOWHERE_MM)
         poses = []
         for k, leg in enumerate(tangle.legs):
             poses.append((*leg.end_mm, leg.heading_rad + (math.pi if k else 0.0)))
@@ -160,7 +160,7 @@ class Sketch:
         """Darkness drawn at each place, its distance from what is drawn, and the pieces (n, 4) of that."""
         lines = np.ascontiguousarray(self._pieces(way))
         distance, drawn = self.ink.known_mm.copy(), np.empty(len(self.ink.known_mm))
-        pen.away(self.tangle.places_mm, lines, lines.shape[1], distance)
+        distances.away(self.tangle.places_mm, lines, lines.shape[1], distance)
         pen.ink(distance, self.ink.half_mm, self.ink.softness_mm, drawn)
         return drawn, distance, lines.T
 
@@ -227,7 +227,7 @@ def redrawings(sketch: Sketch) -> list[Redrawing]:
 def _draw(tangle: Tangle, way: Array, distance_mm: Array) -> None:
     """Lower the distances of a tangle's places, in place, to those from a way (n, 2)."""
     lines = np.hstack([way[:-1], way[1:]]).T.copy()
-    pen.away(tangle.places_mm, lines, len(way) - 1, distance_mm)
+    distances.away(tangle.places_mm, lines, len(way) - 1, distance_mm)
 
 
 def softness_of(view: View, leg: Leg) -> float:

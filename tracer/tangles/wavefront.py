@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.tracer.sensing.view import View
-from morfax.tracer.tangles.pen import away_from
+from morfax.tracer.tangles.distances import away_from
 
 FAR = 1e9  # pixels: where the wave has not come
 STEP_MM, STEP_PX = 0.1, 1.5  # how far the wave runs from front to front, at least; by trial

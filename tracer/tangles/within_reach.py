@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.plane import NOTHING_MM2
-from morfax.tracer.tangles.pen import BOXED, boxes_of, to_box2
+from morfax.tracer.tangles.distances import BOXED, boxes_of, to_box2
 
 
 def are_within(places: Array, way: Array, reach_mm: float) -> NDArray[np.bool_]:

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 from scipy.spatial import cKDTree
 
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.trace_ink import trace_ink
 

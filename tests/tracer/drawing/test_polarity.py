@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.tracer.drawing.inks import parsed
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.polarity import HARDLY_DARK, LIGHT_LINES

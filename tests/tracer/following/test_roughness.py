@@ -15,7 +15,7 @@ from PIL import Image
 
 from morfax.jobs.machine.recording import RecordingUnit
 from morfax.jobs.remarks.on_ink import of_ink
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.motion.contour import distance
 from morfax.motion.pathfile import read_path

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.jobs.settings import zero
-from morfax.jobs.settings.settings import DrawingFile
+from morfax.jobs.settings.drawing_file import DrawingFile
 from morfax.jobs.settings.zero import ZeroOnSheet, _part_mm
 from morfax.jobs.trace import TraceJob, TraceOutputs
 from morfax.motion import long_array

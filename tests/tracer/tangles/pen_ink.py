@@ -8,7 +8,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import nearest_mm, with_places
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import distances, pen
 from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import UM
 
@@ -21,7 +21,7 @@ def ink_along(
     """The ink about a way (n, 2) mm, on a square sheet, of a pen that is taken for one of HALF_MM."""
     rows, columns = np.indices((side_px, side_px)).reshape(2, -1)
     places = pitch_mm * np.column_stack([columns + 0.5, rows + 0.5])
-    away = pen.away_from(places, way)
+    away = distances.away_from(places, way)
     dark = np.empty(len(places))
     pen.ink(away, half_mm, SOFTNESS_MM, dark)
     dark += np.random.default_rng(1).normal(0.0, noise, len(dark))

@@ -7,7 +7,7 @@ import pytest
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import UM
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import distances, pen
 from morfax.tracer.tangles.within_reach import are_within
 
 
@@ -17,7 +17,10 @@ def spiral(places: int) -> Array:
     return 20 + 0.4 * np.column_stack([turned * np.cos(turned), turned * np.sin(turned)])
 
 
-@pytest.mark.parametrize("pieces", [pen.LONG - 1, pen.LONG, 5 * pen.BOXED + 1, 40 * pen.BOXED])
+@pytest.mark.parametrize(
+    "pieces",
+    [distances.LONG - 1, distances.LONG, 5 * distances.BOXED + 1, 40 * distances.BOXED],
+)
 def test_a_way_is_as_far_off_as_its_nearest_piece_however_long_it_is(pieces: int) -> None:
     """Of a long way only the pieces about a place are looked at: none that is nearer is passed over."""
     way, rng = spiral(pieces + 1), np.random.default_rng(pieces)
@@ -27,7 +30,7 @@ def test_a_way_is_as_far_off_as_its_nearest_piece_however_long_it_is(pieces: int
     share = np.clip(along / np.sum(steps**2, axis=1), 0, 1)
     nearest = way[None, :-1] + share[..., None] * steps
     true_mm = np.hypot(*(places[:, None] - nearest).transpose(2, 0, 1)).min(axis=1)
-    assert np.abs(pen.away_from(places, way) - true_mm).max() < 0.001 * UM
+    assert np.abs(distances.away_from(places, way) - true_mm).max() < 0.001 * UM
 
 
 def test_a_bend_is_drawn_place_by_place() -> None:
@@ -40,9 +43,9 @@ def test_a_bend_is_drawn_place_by_place() -> None:
 
 @pytest.mark.parametrize("reach_mm", [0.01, 0.3, 2.0, 100.0])
 def test_places_within_a_reach_are_those_whose_distance_is_less(reach_mm: float) -> None:
-    way = spiral(4 * pen.BOXED)
+    way = spiral(4 * distances.BOXED)
     places = np.random.default_rng(4).uniform(-20, 60, (4000, 2))
-    expected = pen.away_from(places, way) < reach_mm
+    expected = distances.away_from(places, way) < reach_mm
     assert np.array_equal(are_within(places, way, reach_mm), expected)
     # one that is just as far off is not within
-    assert not are_within(places[:1], way, float(pen.away_from(places[:1], way)[0])).any()
+    assert not are_within(places[:1], way, float(distances.away_from(places[:1], way)[0])).any()

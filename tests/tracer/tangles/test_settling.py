@@ -8,7 +8,7 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.tracer.following.plain_places import view_of
 from morfax.tracer.sensing.leg import Leg
-from morfax.tracer.tangles import pen, settling
+from morfax.tracer.tangles import distances, pen, settling
 from morfax.tracer.tangles.pen import Drawn, Ink
 from morfax.tracer.tangles.sketch import softness_of
 from tests.tracer.inked import WIDTH_MM, inked, polyline
@@ -44,7 +44,7 @@ def darkness(way: Drawn, vertices: Array) -> Array:
     """What the pen leaves at each place, place by place."""
     lines = np.empty((4, pen.most_pieces(way, vertices)))
     distance, out = KNOWN_MM.copy(), np.empty(len(KNOWN_MM))
-    pen.away(PLACES_MM, lines, pen.pieces(way, vertices, lines), distance)
+    distances.away(PLACES_MM, lines, pen.pieces(way, vertices, lines), distance)
     pen.ink(distance, HALF_MM, SOFT_MM, out)
     return out
 

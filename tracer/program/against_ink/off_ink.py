@@ -25,9 +25,9 @@ from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.against_ink.window import SheetWindow
 from morfax.tracer.sensing.view import STEP_WIDTHS
+from morfax.tracer.tangles.distances import NOWHERE_MM, away_from
 from morfax.tracer.tangles.felt_pen import FAR, PAPER_FROM, FeltPen
 from morfax.tracer.tangles.moved_way import nearest
-from morfax.tracer.tangles.pen import NOWHERE_MM, away_from
 from morfax.tracer.tangles.seen_ink import SeenInk, middles_mm
 from morfax.tracer.tangles.spline import wrong_and_where
 from morfax.tracer.tangles.within_reach import are_within

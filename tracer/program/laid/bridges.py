@@ -45,7 +45,7 @@ from morfax.tracer.program.laid.line_parts import (
 from morfax.tracer.program.laid.rim_bays import is_a_pen, ways_within_rims
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles.beside_itself import shortest
-from morfax.tracer.tangles.pen import away_from
+from morfax.tracer.tangles.distances import away_from
 from morfax.tracer.tangles.seen_ink import LIKE, middles_mm
 
 # In widths of the line; chosen by trial on keyholes, slit rings and necks:

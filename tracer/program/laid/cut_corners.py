@@ -43,7 +43,7 @@ from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.leg import STRAIGHT
 from morfax.tracer.sensing.view import STEP_WIDTHS
-from morfax.tracer.tangles import folding_rule, pen
+from morfax.tracer.tangles import distances, folding_rule
 from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import LIKE, PRICE, SURE
 
@@ -185,7 +185,7 @@ class _Corners(WayInk):
     def _by_ink(self, seen: BayInk) -> tuple[Rule, float] | None:
         """The rule that explains the ink of a stretch better than the way does, and by how much."""
         own, ink, width_mm = seen.own, seen.ink, self.line.width_mm
-        by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
+        by_own = ink.best_drawn(distances.away_from(ink.places_mm, own))
         if ink.misfit(by_own) < SURE * STEP_WIDTHS * len(own):
             return None
         rule = self.explained(ink, list(folding_rule.along(own, ink.half_mm)))

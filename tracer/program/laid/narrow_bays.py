@@ -52,7 +52,7 @@ from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays, turned_less_
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
-from morfax.tracer.tangles import beside_itself, folding_rule, pen
+from morfax.tracer.tangles import beside_itself, distances, folding_rule
 from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import GAIN, LIKE
 
@@ -226,7 +226,7 @@ class _Bays(WayInk):
     def _is_explained(self, seen: BayInk) -> bool:
         """Whether a stretch explains its ink."""
         own, ink = seen.own, seen.ink
-        misfit = ink.misfit(ink.best_drawn(pen.away_from(ink.places_mm, own)))
+        misfit = ink.misfit(ink.best_drawn(distances.away_from(ink.places_mm, own)))
         return misfit < LIKE * STEP_WIDTHS * (len(own) - 1)
 
     def _is_laid(self, own: Array, rule: Rule) -> bool:
@@ -261,7 +261,7 @@ class _Bays(WayInk):
         """How much better a rule explains the ink than the way does; None if it does not, or badly."""
         width_mm, own, ink = self.line.width_mm, seen.own, seen.ink
         widths = rule.length_mm / width_mm
-        drawn_by_own = ink.best_drawn(pen.away_from(ink.places_mm, own))
+        drawn_by_own = ink.best_drawn(distances.away_from(ink.places_mm, own))
         own_misfit = ink.misfit(drawn_by_own)
         gain = own_misfit - rule.misfit + FURTHER * (STEP_WIDTHS * (len(own) - 1) - widths)
         if suspect.is_beside_itself:

@@ -38,7 +38,7 @@ from morfax.tracer.program.laid.spline_fit import CORNER_RAD, turns_rad
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import distances
 from morfax.tracer.tangles.seen_ink import GAIN
 
 # widths: a way that is so near to another is on it; where a line was laid anew, all of it that is not is
@@ -127,7 +127,7 @@ class _Beside(NamedTuple):
     def of(cls, own: Array, way: Array, near_mm: float) -> _Beside:
         """That beside the closed way (m, 2) mm of a line; what is so near to it is on it."""
         nearest = Neighbours(way).nearest(own)[1]
-        away_mm = pen.away_from(own, closed_up(way))
+        away_mm = distances.away_from(own, closed_up(way))
         is_on = away_mm < near_mm
         goes = (np.roll(way, -1, axis=0) - np.roll(way, 1, axis=0))[nearest]
         along = np.sum(goes * (np.roll(own, -1, axis=0) - np.roll(own, 1, axis=0)), axis=1)
@@ -173,7 +173,7 @@ def _gain(seen: BayInk, laid: LaidWay) -> float:
     if runs_back(laid.way, width_mm) and not runs_back(seen.own, width_mm):
         return 0.0
     by_own, by_laid = (
-        ink.best_drawn(pen.away_from(ink.places_mm, way)) for way in (seen.own, laid.way)
+        ink.best_drawn(distances.away_from(ink.places_mm, way)) for way in (seen.own, laid.way)
     )
     gain, differ = ink.misfit(by_own) - ink.misfit(by_laid), np.sum((by_own - by_laid) ** 2)
     # gain = sum of (own - laid) * (own + laid - 2 * seen), and what is seen has the paper's noise

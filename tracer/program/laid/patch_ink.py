@@ -19,7 +19,7 @@ from morfax.motion.neighbours import Neighbours
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.ink.crossing_ink import Boxes
 from morfax.tracer.program.laid.loop_ink import ink_of
-from morfax.tracer.tangles import pen
+from morfax.tracer.tangles import distances, pen
 from morfax.tracer.tangles.seen_ink import SeenInk
 
 MOST_PLACES = 100_000  # of a patch: with more its largest would take seconds
@@ -51,7 +51,7 @@ class PatchInk:
 
     def away_mm(self, way: Array) -> Array:
         """How far its places are from a way (m, 2) mm, (n,)."""
-        return pen.away_from(self.places_mm, way)
+        return distances.away_from(self.places_mm, way)
 
     def wrong(self, away_mm: Array) -> Array:
         """What a pen along ways that are so far away (n,) draws too dark at each place."""

@@ -52,7 +52,7 @@ from morfax.tracer.program.laid.turned_back import LEG, LONG, NEAR, Touch, tip_t
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.beside_itself import partners, shortest
-from morfax.tracer.tangles.pen import away_from
+from morfax.tracer.tangles.distances import away_from
 from morfax.tracer.tangles.seen_ink import GAIN, SeenInk
 
 # In widths of the line; chosen by trial on circles that touch lines and each other:

@@ -29,7 +29,7 @@ from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH
 from morfax.tracer.program.laid.spline_fit import CORNER_RAD, TURNS_OVER, corners_of, turns_rad
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
-from morfax.tracer.tangles import folding_rule, pen
+from morfax.tracer.tangles import distances, folding_rule
 from morfax.tracer.tangles.folding_rule import Rule
 from morfax.tracer.tangles.seen_ink import SeenInk
 
@@ -174,10 +174,10 @@ class WayInk:
         ink = ink_about(self.drawing, about, self.line.width_mm, REACH)
         reach_mm = REACH * self.line.width_mm
         low, high = about.min(axis=0) - reach_mm, about.max(axis=0) + reach_mm
-        known_mm = np.full(len(ink.places_mm), pen.NOWHERE_MM)
+        known_mm = np.full(len(ink.places_mm), distances.NOWHERE_MM)
         # what is further away leaves no ink there
         for part in self.rest_within(first, last, low - reach_mm, high + reach_mm):
-            known_mm = np.minimum(known_mm, pen.away_from(ink.places_mm, part))
+            known_mm = np.minimum(known_mm, distances.away_from(ink.places_mm, part))
         for line, part in self.lines.parts(low, high, self.line, around_mm=reach_mm):
             # a known line is as wide as it was felt, and drawn by this line's pen
             wider_mm = 0.5 * (line.width_mm - self.line.width_mm)
