@@ -8,8 +8,7 @@ are near something dark.
     │  │. │+ │. │      and the darkest of that block and of the blocks about it (.); where none of these is
     │  │. │. │. │      dark enough, no pixel of it can be
 
-A spot has the weights of OpenCV's Gaussian, multiplied and added in OpenCV's order: what it sees is the same
-to the bit. Large sheets are worked on by two threads; the kernels let go of Python's lock.
+Large sheets are worked on by two threads; the kernels let go of Python's lock.
 
 Source: our own.
 """
@@ -26,6 +25,13 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.tracer.drawing.components import Mask, Numbers
+from morfax.tracer.drawing.spot import (
+    column_of_spot,
+    mirrored,
+    row_of_spot,
+    weights_of,
+    with_mirrored,
+)
 from morfax.tracer.effort import FEW_PX
 
 BLOCK_PX = 16  # of a sheet of darkness; by trial
@@ -117,12 +123,6 @@ def runs_in(darkness: Levels | Mask, level: float) -> Runs:
     return row, begin, end
 
 
-def weights_of(spread_px: float) -> Levels:
-    """OpenCV's weights of a spot of a standard deviation."""
-    size = round(8 * spread_px + 1) | 1
-    return np.asarray(cv2.getGaussianKernel(size, spread_px, cv2.CV_32F)[:, 0], np.float32)
-
-
 @njit(cache=True, nogil=True)
 def _of_blocks(grey, blocks, total, first, last):  # type: ignore[no-untyped-def]
     """Fill in some rows of blocks; `total` is a row of sums to work in."""
@@ -188,7 +188,7 @@ def _runs(darkness, blocks, by, weights, level, first, last):  # type: ignore[no
             for stretch in stretches:
                 begin, end = stretch[0], stretch[1]
                 part = seen[: end - begin]
-                _column_of_spot(across, begin, k - top + reach, weights, part)
+                column_of_spot(across, begin, k - top + reach, weights, part)
                 crossed = _crossed(part, level, crossings)
                 found, count = _added(found, count, (k, begin), crossings[:crossed])
     return found[:count, 0].copy(), found[:count, 1].copy(), found[:count, 2].copy()
@@ -238,44 +238,6 @@ def stretches_of(blocks, by, columns):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def with_mirrored(line, begin, part):  # type: ignore[no-untyped-def]
-    """Copy a part of a line from `begin` on; beyond its ends it is mirrored."""
-    if begin >= 0 and begin + len(part) <= len(line):
-        inner = line[begin : begin + len(part)]
-        for j in range(len(part)):
-            part[j] = inner[j]
-        return
-    for j in range(len(part)):
-        part[j] = line[mirrored(begin + j, len(line))]
-
-
-@njit(cache=True, nogil=True, fastmath={"contract"})
-def row_of_spot(line, weights, seen):  # type: ignore[no-untyped-def]
-    """Weigh each pixel with those beside it; the line is longer by the reach of the spot at both ends."""
-    weight = weights[0]
-    for j in range(len(seen)):
-        seen[j] = weight * line[j]
-    for d in range(1, len(weights)):
-        weight, beside = weights[d], line[d:]
-        for j in range(len(seen)):
-            seen[j] += weight * beside[j]
-
-
-@njit(cache=True, nogil=True, fastmath={"contract"})
-def _column_of_spot(lines, begin, middle, weights, seen):  # type: ignore[no-untyped-def]
-    """Weigh the pixels of as many lines as the spot is high, about a middle one, from `begin` on."""
-    reach, end = len(weights) // 2, begin + len(seen)
-    weight, line = weights[reach], lines[middle, begin:end]
-    for j in range(len(seen)):
-        seen[j] = weight * line[j]
-    for d in range(1, reach + 1):
-        weight = weights[reach + d]
-        above, below = lines[middle - d, begin:end], lines[middle + d, begin:end]
-        for j in range(len(seen)):
-            seen[j] += weight * (above[j] + below[j])
-
-
-@njit(cache=True, nogil=True)
 def _crossed(seen, level, crossings):  # type: ignore[no-untyped-def]
     """Fill in where a line gets darker than a level, and lighter, in turn; returns how many places.
 
@@ -297,13 +259,3 @@ def _crossed(seen, level, crossings):  # type: ignore[no-untyped-def]
         crossings[count] = len(seen)
         count += 1
     return count
-
-
-@njit(cache=True, nogil=True)
-def mirrored(k, count):  # type: ignore[no-untyped-def]
-    """The place of a pixel beyond the picture that is mirrored about the middle of its last pixel."""
-    if count == 1:
-        return 0
-    while k < 0 or k >= count:
-        k = -k if k < 0 else 2 * count - 2 - k
-    return k

@@ -28,22 +28,12 @@ from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
 from morfax.motion.faults import DrawingFault
-from morfax.tracer.drawing.blocks import (
-    ABOUT,
-    Blocks,
-    Near,
-    in_parts,
-    mirrored,
-    near,
-    row_of_spot,
-    stretches_of,
-    weights_of,
-    with_mirrored,
-)
+from morfax.tracer.drawing.blocks import ABOUT, Blocks, Near, in_parts, near, stretches_of
 from morfax.tracer.drawing.components import Patches
 from morfax.tracer.drawing.paper import Paper
 from morfax.tracer.drawing.polarity import Polarity
 from morfax.tracer.drawing.scan import Grey
+from morfax.tracer.drawing.spot import mirrored, row_of_spot, weights_of, with_mirrored
 
 Darkness = NDArray[np.float32]
 

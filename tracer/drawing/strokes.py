@@ -43,9 +43,7 @@ Window = tuple[int, int, int, int]  # first row and column, row and column after
 TILE_PX = 2048  # the places of a line come tile by tile, so that its size decides where the head begins
 FEW_PLACES = 2000  # of a stroke that is kept: 48 kB
 SMALL_PART = 0.4  # of a sheet; by trial
-FLAW_WIDTHS = (
-    1.0  # areas of paper less than so many across are flaws of the ink about them; by trial
-)
+FLAW_WIDTHS = 1.0  # areas of paper less than so many across are flaws of ink; by trial
 LESS = 0.85  # ink about an end, of what is usual: half, and what the middle place lies within the end
 
 
