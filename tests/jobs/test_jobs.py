@@ -24,11 +24,9 @@ from morfax.jobs.play import ControlSettings, PlayJob
 from morfax.jobs.record import RecordJob
 from morfax.jobs.run import RunJob
 from morfax.jobs.settings.contour_settings import ContourSettings
-from morfax.jobs.settings.drawing_file import DrawingFile
+from morfax.jobs.settings.drawing_file import MEASURED, READ, DrawingFile
 from morfax.jobs.settings.line_settings import LineSettings
 from morfax.jobs.settings.settings import (
-    MEASURED,
-    READ,
     HeadSettings,
     ProgramSettings,
     ToolSettings,

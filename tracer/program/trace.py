@@ -31,7 +31,7 @@ from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.unexplained import bare_ways
 from morfax.tracer.program.best_run import Target, best_of
-from morfax.tracer.program.laid.explained import explained
+from morfax.tracer.program.laid.explained import mended
 from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.laid.touches import touching
 from morfax.tracer.program.lines.marks_read import with_marks_read
@@ -62,7 +62,7 @@ def trace(
     lines, unread = with_marks_read([line], operator)
     # the way along the line is told, and has come to its end; the head's runs so far are given up
     setup = replace(setup, progress=None)
-    lines, left, _ = explained(setup, lines)
+    lines, left, _ = mended(setup, lines)
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=left)
 
 

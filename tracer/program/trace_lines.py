@@ -27,7 +27,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.arrows import with_arrows
 from morfax.tracer.program.cutting_order import in_cutting_order
 from morfax.tracer.program.joined_lines import joined_to
-from morfax.tracer.program.laid.explained import explained
+from morfax.tracer.program.laid.explained import explained, mended
 from morfax.tracer.program.laid.narrow_bays import with_bars
 from morfax.tracer.program.laid.own_rims import within_own_rims
 from morfax.tracer.program.laid.small_lines import small_lines
@@ -98,7 +98,8 @@ def trace_lines(
     found = found_lines(setup.part(0.0, FOUND), which)
     lines, unread = with_marks_read(with_arrows(setup, found.lines), operator)
     _refuse_none_begun(lines, found.unclear)
-    lines, left, one = explained(setup.part(FOUND, EXPLAINED), lines)
+    laid = explained if which == "contours" else mended  # some lines show no whole patch
+    lines, left, one = laid(setup.part(FOUND, EXPLAINED), lines)
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
     return Trace(
@@ -160,7 +161,7 @@ def trace_places(
     setup = replace(setup, progress=None)  # all that is told has come to its end
     _refuse_none_begun(lines)
     lines, unread = with_marks_read(with_arrows(setup, lines), operator)
-    lines, left, _ = explained(setup, lines)
+    lines, left, _ = mended(setup, lines)
     beside = left if alone else ()
     return Trace(
         tuple(in_cutting_order(setup, lines)), operator, unread=unread, unexplained=beside

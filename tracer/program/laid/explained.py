@@ -8,8 +8,8 @@ Source: our own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Container, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,9 +17,12 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.laid import narrow_bays
 from morfax.tracer.program.laid.bent import bent
-from morfax.tracer.program.laid.one_outline import OneOutline, as_one_outline
 from morfax.tracer.program.setup import Setup
 
+if TYPE_CHECKING:
+    from morfax.tracer.program.laid.one_outline import OneOutline
+
+NONE: Mapping[int, OneOutline] = {}
 BENT = 0.4  # share of the work that is done when lines are bent, by the times of a form
 
 
@@ -32,8 +35,8 @@ class Explained(NamedTuple):
 
 
 def explained(setup: Setup, lines: Sequence[Line]) -> Explained:
-    """The lines as they explain the ink: those of a patch that is one outline as that, unless the lines that
-    were found leave less of its ink when they are mended.
+    """All lines of a sheet as they explain the ink: those of a patch that is one outline as that, unless the
+    lines that were found leave less of its ink when they are mended.
 
     A patch that goes round several areas of paper is asked at once; another one if its lines leave some ink
     when they are mended.
@@ -41,7 +44,7 @@ def explained(setup: Setup, lines: Sequence[Line]) -> Explained:
     # 1. with the outlines of the patches that are asked at once
     goes_round = setup.sheet.loops() > 1
     outlines = _outlines(setup, lines, set(np.flatnonzero(goes_round).tolist()))
-    found = _mended(setup, lines, outlines)
+    found = mended(setup, lines, outlines)
     # 2. the other way about, where that is in doubt
     is_left = {patch for patch in _told(setup, found) if not goes_round[patch]}
     others = _outlines(setup, lines, is_left)
@@ -49,20 +52,49 @@ def explained(setup: Setup, lines: Sequence[Line]) -> Explained:
     doubtful = {p: o for p, o in outlines.items() if not o.is_sure} | others
     if not doubtful:
         return found
-    other = _mended(setup, lines, sure | others)
+    other = mended(setup, lines, sure | others)
     # 3. of each patch what leaves less
-    patches = [_patches(setup, each.lines) for each in (found, other)]
+    both = [_OnPatches.of(setup, each) for each in (found, other)]
     better = frozenset(
         patch
         for patch, outline in doubtful.items()
-        if outline.left(_on(patch, other, patches[1]))
-        < outline.left(_on(patch, found, patches[0]))
+        if both[1].leaves(patch, outline) < both[0].leaves(patch, outline)
     )
-    return _put_together(setup, (found, other), patches, better) if better else found
+    return _put_together(both, better) if better else found
 
 
-def _mended(
-    setup: Setup, lines: Sequence[Line], outlines: Mapping[int, OneOutline]
+class _OnPatches(NamedTuple):
+    """Lines and what they leave, with the patch of ink of each."""
+
+    found: Explained
+    of_line: list[int]
+    of_place: list[int]
+
+    @classmethod
+    def of(cls, setup: Setup, found: Explained) -> _OnPatches:
+        """The same of some lines."""
+        places = [np.array(place.place_mm) for place in found.left]
+        of_place = [setup.sheet.patch_at(place) for place in places]
+        return cls(found, _patches(setup, found.lines), of_place)
+
+    def lines(self, patches: Container[int]) -> list[Line]:
+        """The lines on some patches."""
+        each = zip(self.found.lines, self.of_line, strict=True)
+        return [line for line, patch in each if patch in patches]
+
+    def left(self, patches: Container[int]) -> list[Unexplained]:
+        """What is left on some patches."""
+        each = zip(self.found.left, self.of_place, strict=True)
+        return [place for place, patch in each if patch in patches]
+
+    def leaves(self, patch: int, outline: OneOutline) -> tuple[float, float]:
+        """How much ink is told of a patch, mm, and how much is left in all."""
+        told_mm = sum(place.length_mm for place in self.left({patch}) if place.kind == "ink")
+        return told_mm, outline.left(self.lines({patch}))
+
+
+def mended(
+    setup: Setup, lines: Sequence[Line], outlines: Mapping[int, OneOutline] = NONE
 ) -> Explained:
     """The lines with outlines in place of those of some patches, bent to their ink, and their narrow bays
     mended.
@@ -71,14 +103,16 @@ def _mended(
     gone = {id(line) for each in outlines.values() for line in each.found[1:]}
     outlined = [place.get(id(line), line) for line in lines if id(line) not in gone]
     told = bent(setup.part(0.0, BENT), outlined)
-    mended, left = narrow_bays.explained(setup.part(BENT, 1.0), told)
-    return Explained(mended, left, frozenset(outlines))
+    told, left = narrow_bays.explained(setup.part(BENT, 1.0), told)
+    return Explained(list(told), left, frozenset(outlines))
 
 
 def _outlines(setup: Setup, lines: Sequence[Line], patches: set[int]) -> dict[int, OneOutline]:
     """Those of some patches of ink that are one outline each, by their numbers."""
     if not patches or setup.operator.reads_marks(lines):
         return {}
+    from morfax.tracer.program.laid.one_outline import as_one_outline
+
     found = dict[int, list[Line]]()
     for line, patch in zip(lines, _patches(setup, lines), strict=True):
         if patch in patches:
@@ -98,27 +132,11 @@ def _patches(setup: Setup, lines: Sequence[Line]) -> list[int]:
     return [setup.sheet.patch_at(line.places_mm[0]) for line in lines]
 
 
-def _on(patch: int, found: Explained, patches: list[int]) -> list[Line]:
-    """The lines on a patch."""
-    return [line for line, on in zip(found.lines, patches, strict=True) if on == patch]
-
-
-def _put_together(
-    setup: Setup,
-    both: tuple[Explained, Explained],
-    patches: Sequence[list[int]],
-    better: frozenset[int],
-) -> Explained:
+def _put_together(both: list[_OnPatches], better: frozenset[int]) -> Explained:
     """The first of two, but for some patches, of which the other is better."""
-    lines, left = list[Line](), list[Unexplained]()
-    for n, each in enumerate(both):
-        is_from = [(patch in better) == n for patch in patches[n]]
-        lines += [line for line, is_one in zip(each.lines, is_from, strict=True) if is_one]
-        places = [setup.sheet.patch_at(np.array(place.place_mm)) for place in each.left]
-        left += [
-            place
-            for place, patch in zip(each.left, places, strict=True)
-            if (patch in better) == n
-        ]
+    first, second = both
+    rest = {*first.of_line, *first.of_place} - better
+    lines = first.lines(rest) + second.lines(better)
+    left = first.left(rest) + second.left(better)
     longest_first = sorted(left, key=lambda place: -place.length_mm)
-    return Explained(lines, tuple(longest_first), both[0].one ^ better)
+    return Explained(lines, tuple(longest_first), first.found.one ^ better)

@@ -24,7 +24,7 @@ from morfax.motion.arrays import Array, bounds
 from morfax.motion.crossings import crossings_of
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import unit
-from morfax.motion.polyline import closed_up, evenly
+from morfax.motion.polyline import closed_up, evenly, length_mm, nearest_mm
 from morfax.tracer.effort import MANY
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS
 from morfax.tracer.program.laid.patch_ink import PatchInk
@@ -37,6 +37,8 @@ ON = 0.05  # ... from where they are so near to each other on, ...
 WITHIN = 3.0  # ... if that is no further back
 MEETS = 0.3  # a way that runs along no other meets it at a place so near
 LESS = 0.05  # squared: a stretch leaves less of the ink; noise about it does not
+TICK = 2.0  # from the middle of the line to the end of a tick, ...
+LONGER = 1.0  # ... which makes the way longer by more than this
 SAME_WAY = 0.5  # cosine between their headings, where two run along each other
 # of the places nearest to another, how many are looked through for one of its direction: the sides of a neck
 # lie at least a tenth of a width apart
@@ -45,7 +47,7 @@ LOOP = 4.0  # a longer loop at a crossing is none of a narrow mouth
 ALONG = 0.2  # of a way: one that runs along another for less meets it at a place
 
 
-class Stretch(NamedTuple):
+class Excursion(NamedTuple):
     """What goes in place of a closed way's own places: from one of them on, so many more, (n, 2) mm."""
 
     first: int
@@ -56,15 +58,27 @@ class Stretch(NamedTuple):
         """The places of a way of so many in place of which it goes."""
         return np.arange(self.first, self.first + self.more + 1) % count
 
+    def is_tick(self, way: Array, width_mm: float) -> bool:
+        """Whether it goes out from a way no further than a tick is long, and back."""
+        own = way[self.own(len(way))]
+        longer_mm = length_mm(self.places) - length_mm(own)
+        is_short = nearest_mm(self.places, own).max() < TICK * width_mm
+        return longer_mm > LONGER * width_mm and bool(is_short)
 
-def joined(ways: Sequence[Array], ink: PatchInk, width_mm: float) -> Array:
-    """The first of some closed ways, with those stretches of others that leave less of the ink."""
-    each = [evenly(closed_up(way), STEP_WIDTHS * width_mm)[:-1] for way in ways]
+
+def joined(ways: Sequence[Array], lines: Sequence[Array], ink: PatchInk) -> Array:
+    """The first of some closed lines that were found, or else of closed ways within rims, with those
+    stretches of all others that leave less of the ink; out along a tick only where a line goes there.
+    """
+    width_mm = ink.seen.width_mm
+    each = [evenly(closed_up(way), STEP_WIDTHS * width_mm)[:-1] for way in [*lines, *ways]]
     best, is_new = each[0], True
     while is_new:
         is_new = False
-        for other in each:
+        for n, other in enumerate(each):
             stretches = _stretches(best, other, width_mm)
+            if n >= len(lines):
+                stretches = [one for one in stretches if not one.is_tick(best, width_mm)]
             less = [one for one in stretches if _gain(best, one, ink) > LESS]
             if less:
                 best, is_new = _put(best, less), True
@@ -98,7 +112,7 @@ def crossings_mm(way: Array) -> Array:
     return np.asarray(way[at[:, 0].astype(np.int64)])
 
 
-def _stretches(way: Array, other: Array, width_mm: float) -> list[Stretch]:
+def _stretches(way: Array, other: Array, width_mm: float) -> list[Excursion]:
     """The stretches of another closed way that may go in place of a way's own."""
     for along in (other, other[::-1]):
         at, away_mm = _on(way, along)
@@ -129,7 +143,7 @@ def _headings(way: Array) -> Array:
 
 def _parted(
     count: int, other: Array, at: NDArray[np.int64], widths: Array
-) -> Iterator[Stretch]:
+) -> Iterator[Excursion]:
     """The stretches of another closed way between places at which it parts from a way of so many places, and
     comes to it again; of each of its places that of the way that is nearest, and by how many widths.
     """
@@ -144,7 +158,7 @@ def _parted(
         more = int(at[last % len(at)] - at[first % len(at)]) % count
         if more < count // 2:
             places = other[np.arange(first, last + 1) % len(other)]
-            yield Stretch(int(at[first % len(at)]), more, places)
+            yield Excursion(int(at[first % len(at)]), more, places)
 
 
 def _met(widths: Array, place: int, step: int) -> int:
@@ -155,7 +169,7 @@ def _met(widths: Array, place: int, step: int) -> int:
     return place
 
 
-def _round_it(way: Array, other: Array, width_mm: float) -> list[Stretch]:
+def _round_it(way: Array, other: Array, width_mm: float) -> list[Excursion]:
     """All of another closed way from the place at which both meet to there again, in the direction in which
     the way crosses itself less; none if they meet nowhere.
     """
@@ -165,11 +179,11 @@ def _round_it(way: Array, other: Array, width_mm: float) -> list[Stretch]:
         return []
     begun = closed_up(np.roll(other, -first, axis=0))
     own = int(at[first])
-    both = [Stretch(own, 0, np.vstack([way[own], each])) for each in (begun, begun[::-1])]
+    both = [Excursion(own, 0, np.vstack([way[own], each])) for each in (begun, begun[::-1])]
     return [min(both, key=lambda one: len(crossings_mm(_put(way, [one]))))]
 
 
-def _gain(way: Array, stretch: Stretch, ink: PatchInk) -> float:
+def _gain(way: Array, stretch: Excursion, ink: PatchInk) -> float:
     """How much less of the ink a closed way leaves with a stretch in place of its own."""
     width_mm, own = ink.seen.width_mm, stretch.own(len(way))
     low, high = bounds(np.vstack([way[own], stretch.places]))
@@ -186,9 +200,9 @@ def _are_within(places: Array, low: Array, high: Array, around_mm: float) -> NDA
     return np.all((places > low - around_mm) & (places < high + around_mm), axis=1)
 
 
-def _put(way: Array, stretches: list[Stretch]) -> Array:
+def _put(way: Array, stretches: list[Excursion]) -> Array:
     """A closed way with some stretches in place of its own; of those that overlap the longest."""
-    count, taken, kept = len(way), np.zeros(len(way), bool), list[Stretch]()
+    count, taken, kept = len(way), np.zeros(len(way), bool), list[Excursion]()
     for stretch in sorted(stretches, key=lambda each: -len(each.places)):
         if not taken[own := stretch.own(count)].any():
             taken[own] = True

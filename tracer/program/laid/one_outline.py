@@ -45,7 +45,7 @@ CROSSED = 0.2
 # squared: the ink that no bays explain, as they do that of a part with a few
 MUCH = 300.0
 # widths: a way that is so near to itself for longer goes along one line; that round a tip does not
-ON_ONE, TICK = 0.1, 1.0
+ON_ONE, TICK = 0.05, 0.4
 ABOUT_PARTNER = np.arange(-round(1 / STEP_WIDTHS), round(1 / STEP_WIDTHS) + 1)
 
 
@@ -74,13 +74,15 @@ def as_one_outline(setup: Setup, patch: int, lines: list[Line]) -> OneOutline | 
     if len(ways) < 2:
         return None
     own = [line.loop_mm for line in lines if line.ending == "closed"]
-    way = uncrossed(joined([*ways[::-1], *own], rims.ink, width_mm), width_mm)
+    own.sort(key=_length_mm, reverse=True)
+    way = uncrossed(joined(ways[::-1], own, rims.ink), width_mm)
     kept = KeptWay.of(way, lines, width_mm)
     if len(crossed := crossings_mm(kept.places_mm)):
         # the line that was found crosses itself there, or what is laid between its parts
         kept = KeptWay.of(way, lines, width_mm, crossed)
     own_left, left = _left(rims, kept.places_mm)
-    if left > BETTER * own_left or not _may_be_a_line(rims, kept.places_mm):
+    is_better = own_left - left > MISSED and left < BETTER * own_left
+    if not is_better or not _may_be_a_line(rims, kept.places_mm):
         return None
     line = kept.line(setup) or rims.run(kept.way)
     number = min(each.number for each in lines)

@@ -15,7 +15,7 @@ from morfax.tracer.program.laid.explained import explained
 from morfax.tracer.program.laid.joined_ways import crossings_mm, uncrossed
 from morfax.tracer.program.laid.one_outline import as_one_outline
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import trace
+from morfax.tracer.program.trace_lines import trace_lines
 from tests.tracer.inked import UM, Points, arc, inked, polyline
 from tests.tracer.program.laid.ways import run_along
 
@@ -100,13 +100,13 @@ def test_ink_as_broad_as_another_line_of_the_sheet_is_that_and_no_neck() -> None
     assert as_one(land(), *broad, found=[plate_alone()]) is None
 
 
-def test_the_coast_that_the_head_passes_by_is_traced_from_the_sheet() -> None:
-    """A plain trace, end to end: two rooms behind one another, each with a neck of 0.35 mm."""
+def test_rooms_behind_one_another_are_traced_from_the_sheet() -> None:
+    """From end to end, each with a neck of 0.35 mm."""
     inner = shapely.Polygon([(20, 15), (27, 15), (26, 19), (21, 19)])
     mouth = shapely.box(23.5 - NECK_MM / 2, 18, 23.5 + NECK_MM / 2, 22)
     plate = shapely.Polygon(np.asarray(land())).difference(inner.union(mouth))
     truth = polyline(*plate.exterior.coords)
-    told = trace(inked(truth, width_mm=WIDTH_MM, seed=2))
+    told = trace_lines(inked(truth, width_mm=WIDTH_MM, seed=2))
     assert [line.ending for line in told.lines] == ["closed"] and not told.unexplained
     assert off_mm(told.lines[0], truth) < 80 * UM
 
