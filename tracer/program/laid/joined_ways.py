@@ -25,6 +25,7 @@ from morfax.motion.crossings import crossings_of
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import unit
 from morfax.motion.polyline import closed_up, evenly, length_mm, nearest_mm
+from morfax.tracer.drawing.components import INK
 from morfax.tracer.effort import MANY
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS
 from morfax.tracer.program.laid.patch_ink import PatchInk
@@ -39,6 +40,7 @@ MEETS = 0.3  # a way that runs along no other meets it at a place so near
 LESS = 0.05  # squared: a stretch leaves less of the ink; noise about it does not
 TICK = 2.0  # from the middle of the line to the end of a tick, ...
 LONGER = 1.0  # ... which makes the way longer by more than this
+BARE = 1.0  # squared: of ink that its own stretch explained; what is left at a neck's corners is less
 SAME_WAY = 0.5  # cosine between their headings, where two run along each other
 # of the places nearest to another, how many are looked through for one of its direction: the sides of a neck
 # lie at least a tenth of a width apart
@@ -184,15 +186,20 @@ def _round_it(way: Array, other: Array, width_mm: float) -> list[Excursion]:
 
 
 def _gain(way: Array, stretch: Excursion, ink: PatchInk) -> float:
-    """How much less of the ink a closed way leaves with a stretch in place of its own."""
+    """How much less of the ink a closed way leaves with a stretch in place of its own; none if it leaves bare
+    what its own explained, as that of a line beside it.
+    """
     width_mm, own = ink.seen.width_mm, stretch.own(len(way))
     low, high = bounds(np.vstack([way[own], stretch.places]))
     # what is further off leaves no ink there
     near = np.flatnonzero(_are_within(way, low, high, ABOUT_WIDTHS * width_mm))
     rest = way[np.setdiff1d(near, own)]
     at = np.flatnonzero(_are_within(ink.places_mm, low, high, CLEAR_WIDTHS * width_mm))
-    lefts = [ink.left_by(np.vstack([rest, part]), at) for part in (way[own], stretch.places)]
-    return lefts[0] - lefts[1]
+    before, behind = (
+        ink.left_by(np.vstack([rest, part]), at) for part in (way[own], stretch.places)
+    )
+    newly_left = np.maximum(behind - before, 0.0)[ink.seen.darkness[at] > INK].sum()
+    return 0.0 if newly_left > BARE else float((before - behind).sum())
 
 
 def _are_within(places: Array, low: Array, high: Array, around_mm: float) -> NDArray[np.bool_]:

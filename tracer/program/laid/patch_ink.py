@@ -59,14 +59,14 @@ class PatchInk:
         pen.ink(away_mm, self.seen.half_mm, self.seen.softness_mm, drawn)
         return np.asarray(drawn - self.seen.darkness)
 
-    def left_by(self, way: Array, at: NDArray[np.int64]) -> float:
-        """How much a pen leaves unexplained of some of its places that goes along places (m, 2) mm a step
-        apart, in squares of the width.
+    def left_by(self, way: Array, at: NDArray[np.int64]) -> Array:
+        """How much a pen along places (m, 2) mm a step apart leaves unexplained at some of the ink's places
+        (n,), with what noise leaves, in squares of the width.
         """
         away_mm, _ = Neighbours(way).nearest(self.places_mm[at])
         drawn = np.empty(len(at))
         pen.ink(away_mm, self.seen.half_mm, self.seen.softness_mm, drawn)
-        return self.seen.only(at).misfit(drawn)
+        return self.seen.left_at(drawn - self.seen.darkness[at])
 
     def left(self, away_mm: Array, where: NDArray[np.bool_] | None = None) -> float:
         """How much it leaves unexplained in all, or at some of its places (n,), in squares of the width."""

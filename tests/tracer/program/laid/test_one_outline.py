@@ -86,6 +86,13 @@ def test_a_line_that_ends_on_an_outline_is_no_part_of_it() -> None:
     assert as_one(plate_alone(), tick, room, found=[plate_alone()]) is None
 
 
+def test_plates_that_share_a_side_are_not_one_outline_about_both() -> None:
+    """The side between them would be left bare, which the line that was found goes along."""
+    first = polyline((10, 10), (30, 10), (30, 25), (10, 25), (10, 10))
+    second = polyline((30, 10), (45, 12), (44, 25), (30, 25), (30, 10))
+    assert as_one(first, second, found=[first]) is None
+
+
 def test_circles_that_cross_are_not_one_line_that_turns_off_at_each_crossing() -> None:
     small, large = arc((22, 24), 9, 0, 360), arc((32, 22), 11, 0, 360)
     assert as_one(small, large, found=[large]) is None
