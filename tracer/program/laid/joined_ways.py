@@ -74,16 +74,17 @@ def joined(ways: Sequence[Array], lines: Sequence[Array], ink: PatchInk) -> Arra
     """
     width_mm = ink.seen.width_mm
     each = [evenly(closed_up(way), STEP_WIDTHS * width_mm)[:-1] for way in [*lines, *ways]]
-    best, is_new = each[0], True
-    while is_new:
-        is_new = False
+    best = each[0]
+    for _ in range(MANY):
+        before = best
         for n, other in enumerate(each):
             stretches = _stretches(best, other, width_mm)
             if n >= len(lines):
                 stretches = [one for one in stretches if not one.is_tick(best, width_mm)]
             less = [one for one in stretches if _gain(best, one, ink) > LESS]
-            if less:
-                best, is_new = _put(best, less), True
+            best = _put(best, less) if less else best
+        if best is before:
+            break
     return best
 
 
