@@ -143,6 +143,8 @@ def _between(way: Array, own: Array, width_mm: float) -> Iterator[Array]:
             at.append(int(np.argmin(away_mm)))
         if np.hypot(*(way[at] - ends).T).max() < ASIDE * width_mm:
             count = (side * (at[1] - at[0])) % len(way)
+            if not count:
+                continue  # both ends are nearest to one place: it goes nowhere
             part = way[(at[0] + side * np.arange(count + 1)) % len(way)]
             yield with_corners_for_loops(
                 to_ends(part, ends, LEGS[0] * width_mm), LOOP * width_mm

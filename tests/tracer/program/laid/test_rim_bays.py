@@ -9,7 +9,7 @@ import pytest
 import shapely
 
 from morfax.motion.crossings import crossings_of
-from morfax.motion.polyline import length_mm, nearest_mm, with_places
+from morfax.motion.polyline import evenly, length_mm, nearest_mm, with_places
 from morfax.tracer.program.laid import rim_bays as rims
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.rim_bays import is_a_pen, rim_bays, ways_within_rims
@@ -169,3 +169,11 @@ def test_a_foot_whose_sides_run_together_is_no_loop(
     way, true = with_places(line.loop_mm, 0.02), with_places(drawn, 0.02)
     assert max(nearest_mm(way, true).max(), nearest_mm(true, way).max()) < 60 * UM
     assert not trace.unexplained
+
+
+def test_a_stretch_whose_ends_lie_at_one_place_of_a_way_has_no_part_of_it() -> None:
+    """It comes round to where it began: of a part of no length the ends were not numbers."""
+    way = evenly(polyline((0, 0), (4, 0), (4, 4), (0, 4), (0, 0)), 0.1)[:-1]
+    own = polyline((2, 0.05), (2.5, 0.05), (2.5, 1), (1.5, 1), (1.5, 0.05), (2, 0.05))
+    parts = list(rims._between(way, own, 2.0))
+    assert all(len(part) > 1 and np.isfinite(part).all() for part in parts)
