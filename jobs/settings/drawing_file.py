@@ -68,7 +68,8 @@ class DrawingFile:
             else:
                 reading = Reading(self.edge, self.paper)
                 drawing = Drawing.of(scan, self.scale(), ink, reading)
-        drawing = replace(drawing, flattening=made)
+        if made is not None:  # a copy would measure its ink once more
+            drawing = replace(drawing, flattening=made)
         for note in drawing.notes:
             listener.note(note)
         return self._corrected(drawing, scan, listener)

@@ -200,9 +200,8 @@ class Drawing:
         notes = (*scan.notes, *scale.notes(scan))
         if reading.edge:
             return cls._of_shapes(scan.file, np.asarray(grey), pitch[0], notes)
-        polarity = inks.polarity_of(ink)
-        reading = reading._replace(polarity=polarity, is_rendered=scan.is_rendered)
-        return cls._of_lines(scan.file, grey, pitch[0], notes, reading)
+        reading = reading._replace(polarity=inks.polarity_of(ink))
+        return cls._of_lines(scan, grey, pitch[0], notes, reading)
 
     @classmethod
     def _of_shapes(
@@ -224,16 +223,16 @@ class Drawing:
 
     @classmethod
     def _of_lines(
-        cls, file: Path, grey: Any, pitch_mm: float, notes: tuple[str, ...], reading: Reading
+        cls, scan: Scan, grey: Any, pitch_mm: float, notes: tuple[str, ...], reading: Reading
     ) -> Drawing:
-        """The lines in grey levels on square pixels."""
+        """The lines of a scan in grey levels on square pixels."""
         from morfax.tracer.drawing.lines_read import lines_read
 
         lines = lines_read(grey, pitch_mm, reading)
         drawing = cls(
             lines.darkness,
             lines.pitch_mm,
-            file,
+            scan.file,
             shapes=lines.shapes,
             has_shapes=lines.has_shapes,
             notes=(*notes, *lines.notes),
@@ -243,7 +242,7 @@ class Drawing:
             has_rims=lines.has_rims,
             grainy=lines.grainy,
             paper_noise=lines.paper_noise,
-            is_rendered=reading.is_rendered,
+            is_rendered=scan.is_rendered,
             drawn=lines.drawn,
         )
         vars(drawing).update(lines.measured)

@@ -41,9 +41,8 @@ from morfax.tracer.effort import FEW_PX
 SURELY = 0.8  # of the least contrast: the noise of a sample tells that the noise of all pixels is less
 # of the light, over three pixels of the reduced picture, a millimetre: glued paper or a hard shadow; chosen
 STEP = 0.1
-BOLD_MM = (
-    WIDEST_STROKE_MM / 2
-)  # where two such lines meet their ink is broader than a stroke may be
+# where two such lines meet their ink is broader than a stroke may be
+BOLD_MM = WIDEST_STROKE_MM / 2
 
 Darkness = NDArray[np.float32]
 Shapes = NDArray[np.bool_]

@@ -16,8 +16,7 @@ from morfax.tracer.drawing.ruling import PaperKind
 class Reading(NamedTuple):
     """How a scan is read: the edges of filled shapes alone; printed lines of what kind of paper are left out;
     or filled shapes as ink, which is as dark as the lines that end at them; or pale lines as ink; lines of a
-    polarity if it is known; of drawn lines that were rendered; and bold ones, so that strokes are up to twice
-    as broad as on other sheets.
+    polarity if it is known; and bold ones, so that strokes are up to twice as broad as on other sheets.
     """
 
     edge: bool = False
@@ -25,7 +24,6 @@ class Reading(NamedTuple):
     shapes_are_ink: bool = False
     pale_is_ink: bool = False
     polarity: Polarity | None = None
-    is_rendered: bool = False
     bold: bool = False
 
 

@@ -99,12 +99,12 @@ def mended(
     """The lines with outlines in place of those of some patches, bent to their ink, and their narrow bays
     mended.
     """
-    place = {id(each.found[0]): each.line for each in outlines.values()}
+    in_place_of = {id(each.found[0]): each.line for each in outlines.values()}
     gone = {id(line) for each in outlines.values() for line in each.found[1:]}
-    outlined = [place.get(id(line), line) for line in lines if id(line) not in gone]
-    told = bent(setup.part(0.0, BENT), outlined)
-    told, left = narrow_bays.explained(setup.part(BENT, 1.0), told)
-    return Explained(list(told), left, frozenset(outlines))
+    outlined = [in_place_of.get(id(line), line) for line in lines if id(line) not in gone]
+    as_bent = bent(setup.part(0.0, BENT), outlined)
+    with_bays, left = narrow_bays.explained(setup.part(BENT, 1.0), as_bent)
+    return Explained(with_bays, left, frozenset(outlines))
 
 
 def _outlines(setup: Setup, lines: Sequence[Line], patches: set[int]) -> dict[int, OneOutline]:

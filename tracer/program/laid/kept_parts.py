@@ -207,7 +207,8 @@ def _along(way: Array, line: Line, width_mm: float, doubts_mm: Array) -> list[Ke
     places = evenly(loop, fine_mm)
     away_mm, nearest = Neighbours(places).nearest(way)
     is_on = away_mm < ON * width_mm
-    is_on &= Neighbours(doubts_mm).nearest(way)[0] > LEAST * width_mm
+    if len(doubts_mm):
+        is_on &= Neighbours(doubts_mm).nearest(way)[0] > LEAST * width_mm
     # 1. begun where it is not on the line
     begin = int(np.argmin(is_on))
     changes = np.flatnonzero(

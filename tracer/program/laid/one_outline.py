@@ -15,6 +15,7 @@ Source: our own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -46,6 +47,7 @@ CROSSED = 0.2
 MUCH = 300.0
 # widths: a way that is so near to itself for longer goes along one line; that round a tip does not
 ON_ONE, TICK = 0.05, 0.4
+# steps from a place of the other side within which the nearest one lies: a width
 ABOUT_PARTNER = np.arange(-round(1 / STEP_WIDTHS), round(1 / STEP_WIDTHS) + 1)
 
 
@@ -60,7 +62,9 @@ class OneOutline(NamedTuple):
     is_sure: bool
 
     def left(self, lines: Sequence[Line]) -> float:
-        """How much of the ink some lines leave, in squares of the width."""
+        """How much of the ink some lines leave, in squares of the width; without any line no end of it."""
+        if not lines:
+            return math.inf
         return self.ink.left(np.min([self.ink.away_mm(way_of(line)) for line in lines], axis=0))
 
 
@@ -70,7 +74,7 @@ def as_one_outline(setup: Setup, patch: int, lines: list[Line]) -> OneOutline | 
     if not _may_be_one(rims):
         return None
     width_mm = rims.pen_mm
-    ways = sorted((each.way for each in rims.within()), key=_length_mm)
+    ways = sorted((each.way for each in rims.within(round_bars=True)), key=_length_mm)
     if len(ways) < 2:
         return None
     own = [line.loop_mm for line in lines if line.ending == "closed"]

@@ -210,7 +210,7 @@ class OwnRims:
         No way has a kink where it lies on another: there lines end, or cross.
         """
         near_mm, beyond = ON * self.pen_mm, round(LONGER_WIDTHS / STEP_WIDTHS)
-        ways = list(self._ways())
+        ways = list(self.within(round_bars=False))
         are_kinked = np.array(
             [[one.has_kink_on(other, near_mm, beyond) for other in ways] for one in ways]
         )
@@ -234,14 +234,8 @@ class OwnRims:
         seen = self.ink.seen
         return (seen.darkness > INK) & (away_mm > (0.5 + AS_WIDE) * seen.width_mm)
 
-    def _ways(self) -> Iterator[RimWay]:
-        """The ways within the rims that go round no bar."""
-        for way in self.within():
-            if not self._goes_round_a_bar(way.even):
-                yield way
-
-    def within(self) -> Iterator[RimWay]:
-        """The ways within the rims."""
+    def within(self, *, round_bars: bool) -> Iterator[RimWay]:
+        """The ways within the rims, those that go round bars of ink too if they are wanted."""
         for outline in self.outlines:
             rim = self._felt(outline)
             if rim is None:
@@ -253,6 +247,8 @@ class OwnRims:
             way = kept.places_mm if kept.kept else way
             polygon = plain(closed_up(way), ON * self.pen_mm)
             even = evenly(closed_up(way), STEP_WIDTHS * self.pen_mm)
+            if not round_bars and self._goes_round_a_bar(even):
+                continue
             away_mm = self.ink.away_mm(closed_up(way))
             yield RimWay(
                 way, kept, even, away_mm, turned_rad(polygon, is_closed=True), kinks_of(even)

@@ -75,6 +75,13 @@ def test_what_the_head_took_for_several_lines_becomes_one() -> None:
     assert off_mm(told.lines[0], land()) < 60 * UM
 
 
+def test_a_patch_without_a_line_leaves_more_of_its_ink_than_any_line() -> None:
+    setup = setup_of(land())
+    outline = as_one_outline(setup, setup.sheet.longest().patch, [run_along(plate_alone())])
+    assert outline is not None
+    assert outline.left([]) > outline.left(outline.found) > outline.left([outline.line])
+
+
 def test_lines_that_explain_their_ink_stay() -> None:
     assert as_one(land(), found=[land()]) is None
 
