@@ -254,14 +254,18 @@ def _turn_back(halves, clock, state, theta, points):  # type: ignore[no-untyped-
         # the frame of the tape in the middle of the window
         theta[k] = step * (hop * (first + k + 1) - 0.5) + place
         turns[k] = (nominal + place) / CYCLES_PER_SUBCARRIER
-    # 3. the subcarriers, turned back by a sixth of it
-    for k in range(count):
-        re[k], im[k] = sine(0.25 + turns[k]), -sine(turns[k])
-    for track in range(tracks):
-        for k in range(count):
-            along = float(halves[track, 0, k]) + halves[track, 2, k + 1]
-            across = float(halves[track, 1, k]) + halves[track, 3, k + 1]
-            turned = along * im[k] + across * re[k]
-            points[k, track] = complex(along * re[k] - across * im[k], turned)
     state[0], state[1], state[2] = place, rate, level
     state[3], state[4] = first_lost, last_lost
+    _turn_points_back(halves, turns, points)
+
+
+@njit(cache=True, nogil=True)
+def _turn_points_back(halves, turns, points):  # type: ignore[no-untyped-def]
+    """Fill the points of the tracks: their sums, turned back by the turns of the subcarriers."""
+    count, tracks = points.shape
+    for k in range(count):
+        re, im = sine(0.25 + turns[k]), -sine(turns[k])
+        for track in range(tracks):
+            along = float(halves[track, 0, k]) + halves[track, 2, k + 1]
+            across = float(halves[track, 1, k]) + halves[track, 3, k + 1]
+            points[k, track] = complex(along * re - across * im, along * im + across * re)

@@ -11,10 +11,10 @@ from tests.tracer.program.laid.test_bridges import points_of, shapes
 from tests.tracer.program.laid.test_narrow_bays import (
     DEEP_MM,
     WIDTH_MM,
-    off_mm,
     plate,
     with_bay,
 )
+from tests.tracer.program.laid.ways import off_mm
 
 UM = 1e-3
 

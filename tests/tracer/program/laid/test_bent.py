@@ -27,7 +27,7 @@ from morfax.tracer.program.trace_lines import found_lines
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import UM, Points, arc, inked, polyline
-from tests.tracer.program.laid.ways import run_along
+from tests.tracer.program.laid.ways import off_mm, run_along
 
 WIDTH_MM, DPI = 0.35, 300.0
 RELIEF_MM = 0.7  # the radius of a relief at an inner corner
@@ -69,12 +69,6 @@ def with_knob() -> Points:
     neck = np.degrees(np.arcsin(2.24 / 3.15))
     knob = arc((19, 22.91), 3.15, 270 + neck, 630 - neck)
     return plate((21.24, 20), *map(tuple, knob), (16.76, 20))
-
-
-def off_mm(line: Line, truth: Points) -> float:
-    """How far the line is from a true one, or that from it."""
-    way = shapely.LinearRing(line.loop_mm)
-    return float(way.hausdorff_distance(shapely.LineString(truth)))
 
 
 def stairs() -> Points:

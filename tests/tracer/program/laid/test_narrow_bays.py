@@ -12,7 +12,6 @@ import shapely
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.following.line import Line
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.off_ink import ink_about
 from morfax.tracer.program.laid import narrow_bays
@@ -27,7 +26,7 @@ from morfax.tracer.program.trace_lines import trace_lines
 from morfax.tracer.tangles import folding_rule
 from morfax.tracer.tangles.seen_ink import SeenInk
 from tests.tracer.inked import Points, inked, polyline
-from tests.tracer.program.laid.ways import run_along
+from tests.tracer.program.laid.ways import off_mm, run_along
 
 WIDTH_MM, DEEP_MM = 0.5, 3.0
 UM = 1e-3
@@ -42,16 +41,6 @@ def with_bay(wide_mm: float, deep_mm: float, aside_mm: float = 0.0) -> Points:
     """A plate with a square notch in its upper side, or a tongue if it is not deep, maybe aslant."""
     left, right, end = 18.0, 18.0 + wide_mm, 20 - deep_mm
     return plate((right, 20), (right + aside_mm, end), (left + aside_mm, end), (left, 20))
-
-
-def off_mm(line: Line, truth: Points) -> float:
-    """How far the line is from a true one, or that from it."""
-    way, drawn = shapely.LinearRing(line.loop_mm), shapely.LineString(truth)
-    return float(
-        way.hausdorff_distance(
-            drawn,
-        )
-    )
 
 
 BAYS = [

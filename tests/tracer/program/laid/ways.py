@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
+import shapely
 
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import evenly, length_mm
@@ -22,6 +24,17 @@ def run_along(way: Points, ending: str = "closed", **more: Any) -> Line:
     xy_mm = xy_mm[: len(xy_mm) // THINNED * THINNED]  # up to one of its thinned places
     led = more.pop("led", Led.along(np.full(len(xy_mm), CELL, np.int8)))
     return Line(xy_mm, ending, WIDTH_MM, length_mm(xy_mm), led=led, **more)
+
+
+def circle(x: float, y: float, radius_mm: float) -> Points:
+    """A circle."""
+    angles = np.linspace(0, math.tau, 361)
+    return np.column_stack([x + radius_mm * np.cos(angles), y + radius_mm * np.sin(angles)])
+
+
+def off_mm(line: Line, truth: Points) -> float:
+    """How far a closed line is from a true one, or that from it."""
+    return float(shapely.LinearRing(line.loop_mm).hausdorff_distance(shapely.LineString(truth)))
 
 
 def steps_mm(line: Line) -> Points:
