@@ -90,6 +90,12 @@ class Field:
             self.refuse("it may hold a whole number from 1")
         return self.value
 
+    def truth(self) -> bool:
+        """Whether something is so."""
+        if not isinstance(self.value, bool):
+            self.refuse("it may hold true or false")
+        return self.value
+
     def choice(self, *choices: str) -> str:
         """One of some words."""
         if self.value not in choices or not isinstance(self.value, str):

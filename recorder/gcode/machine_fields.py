@@ -75,13 +75,6 @@ def _text(held: Field) -> str:
     return held.value
 
 
-def _truth(held: Field) -> bool:
-    """Whether something is so."""
-    if not isinstance(held.value, bool):
-        held.refuse("it may hold true or false")
-    return held.value
-
-
 def _suffix(held: Field) -> str:
     """The suffix of the machine's programs."""
     return held.choice(*SUFFIXES)
@@ -161,8 +154,8 @@ FIELDS: dict[str, tuple[str, Any]] = {
     ),
     "language": ("is_hpgl", lambda held: held.choice("rs274", "hpgl") == "hpgl"),
     "step_mm": ("step_mm", lambda held: _above_zero(held, "a length in mm")),
-    "z": ("z", _truth),
-    "arcs": ("arcs", _truth),
+    "z": ("z", Field.truth),
+    "arcs": ("arcs", Field.truth),
     "decimals": ("decimals", _decimals),
     "dwell": ("dwell_unit_s", lambda held: 1.0 if held.choice("s", "ms") == "s" else 1e-3),
     "longest_line": ("longest_line", _longest),

@@ -110,13 +110,6 @@ def _text(held: Field) -> str:
     return held.value
 
 
-def _truth(held: Field) -> bool:
-    """Whether something is so."""
-    if not isinstance(held.value, bool):
-        held.refuse("it may hold true or false")
-    return held.value
-
-
 def _number(held: Field) -> float:
     """A number from 0."""
     number = held.value
@@ -129,17 +122,17 @@ _TAKES: dict[str, Callable[[Field], Any]] = {
     "codes": _codes,
     "letters": _text,
     "alone": _codes,
-    "percent": _truth,
+    "percent": Field.truth,
     "end": lambda held: held.choice("needed", "usual", "none"),
-    "expressions": _truth,
-    "parentheses": _truth,
-    "nested": _truth,
+    "expressions": Field.truth,
+    "parentheses": Field.truth,
+    "nested": Field.truth,
     "length_of": lambda held: held.choice("line", "words"),
     "not_sent": _text,
-    "one_code": _truth,
-    "small_letters": _truth,
-    "lone_motion": _truth,
-    "turns": _truth,
+    "one_code": Field.truth,
+    "small_letters": Field.truth,
+    "lone_motion": Field.truth,
+    "turns": Field.truth,
     "largest_line_number": _number,
     "largest_tool": _number,
     "digits": Field.number,
@@ -152,5 +145,5 @@ _TOOL: dict[str, Callable[[Field], Any]] = {
     "on": _codes,
     "off": _codes,
     "least_s": _number,
-    "travels_at_feed": _truth,
+    "travels_at_feed": Field.truth,
 }

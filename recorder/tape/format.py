@@ -29,6 +29,7 @@ from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ, SAMPLES_PER_MOTION
 from morfax.recorder.tape.carrier import PickUp
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, SCREW, Sensor
 from morfax.recorder.tape.told_figures import StatedFigures
+from morfax.recorder.textfile import demand
 
 VERSION = 3  # the latest
 _NEW_ENTRIES = {"pickup": 2, "still": 3, "alike": 3}  # the first version that has it
@@ -75,15 +76,15 @@ class TapeFormat:
     def __post_init__(self) -> None:
         _check_numbers(self)
         _check_axes(self)
-        _demand(self.pickup in PICK_UPS, "pickup", self.pickup, f"one of {', '.join(PICK_UPS)}")
+        demand(self.pickup in PICK_UPS, "pickup", self.pickup, f"one of {', '.join(PICK_UPS)}")
         most = 1 / (self.sensor.largest + CHECK_SHARE * self.checked)
-        _demand(
+        demand(
             self.level <= most,
             "level",
             self.level,
             f"at most {most:.3g}, where a {self.pickup} reaches full scale",
         )
-        _demand(
+        demand(
             self.can_be_checked or not self.checked,
             "reference_hz",
             self.reference_hz,
@@ -97,7 +98,7 @@ class TapeFormat:
         for name in ("start_mm", "end_mm"):
             _check_place(self, name)
         highest_hz = self.reference_hz + self.largest_deviation_hz
-        _demand(
+        demand(
             highest_hz < self.sample_rate_hz / 2,
             "reference_hz",
             self.reference_hz,
@@ -230,10 +231,10 @@ def _entries(version: object) -> set[str]:
 def _check_numbers(fmt: TapeFormat) -> None:
     """Raise ValueError for the first number that cannot be."""
     known = _is_number(fmt.version) and fmt.version in range(1, VERSION + 1)
-    _demand(known, "version", fmt.version, f"1 to {VERSION}")
+    demand(known, "version", fmt.version, f"1 to {VERSION}")
     for name, most in (("sample_rate_hz", 2**31), ("samples_per_motion", 10_000)):
         value = getattr(fmt, name)
-        _demand(
+        demand(
             isinstance(value, int) and 2 <= value <= most,
             name,
             value,
@@ -241,8 +242,8 @@ def _check_numbers(fmt: TapeFormat) -> None:
         )
     for name in ("reference_hz", "cycles_per_mm", "level"):
         value = getattr(fmt, name)
-        _demand(_is_number(value) and value > 0, name, value, "a number above zero")
-    _demand(
+        demand(_is_number(value) and value > 0, name, value, "a number above zero")
+    demand(
         _is_number(fmt.dwell_s) and 0 <= fmt.dwell_s <= 3600,
         "dwell_s",
         fmt.dwell_s,
@@ -256,14 +257,14 @@ def _check_axes(fmt: TapeFormat) -> None:
     good = isinstance(axes, tuple) and 1 <= len(axes) <= _MOST_AXES
     good = good and all(isinstance(a, str) and a.isascii() and a.isidentifier() for a in axes)
     good = good and len(set(axes)) == len(axes) and max(map(len, axes)) <= 10
-    _demand(good, "axes", axes, f"1 to {_MOST_AXES} different names such as x, y, z")
+    demand(good, "axes", axes, f"1 to {_MOST_AXES} different names such as x, y, z")
 
 
 def _check_some_axes(fmt: TapeFormat, name: str) -> None:
     """Raise ValueError unless an entry names axes of the tape."""
     axes = getattr(fmt, name)
     good = isinstance(axes, tuple) and all(axis in fmt.axes for axis in axes)
-    _demand(good, name, axes, f"axes of the tape: {', '.join(fmt.axes)}")
+    demand(good, name, axes, f"axes of the tape: {', '.join(fmt.axes)}")
 
 
 def _check_place(fmt: TapeFormat, name: str) -> None:
@@ -274,7 +275,7 @@ def _check_place(fmt: TapeFormat, name: str) -> None:
         and len(place) == len(fmt.axes)
         and all(_is_number(mm) for mm in place)
     )
-    _demand(
+    demand(
         good or (place is None and name == "end_mm"),
         name,
         place,
@@ -285,9 +286,3 @@ def _check_place(fmt: TapeFormat, name: str) -> None:
 def _is_number(value: object) -> TypeGuard[float]:
     """Whether a value is a finite number; True and False are not."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e12
-
-
-def _demand(good: bool, name: str, value: object, allowed: str) -> None:
-    """Raise ValueError with the entry, the value got and the values allowed."""
-    if not good:
-        raise ValueError(f"{name} is {' '.join(str(value)[:60].split())}; it must be {allowed}")

@@ -27,6 +27,7 @@ from morfax.recorder.wear.timebase import Tones
 FLANK_S = 1e-4  # of a dropout
 UNEVEN_HZ = (0.2, 8.0)  # of the tones of the level
 TELEPHONE_ORDER = 8  # 39 dB down at 6 kHz; chosen
+HIGHEST = 0.49  # of the sample rate: no filter ends higher; chosen
 SPREAD = 0.5  # of the logarithm of a dropout's length
 
 
@@ -60,27 +61,23 @@ class PrintThrough:
         return self.feed(np.zeros((self._delay, self._held.shape[1]), np.float32))
 
 
-class Bandwidth:
-    """A low-pass of the second order on all tracks."""
+class Band:
+    """Filters of the second order on all tracks, one after the other."""
 
-    def __init__(self, hz: float, rate_hz: float, tracks: int) -> None:
-        self._sos = butter(2, min(hz, 0.49 * rate_hz), fs=rate_hz, output="sos")
-        self._state = np.zeros((len(self._sos), 2, tracks))
+    def __init__(self, sections: Array, tracks: int) -> None:
+        self._sos = sections
+        self._state = np.zeros((len(sections), 2, tracks))
 
-    def feed(self, frames: Frames) -> Frames:
-        """The next frames of the output."""
-        out, self._state = sosfilt(self._sos, frames, axis=0, zi=self._state)
-        return np.asarray(out, np.float32)
+    @classmethod
+    def below(cls, hz: float, rate_hz: float, tracks: int) -> Band:
+        """A low-pass of the second order."""
+        return cls(butter(2, min(hz, HIGHEST * rate_hz), fs=rate_hz, output="sos"), tracks)
 
-
-class TelephoneBand:
-    """A steep band-pass of the eighth order at either end, as of a telephone line, on all tracks."""
-
-    def __init__(self, band_hz: tuple[float, float], rate_hz: float, tracks: int) -> None:
-        low, high = band_hz
-        edges = (low, min(high, 0.49 * rate_hz))
-        self._sos = butter(TELEPHONE_ORDER, edges, "bandpass", fs=rate_hz, output="sos")
-        self._state = np.zeros((len(self._sos), 2, tracks))
+    @classmethod
+    def telephone(cls, band_hz: tuple[float, float], rate_hz: float, tracks: int) -> Band:
+        """A steep band-pass of the eighth order at either end, as of a telephone line."""
+        edges = (band_hz[0], min(band_hz[1], HIGHEST * rate_hz))
+        return cls(butter(TELEPHONE_ORDER, edges, "bandpass", fs=rate_hz, output="sos"), tracks)
 
     def feed(self, frames: Frames) -> Frames:
         """The next frames of the output."""

@@ -37,11 +37,10 @@ from morfax.recorder.sound.spool import Spool, medium
 from morfax.recorder.wear.codec import BLOCK_FRAMES, coded
 from morfax.recorder.wear.settings import Wear, check
 from morfax.recorder.wear.signal import (
-    Bandwidth,
+    Band,
     Dropout,
     Dropouts,
     PrintThrough,
-    TelephoneBand,
     Unevenness,
     crosstalk,
     distorted,
@@ -160,11 +159,11 @@ class Deck:
             if wear.print_db is not None
             else None
         )
-        self._bands: list[Bandwidth | TelephoneBand] = []
+        self._bands: list[Band] = []
         if wear.bandwidth_hz:
-            self._bands.append(Bandwidth(wear.bandwidth_hz, rate_hz, tracks))
+            self._bands.append(Band.below(wear.bandwidth_hz, rate_hz, tracks))
         if wear.band_hz is not None:
-            self._bands.append(TelephoneBand(wear.band_hz, rate_hz, tracks))
+            self._bands.append(Band.telephone(wear.band_hz, rate_hz, tracks))
         self._head, self._came, self._went, self._peak = Head(tracks), 0, 0, 0.0
 
     @property

@@ -67,14 +67,9 @@ def sides(picture: Picture, corners_px: Array) -> list[tuple[Array, Array]] | No
     The sides begin with the upper one and run clockwise.
     """
     diagonal = float(np.hypot(*picture.shape[:2]))
-    middle = corners_px.mean(axis=0)
     found = []
-    for k in range(4):
-        a = corners_px[k]
-        b = corners_px[(k + 1) % 4]
+    for a, b, outward in _sides(corners_px):
         way = unit(b - a)
-        outward = np.array([way[1], -way[0]])
-        outward = outward if outward @ (a - middle) > 0 else -outward
         long = float(np.hypot(*(b - a)))
         along = np.arange(END * long, (1 - END) * long, min(EVERY_PX, long / 60))
         away = np.zeros(len(along))
@@ -90,6 +85,15 @@ def sides(picture: Picture, corners_px: Array) -> list[tuple[Array, Array]] | No
             away = np.asarray(np.polynomial.polynomial.polyval(along / long, curve), float)
         found.append((seen.places_px[kept], seen.softness_px[kept]))
     return found
+
+
+def _sides(corners_px: Array) -> Iterator[tuple[Array, Array, Array]]:
+    """Each side from corner to corner, px, and its normal, away from the middle."""
+    middle = corners_px.mean(axis=0)
+    for a, b in zip(corners_px, np.roll(corners_px, -1, axis=0), strict=True):
+        way = unit(b - a)
+        outward = np.array([way[1], -way[0]])
+        yield a, b, outward if outward @ (a - middle) > 0 else -outward
 
 
 def corners_of(found: list[tuple[Array, Array]]) -> Array:
@@ -182,17 +186,12 @@ def _clearness(small: Picture, corners_px: Array) -> float:
     """
     rows, columns = small.shape[:2]
     step = max(2.0, BESIDE * float(np.hypot(rows, columns)))
-    middle, steps = corners_px.mean(axis=0), []
-    for k in range(4):
-        a = corners_px[k]
-        b = corners_px[(k + 1) % 4]
-        way = unit(b - a)
-        outward = np.array([way[1], -way[0]])
-        outward = outward if outward @ (a - middle) > 0 else -outward
+    steps = []
+    for a, b, outward in _sides(corners_px):
         on = a + np.linspace(0.04, 0.96, 40)[:, None] * (b - a)
         outer = on + step * outward
         inner = on - step * outward
-        inside = ((outer > 0) & (outer < (columns, rows))).all(axis=1)
+        inside = np.asarray(((outer > 0) & (outer < (columns, rows))).all(axis=1))
         change = light_at(small, inner) - light_at(small, outer)
         steps.append(np.where(inside[:, None], change, 0.0))
     change = np.concatenate(steps)

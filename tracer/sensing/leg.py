@@ -61,11 +61,13 @@ class Leg:
 
     def place(self, along_mm: float) -> tuple[float, float]:
         """The place at one distance, as `at` has it to the bit: an array of two takes ten times as long."""
+        return _place.py_func(self._line, along_mm)  # type: ignore[no-any-return]
+
+    @property
+    def _line(self) -> tuple[float, float, float, float]:
+        """Its clean end, its heading and its bend, as kernels take them."""
         x, y = self.end_mm.tolist()
-        c = math.cos(self.heading_rad)
-        s = math.sin(self.heading_rad)
-        aside = 0.5 * float(self.bend_per_mm) * along_mm * along_mm
-        return x + along_mm * c + aside * -s, y + along_mm * s + aside * c
+        return x, y, self.heading_rad, float(self.bend_per_mm)
 
     def shifted(self, along_mm: float, seen: Array) -> Leg:
         """The same line from a place further along it, with the stations that were felt from there."""
@@ -111,10 +113,7 @@ def turn(a: float, b: float) -> float:
 
 def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
     """Distances (beyond the incoming leg's end, before the outgoing leg's) where they cross, mm, or None."""
-    lines = (
-        (*leg.end_mm.tolist(), leg.heading_rad, leg.bend_per_mm) for leg in (incoming, outgoing)
-    )
-    they_meet, s, u = _meet(*lines)
+    they_meet, s, u = _meet(incoming._line, outgoing._line)
     return (s, u) if they_meet else None
 
 
@@ -143,7 +142,7 @@ def _meet(incoming, outgoing):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, _nrt=False)
 def _place(line, along_mm):  # type: ignore[no-untyped-def]
-    """The place at a distance along a line, as `Leg.place` has it."""
+    """The place at a distance along a line (x, y, heading, bend)."""
     x, y, heading, bend = line
     c, s = math.cos(heading), math.sin(heading)
     aside = 0.5 * bend * along_mm * along_mm

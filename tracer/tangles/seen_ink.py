@@ -175,14 +175,19 @@ class SeenInk(NamedTuple):
         """How much darkness (n,) that is drawn leaves unexplained where another is drawn otherwise, in
         squares of the line's width.
         """
-        differ = np.flatnonzero(np.abs(drawn - other) > DIFFER)
+        differ = _where_they_differ(drawn, other)
         return self.only(differ).misfit(drawn[differ])
 
     def share_left(self, drawn: Array, other: Array) -> float:
         """How much is left by what is drawn (n,) in shares of what another leaves, where these differ."""
-        differ = np.abs(drawn - other) > DIFFER
+        differ = _where_they_differ(drawn, other)
         left = np.sum((drawn - self.darkness)[differ] ** 2)
         return float(left / max(np.sum((other - self.darkness)[differ] ** 2), NOT_ZERO))
+
+
+def _where_they_differ(drawn: Array, other: Array) -> Pixels:
+    """The numbers of the places where what is drawn (n,) differs from another."""
+    return np.flatnonzero(np.abs(drawn - other) > DIFFER)
 
 
 @njit(cache=True, _nrt=False)
