@@ -11,7 +11,7 @@ the lower-left corner of the sheet, X right, Y up; pixel i covers [i, i+1) pixel
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import cv2
@@ -35,6 +35,31 @@ WHITE_GREY = 240  # whatever is lighter, the scanner gives as white
 
 Points = NDArray[np.float64]
 
+Piece = tuple[float, ...]
+# points: x, y, mm; arcs: x, y and radius, mm; from and to, degrees
+BRACKET = (
+    (0, 0), (60, 10, 10, -90, 0), (70, 24), (58, 32), (34, 32), (34, 38, 6, 270, 180), (28, 50), (0, 50),
+)  # fmt: skip
+SLOT = [(52, 15, 4, -90, 90), (30, 15, 4, 90, 270)]
+PLATE = (
+    (18, 12),
+    (24, 6, 6, 180, 270),
+    (56, 6, 6, 270, 360),
+    (56, 26, 6, 0, 90),
+    (24, 26, 6, 90, 180),
+)
+STROKES: tuple[list[Piece], ...] = (
+    [(0, 16), (18, 16)],  # the lead line
+    [(13, 14.5), (13, 17.5)],  # a stop before the plate
+    [(62, 14), (65, 14)],  # and one on it
+    [(-1.5, 16), (1.5, 16)],  # the cross of the reference point
+    [(0, 14.5), (0, 17.5)],
+    [(40, 32), (40, 20)],  # the guide line to the drill point
+    [(40, 20, 0.2, 0, 360)],
+    [(40, 20, 0.5, 0, 360)],
+)
+TEETH, ROOT_MM, TIP_MM = 8, 16.0, 22.0  # radii
+
 
 def arc(
     centre_mm: tuple[float, float], radius_mm: float, from_deg: float, to_deg: float
@@ -46,6 +71,13 @@ def arc(
         )
     )
     return np.array(centre_mm) + radius_mm * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def drawn(pieces: Sequence[Piece]) -> Points:
+    """Points (x, y) and arcs (x, y and radius; from and to) one after the other: mm, degrees."""
+    return np.vstack(
+        [arc((x, y), *of_arc) if of_arc else np.array([[x, y]]) for x, y, *of_arc in pieces]
+    )
 
 
 def closed(*pieces: Points) -> Points:
@@ -67,14 +99,7 @@ def cam() -> list[Points]:
 
 def bracket() -> list[Points]:
     """Angle bracket of 70 x 50 mm: right-angled, obtuse and rounded corners; and a slot of 8 mm."""
-    outline = closed(
-        np.array([0.0, 0.0]),
-        arc((60, 10), 10, -90, 0),
-        np.array([[70.0, 24.0], [58.0, 32.0], [34.0, 32.0]]),
-        arc((34, 38), 6, 270, 180),
-        np.array([[28.0, 50.0], [0.0, 50.0]]),
-    )
-    return [outline, closed(arc((52, 15), 4, -90, 90), arc((30, 15), 4, 90, 270))]
+    return [closed(drawn(BRACKET)), closed(drawn(SLOT))]
 
 
 def curve() -> list[Points]:
@@ -85,8 +110,8 @@ def curve() -> list[Points]:
 
 def gear() -> list[Points]:
     """Ratchet wheel of eight teeth, 44 mm across: straight flanks and sharp tips and roots."""
-    turn = np.repeat(np.arange(8), 2) * np.pi / 4 + 0.1
-    radius_mm = np.tile([16.0, 22.0], 8)
+    turn = np.repeat(np.arange(TEETH), 2) * 2 * np.pi / TEETH + 0.1
+    radius_mm = np.tile([ROOT_MM, TIP_MM], TEETH)
     return [closed(np.column_stack([radius_mm * np.cos(turn), radius_mm * np.sin(turn)]))]
 
 
@@ -94,24 +119,8 @@ def program() -> list[Points]:
     """A rounded plate of 44 x 32 mm, the lead line to it, its reference point, two stop marks, and a guide
     line to a drill point.
     """
-    plate = closed(
-        np.array([18.0, 12.0]),
-        arc((24, 6), 6, 180, 270),
-        arc((56, 6), 6, 270, 360),
-        arc((56, 26), 6, 0, 90),
-        arc((24, 26), 6, 90, 180),
-    )
-    lead, before_plate = (
-        np.array([[0.0, 16.0], [18.0, 16.0]]),
-        np.array([[13.0, 14.5], [13.0, 17.5]]),
-    )
-    on_plate = np.array([[62.0, 14.0], [65.0, 14.0]])
-    cross = [np.array([[-1.5, 16.0], [1.5, 16.0]]), np.array([[0.0, 14.5], [0.0, 17.5]])]
-    guide, dot = (
-        np.array([[40.0, 32.0], [40.0, 20.0]]),
-        [arc((40, 20), radius_mm, 0, 360) for radius_mm in (0.2, 0.5)],
-    )
-    return [lead, plate, before_plate, on_plate, *cross, guide, *dot]
+    lead, *others = map(drawn, STROKES)
+    return [lead, closed(drawn(PLATE)), *others]
 
 
 DRAWINGS: dict[str, Callable[[], list[Points]]] = {
