@@ -25,6 +25,7 @@ from morfax.motion import polyline
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import MotionFault
+from morfax.motion.median import NEARLY_ALL
 from morfax.motion.motion import IN_WORK_BELOW_MM, Motion, Path
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.usual import AT_ONCE
@@ -33,7 +34,6 @@ SAMPLE_MM = 0.01
 # beyond 10 m of path the samples stand further apart: memory stays below 200 MB
 LARGEST_SAMPLES = 1_000_000
 NEIGHBOURS = 4  # nearest samples whose pieces are tried, see Questions
-_P95 = 0.95  # of the length is nearer than this distance
 
 
 Contour = Path | Motion | Array | Sequence[Array]
@@ -212,7 +212,7 @@ def _summary(distances_mm: Array, weights_mm: Array) -> Summary:
     weights = weights_mm if weights_mm.sum() > 0 else np.ones_like(weights_mm)
     order = np.argsort(distances_mm)
     share = np.cumsum(weights[order])
-    at = np.searchsorted(share, _P95 * share[-1]).clip(max=len(order) - 1)
+    at = np.searchsorted(share, NEARLY_ALL / 100 * share[-1]).clip(max=len(order) - 1)
     p95 = distances_mm[order[at]]
     rms = np.sqrt(np.average(distances_mm**2, weights=weights))
     return Summary(float(rms), float(p95), float(distances_mm.max()))

@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 ROBUST = 1.4826  # standard deviations to a median absolute deviation of normal noise
 MIDDLE = 50.0  # percentile: the median
 ONE_BELOW = 15.87  # percentile one standard deviation below it, ...
-ONE_ABOVE = 100 - ONE_BELOW  # ... and above
+ONE_ABOVE = 2 * MIDDLE - ONE_BELOW  # ... and above
 TWO_BELOW = 2.28  # two below
+NEARLY_ALL = 95.0  # percentile: what lies above are the exceptions
 OUTLIERS = 3.0  # robust standard deviations: what is further off is left out
 MANY = 500  # numbers: to find their middle takes less time than to put them in order
 

@@ -20,6 +20,8 @@ AS_WIDE = 0.15  # of a width: what differs by more is no line of the same pen ..
 WIDER = 1 + AS_WIDE  # ... or two lines that share their ink
 # square widths: a round of a width, as the two round ends of a line together
 ROUND = math.pi / 4
+# of a drawn line: what is told in widths is told in these where the line is thinner
+USUAL_WIDTH_MM = 0.5
 NEAR = 0.3  # widths from a line's middle: so near a place is on that line
 OWN_WIDTHS = 0.7  # from a line's middle: ink and places that are nearer are that line's
 CLEAR_WIDTHS = 1.5  # from a place where lines meet: further on, the ink is that of one line

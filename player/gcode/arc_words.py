@@ -14,6 +14,7 @@ import math
 from dataclasses import dataclass
 
 from morfax.motion.arrays import NOT_ZERO
+from morfax.recorder.gcode.takes import ARC_MM, ARC_SHARE
 
 TURN = 2 * math.pi
 
@@ -37,9 +38,9 @@ class ArcLimits:
     chord may exceed R by `reach_mm`, or, if that is None, by half of what the radii may differ.
     """
 
-    least_mm: float = 0.005  # Grbl 1.1, gcode.c, gc_execute_line: so are the next two
-    share: float = 0.001
-    most_mm: float = 0.5
+    least_mm: float = ARC_MM
+    share: float = ARC_SHARE
+    most_mm: float = 0.5  # as these, Grbl's
     reach_mm: float | None = None
     helix: bool = False
 

@@ -35,6 +35,8 @@ from morfax.player.tape.predictor import count_turns, predictor_gains
 
 SMALLEST_PRODUCT = 1e-300  # of two tracks; keeps a silent one from dividing by zero
 CHUNK_ROWS = 1024  # what the kernel has in the processor's cache at a time
+# of z, z² and so on from the highest: S. Moshier, Cephes, atanf
+ARC_TANGENT = (8.05374449538e-2, -1.38776856032e-1, 1.99777106478e-1, -3.33329491539e-1)
 GROUP = 8  # taps that the kernel has in its registers at a time
 # before the first of a block: dropouts hold back 13 to 170 rows of the one before it
 ROOM_ROWS = 512
@@ -261,6 +263,7 @@ def _amplitude(re, im, level):  # type: ignore[no-untyped-def]
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"}, error_model="numpy")
 def turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
     """Phase of a track against the reference, -0.5 to 0.5 cycle: a vectorised arc tangent, true to 1e-8."""
+    p, q, r, s = ARC_TANGENT
     for k in range(len(phase)):
         along = float(re[k]) * float(ref_re[k]) + float(im[k]) * float(ref_im[k])
         across = float(im[k]) * float(ref_re[k]) - float(re[k]) * float(ref_im[k])
@@ -269,11 +272,8 @@ def turn(re, im, ref_re, ref_im, phase):  # type: ignore[no-untyped-def]
         t = (small - large if oblique else small) / max(
             small + large if oblique else large, SMALLEST_PRODUCT
         )
-        z = t * t  # polynomial: S. Moshier, Cephes, atanf
-        angle = (
-            ((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z
-            - 3.33329491539e-1
-        ) * z * t + t
+        z = t * t
+        angle = (((p * z + q) * z + r) * z + s) * z * t + t
         angle = angle + math.pi / 4 if oblique else angle
         angle = math.pi / 2 - angle if abs(across) > abs(along) else angle
         angle = math.pi - angle if along < 0 else angle

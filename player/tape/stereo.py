@@ -34,7 +34,7 @@ from morfax.player.tape.standstill import REFERENCE_BAND, strongest_hz
 from morfax.recorder.sound.programme import programme_within
 from morfax.recorder.sound.source import BLOCK_FRAMES, Source, Stored, full_scale
 from morfax.recorder.tape.check_frame import NUMBERS
-from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
+from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME, CYCLES_PER_SUBCARRIER
 from morfax.recorder.tape.format import TapeFormat
 from morfax.recorder.wear.timebase import HALF_TAPS, Head
 
@@ -43,7 +43,9 @@ EVERY_S = 2.5  # from one window to the next
 TONE_S = 0.1  # at the start, in which the speed of the tape is told
 KNOTS_S = 5.0  # between places that are told by a straight line
 WITHIN_S = 15.0  # to either side, through which the line is laid
-LARGEST_OFF_S = 500e-6  # of a frame from the line: half a cycle of the subcarrier
+LARGEST_OFF_S = (
+    0.5 * CYCLES_PER_SUBCARRIER / REFERENCE_HZ
+)  # of a frame from the line: half its cycle
 FEWEST_FRAMES = 2
 
 

@@ -34,6 +34,7 @@ SHAKE_S = 0.096  # 576 rows at 6 kHz
 SHAKE_STRIDE = 4  # rows: the filter spans eight, so the rows between say little more
 # 26 dB of noise shake by 0.0033, and seldom by 0.0045; a corner shakes less than half of the window
 SHAKE_CYCLES = 0.0047
+QUIETEST = 10.0  # percent of the lines of a spectrum, which are noise alone
 # of full scale and of the carrier: below it noise may be the rounding of samples of 16 bit
 STUCK_NOISE = 1e-4
 ROUNDED = 1.0  # steps of coarser samples: rounding makes 0.29, and it is the same on all tracks at standstill
@@ -181,7 +182,7 @@ def _step(samples: Float32s) -> float:
 
 
 def _noise(samples: Float32s) -> float:
-    """White noise of a track, RMS: from the weakest tenth of the spectrum, free of tones and flutter."""
+    """White noise of a track, RMS: from the quietest of the spectrum, free of tones and flutter."""
     window = np.hanning(len(samples))
     lines = np.abs(np.fft.rfft(samples * window)) ** 2 / np.sum(window**2)
-    return float(np.sqrt(np.percentile(lines, 10) / -np.log(0.9)))
+    return float(np.sqrt(np.percentile(lines, QUIETEST) / -np.log(1 - QUIETEST / 100)))

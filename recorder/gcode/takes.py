@@ -23,6 +23,7 @@ from morfax.motion.toml_fields import Field
 # four digits are the most that a control has; more would make a range of them last
 _CODE = re.compile(r"([GM])(\d{1,4}(?:\.\d)?)(?:-([GM])(\d{1,4}))?")
 
+ARC_MM, ARC_SHARE = 0.005, 0.001  # Grbl 1.1, gcode.c, gc_execute_line
 Code = tuple[str, float]  # such as ("G", 38.2)
 
 
@@ -64,8 +65,8 @@ class Takes:
     largest_line_number: float = math.inf
     largest_tool: float = math.inf  # T
     digits: int = 15  # that the control keeps of a number
-    arc_mm: float = 0.005  # an arc's ends lie on one circle within this,
-    arc_share: float = 0.001  # or within this share of the radius,
+    arc_mm: float = ARC_MM  # an arc's ends lie on one circle within this,
+    arc_share: float = ARC_SHARE  # or within this share of the radius,
     arc_most_mm: float = 0.5  # but never further
     reach_mm: float = 0.0  # half the chord may exceed R by this
 

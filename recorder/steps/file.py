@@ -36,6 +36,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
+from morfax.motion.units import LONGEST_MM
 from morfax.recorder.textfile import Lines, demand, write_lines
 
 VERSION = 1
@@ -44,7 +45,6 @@ STEP_MM = 0.01  # chosen here; the patent gives no size of a step
 TICKS = 64  # oscillator pulses in an interval
 STANDSTILL, LOWEST, HIGHEST = 8, 1, 15  # counts of an axis
 MOST_ROWS = 2_000_000  # three and a half hours at 160 rows/s
-_MOST_MM = 1e6  # of a place in the header: a km
 
 Rows = NDArray[np.uint16]
 _ROW = re.compile(r"([o.]+)(?:\s+x\s*(\d{1,9}))?")
@@ -84,7 +84,7 @@ class StepFormat:
         for name in ("start_mm", "end_mm"):
             place = getattr(self, name)
             demand(
-                len(place) == 3 and all(abs(mm) < _MOST_MM for mm in place),
+                len(place) == 3 and all(abs(mm) < LONGEST_MM for mm in place),
                 name,
                 place,
                 "three numbers of mm",

@@ -53,6 +53,10 @@ from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, SCREW, Senso
 from morfax.recorder.tape.waiting_rows import WaitingRows
 
 FADE_FROM, FADE_TO = 0.4, 0.475  # of the sample rate, as drawn above
+# P below: of 1, x², x⁴ and so on
+SINE = (
+    6.283182604981858, -16.20867137934099, 16.761003027494148, -9.53104500418581, 3.0589825640426778,
+)  # fmt: skip
 _HELD_BACK = 2  # samples behind the last frame that it needs: those that its cubic goes to
 _NO_BITS = np.empty((0, 0))  # of a bare tape
 
@@ -284,5 +288,5 @@ def sine(cycles):  # type: ignore[no-untyped-def]
     """
     x = cycles - np.rint(cycles)
     t = x * x
-    p = 16.761003027494148 + t * (-9.53104500418581 + t * 3.0589825640426778)
-    return x * (1.0 - 4.0 * t) * (6.283182604981858 + t * (-16.20867137934099 + t * p))
+    a, b, c, d, e = SINE
+    return x * (1.0 - 4.0 * t) * (a + t * (b + t * (c + t * (d + t * e))))

@@ -39,7 +39,7 @@ _SYNC = 0xFAF320
 _TOLD_BYTES, _CRC_BYTES = 8, 4
 COUNTS_PER_CYCLE = {1: 16, 2: 64, 3: 64}  # by version
 NUMBERS = 1 << 16  # of frames, then they begin again: after nine hours
-MOST_TRACKS = 16
+MOST_TRACKS = 16  # of a tape; chosen here
 # the middle's bits are the last of the count's
 _COUNT_BITS, _MIDDLE_BITS, _CODE_BITS = 26, 6, 7
 _PER_OCTAVE = 8

@@ -27,6 +27,7 @@ from typing import Any, TypeGuard
 from morfax.motion.faults import TapeFault
 from morfax.motion.usual import REFERENCE_HZ, SAMPLE_RATE_HZ, SAMPLES_PER_MOTION
 from morfax.recorder.tape.carrier import PickUp
+from morfax.recorder.tape.check_frame import MOST_TRACKS
 from morfax.recorder.tape.pickups import DEFAULT_PICK_UP, PICK_UPS, SCREW, Sensor
 from morfax.recorder.tape.told_figures import StatedFigures
 from morfax.recorder.textfile import demand
@@ -39,7 +40,7 @@ LARGEST_DEVIATION = 1.0 / 3.0  # of the reference
 SURE_CYCLES = 0.25
 LEAST_CHECKED_HZ = 5000.0  # of the reference: a frame of the check signal is then 0.58 s
 CHECK_SHARE = 0.2  # of the carrier: the amplitude of the check signal, 14 dB down
-_MOST_AXES = 15  # with the reference sixteen tracks; chosen here
+_MOST_AXES = MOST_TRACKS - 1  # beside the reference
 
 _AGAIN = "record the tape again"
 

@@ -26,6 +26,7 @@ import numpy as np
 from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import MotionFault
+from morfax.motion.median import NEARLY_ALL
 from morfax.motion.motion import Path
 from morfax.motion.plane import left_of_headings
 from morfax.motion.polyline import APART_MM, lengths_mm
@@ -81,7 +82,7 @@ class Deviation:
     @property
     def p95_mm(self) -> float:
         """Distance that 95 % of the places stay within, mm."""
-        return float(np.nanpercentile(np.abs(self.error_mm), 95))
+        return float(np.nanpercentile(np.abs(self.error_mm), NEARLY_ALL))
 
     @property
     def max_mm(self) -> float:

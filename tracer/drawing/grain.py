@@ -34,7 +34,7 @@ from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.components import INK, SOFTENED_PX
 from morfax.tracer.drawing.discs import disc
 from morfax.tracer.effort import FEW_PX
-from morfax.tracer.limits import PAPER
+from morfax.tracer.limits import PAPER, USUAL_WIDTH_MM
 
 if TYPE_CHECKING:
     from morfax.tracer.drawing.noise import Within
@@ -48,7 +48,8 @@ LEAST_GRAIN = 0.15  # standard deviation of the ink's darkness; a clean scan has
 # no more than this share of its pieces
 LEAST_OF_SOME, JOINED = 0.08, 0.5
 ENOUGH_TIMES = 2.0  # finer pixels, of lines that look 1.5 pixels wide or more
-ALONG_MM, ALONG_WIDTHS = 0.4, 0.8  # of the slit, standard deviation
+ALONG_WIDTHS = 0.8  # of the slit, standard deviation, ...
+ALONG_MM = ALONG_WIDTHS * USUAL_WIDTH_MM  # ... at least
 ACROSS_WIDTHS = 0.12
 FLANK_WIDTHS = 1.0  # from the slit to each of its flanks
 SMOOTH_WIDTHS = 0.3  # over which a fit is averaged

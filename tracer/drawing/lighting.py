@@ -26,12 +26,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from morfax.motion.median import percentile
+from morfax.motion.median import NEARLY_ALL, percentile
 from morfax.tracer.drawing.blocks import ABOUT
 
 Levels = NDArray[np.float32]
 
-BRIGHTEST = 95.0  # percentile of the paper's level: the rest is glare
 EVEN = 0.85  # of the brightest paper: a scanner's lamp lights the sheet that evenly; by trial
 INK = 0.35  # of the brightest paper: what is darker is ink; a shadow that takes 0.7 of the light leaves 0.58
 LEAST = 0.5  # a place is made at most twice as bright: its noise is, too
@@ -53,7 +52,7 @@ class Lighting:
     @classmethod
     def of(cls, level: Levels, seen: Levels) -> Lighting | None:
         """The lighting of a sheet by its paper's level; None where it is even."""
-        white = percentile(level.ravel(), BRIGHTEST)
+        white = percentile(level.ravel(), NEARLY_ALL)  # the rest is glare
         if float(level.min()) >= EVEN * white:
             return None
         black = (level < INK * white).view(np.uint8)

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
+from morfax.motion.median import NEARLY_ALL
 from morfax.motion.plane import left_of
 from morfax.tracer.drawing.between import between
 from morfax.tracer.drawing.components import INK
@@ -50,7 +51,6 @@ SEARCHED_PX = 2 * FEW_PX  # pixels of the picture on which printed lines are loo
 # of the darkness of what is drawn: printed lines that are paler are no part of that
 PALER = 0.75
 BOARD = 25  # lines of a drawn board or crossword, each way, at the most
-DARKEST = 95.0  # percent of ink is paler than its darkest
 EXCESS = 0.35  # of ink's darkness: noise is no ink on a printed line
 # of strokes, from square to the printed line
 FILL_DEG = -55.0, -35.0, -15.0, 0.0, 15.0, 35.0, 55.0
@@ -149,7 +149,7 @@ def _levels(darkness: Darkness, found: list[Family]) -> tuple[float, float]:
         return 1.0, 1.0
     seen = darkness[drawn]
     ink = seen[
-        seen > INK * np.percentile(seen, DARKEST)
+        seen > INK * np.percentile(seen, NEARLY_ALL)
     ]  # and not the soft edges of printed lines
     return max(printed), float(np.percentile(ink, DARKER))
 

@@ -33,13 +33,12 @@ from morfax.tracer.following.plain_places import (
 from morfax.tracer.following.unchanged import changed_of, is_far, on_ink
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
-from morfax.tracer.limits import ABOUT_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS, USUAL_WIDTH_MM
 from morfax.tracer.marks.reference import references
 from morfax.tracer.sensing.view import View
 
 # All limits below were chosen by trial on the test drawings.
 CATCH_MM, CATCH_PX = 3.0, 12.0  # how far from a given place the line may be: the larger
-AT_END_MM = 1.5  # a start nearer to an open end, or within `ABOUT_WIDTHS`, is that end
 ENDS = 6  # open ends that are tried: a lead line may begin at any
 LISTED = 8  # reference points that a message lists
 
@@ -183,7 +182,8 @@ def _ends_near(
 ) -> list[Stance]:
     """Stances at the open ends near a place."""
     ends = stroke.ends_mm
-    near_mm = max(AT_END_MM, ABOUT_WIDTHS * view.width_mm)
+    # a start as near to an open end is that end
+    near_mm = ABOUT_WIDTHS * max(view.width_mm, USUAL_WIDTH_MM)
     near = ends[np.hypot(*(ends - np.asarray(start_mm)).T) < near_mm]
     return list(stances_at(view, near, gap_mm))
 

@@ -31,6 +31,7 @@ from morfax.motion.compiled import njit
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import lengths_mm
 from morfax.tracer.junctions.arcs import ARC, outward
+from morfax.tracer.limits import USUAL_WIDTH_MM
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, TURNS_OFF, Leg, leg_of
 from morfax.tracer.sensing.photocell import darkness_at
 from morfax.tracer.sensing.view import View
@@ -45,7 +46,8 @@ FORK_ASIDE, FORK_BEYOND = 0.9, 0.8
 FORK_PLACES = 12  # of ink, all the way
 
 BEGIN = 0.3  # of the width: the first ring
-FARTHEST_MM, FARTHEST_WIDTHS = 5.0, 10.0  # rings do not grow beyond the larger of these
+FARTHEST_WIDTHS = 10.0  # rings do not grow beyond this, ...
+FARTHEST_MM = FARTHEST_WIDTHS * USUAL_WIDTH_MM  # ... nor, of a thinner line, beyond this
 CLEAN_RINGS = 3  # on which an arc has the line's width: a leg
 MORE_LEGS = 0.5  # of a leg's length: rings grow on by this after a leg was found
 
@@ -132,6 +134,11 @@ def _is_inked(cells, ray, end_mm):  # type: ignore[no-untyped-def]
     return True
 
 
+def farthest_mm(view: View) -> float:
+    """How far rings grow, mm."""
+    return max(FARTHEST_MM, FARTHEST_WIDTHS * view.width_mm)
+
+
 def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
     """The clean legs that leave a junction, but for the one by which the `trail` (n, 2) came in."""
     trail = _up_to(trail, centre)
@@ -139,7 +146,7 @@ def legs_around(view: View, centre: Array, trail: Array) -> list[Leg]:
     arcs = np.empty(0, ARC)
     found = list[Leg]()
     at = 0
-    last_mm = max(FARTHEST_MM, FARTHEST_WIDTHS * view.width_mm)
+    last_mm = farthest_mm(view)
     more_mm = MORE_LEGS * view.leg_mm
     radii = np.arange(BEGIN * view.width_mm, last_mm, view.step_mm)
     while True:

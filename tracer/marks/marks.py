@@ -7,7 +7,7 @@ the path on which the axis is to stand.
     dot      a round of ink on the line, wider than it                 ───●───    or at its end  ───●
 
 Two rows of cells run beside the line, right and left. Where one sees a pulse of ink as wide as a line is,
-the stroke is felt outward until it ends: a mark ends within `LONGEST_MM`, a crossing line goes on beyond it.
+the stroke is felt outward until it ends: a mark ends within `LONGEST_PENS`, a crossing line goes on.
 The foot of the mark is where its own middle line meets the path of the head. No mark is at a corner: the line
 goes straight on through the foot of a mark.
 
@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.long_array import blocks, released
-from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, USUAL_WIDTH_MM
 from morfax.tracer.marks import dots, sizes
 from morfax.tracer.marks.head_path import HeadPath
 from morfax.tracer.marks.stroke_cells import Base
@@ -58,9 +58,8 @@ class Mark:
 
 def longest_mm(view: View, *, across: bool = True) -> float:
     """How far a mark reaches beyond the line's edge at most, mm."""
-    if across:
-        return max(sizes.LONGEST_MM, sizes.LONGEST_WIDTHS * view.width_mm)
-    return max(sizes.BESIDE_MM, sizes.BESIDE_WIDTHS * view.width_mm)
+    pens = sizes.LONGEST_PENS if across else sizes.BESIDE_PENS
+    return pens * max(view.width_mm, USUAL_WIDTH_MM)
 
 
 def marks_along(view: View, positions: Array) -> list[Mark]:

@@ -1,6 +1,7 @@
 """How marks are drawn: sizes and limits of ticks, dots and reference points.
 
-Lengths are mm on the sheet, or widths of the line; where both stand, the larger counts.
+Lengths are mm on the sheet, or widths of the line, or of its pen, which counts as `USUAL_WIDTH_MM` where it
+is thinner.
 
 Source: patent ES 361967 shows the marks and gives no sizes. Chosen by trial on the test drawings, so that a
 mark drawn by hand is found, and lettering, dashes and branches are not.
@@ -14,10 +15,10 @@ from morfax.motion.plane import CORNER_RAD
 from morfax.tracer.limits import AHEAD_RAD
 
 # a tick: a short stroke across the line or beside it
-LEAST_MM, LEAST_WIDTHS = 0.6, 1.2  # it reaches at least this far beyond the line's edge
-LONGEST_MM, LONGEST_WIDTHS = 5.0, 10.0  # and at most, across the line, on each side
+LEAST_PENS = 1.2  # it reaches at least this far beyond the line's edge
+LONGEST_PENS = 10.0  # and at most, across the line, on each side
 # a tick that touches the line on one side: a longer stroke is a line that begins there
-BESIDE_MM, BESIDE_WIDTHS = 3.5, 7.0
+BESIDE_PENS = 7.0
 FARTHEST_MM = 1.5  # from the line's edge to a tick beside it
 SLANT = math.tan(AHEAD_RAD)  # from square to the line, at most
 BENT_MM = 0.1  # root mean square distance from a straight line, at most
@@ -26,12 +27,10 @@ SEEN = (0.3, 2.0)
 INK = (0.65, 1.4)  # darkness, of the line's: one pen draws both
 # widths from the line's middle: nearer, the ink of tick and line runs together
 CLEAR_OF_LINE = 0.9
-# paper to both sides of a tick that does not touch the line, for lettering stands there; or, if that is
-# more, `limits.ABOUT_WIDTHS`; of one that touches it, `limits.CLEAR_WIDTHS`
-APART_MM = 1.5
-SOILED, APART_SOILED = 0.15, 0.03  # share of that paper that may be ink
+# share that may be ink of the paper to both sides of a tick: `limits.CLEAR_WIDTHS` of one that touches the
+# line, `limits.ABOUT_WIDTHS` of the pen of one that does not, for lettering stands there
+SOILED, APART_SOILED = 0.15, 0.03
 CLEAR_OF_EDGE = 0.4  # widths from the tick's edge to where that paper begins
-DASH_MM = 2.0  # dashes of one line are no further apart, or `limits.LONGER_WIDTHS`
 SAME_WIDTHS = 0.6  # feet on both sides that are nearer along the line are one tick's
 # so far the line is straight about a tick, widths aside
 CORNER_WIDTHS, CORNER_MM, CORNER_ASIDE = 1.2, 0.5, 0.25

@@ -23,7 +23,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import left_of
 from morfax.motion.usual import INCREMENT_MM
-from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, LONGER_WIDTHS
+from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, LONGER_WIDTHS, USUAL_WIDTH_MM
 from morfax.tracer.marks import sizes
 from morfax.tracer.marks.stroke_cells import (
     Base,
@@ -163,7 +163,7 @@ def felt(
     if not sizes.SEEN[0] < stroke.wide < sizes.SEEN[1]:
         return None
     from_line_mm = stroke.from_line_mm
-    least_mm = max(sizes.LEAST_MM, sizes.LEAST_WIDTHS * width)
+    least_mm = sizes.LEAST_PENS * max(width, USUAL_WIDTH_MM)
     is_short = stroke.reach_mm - max(0.0, from_line_mm) <= least_mm
     return None if is_short or from_line_mm > sizes.FARTHEST_MM else stroke
 
@@ -177,7 +177,7 @@ def _ends(view: View, base: Base, seen: Array, touches: bool) -> bool:
         if not is_tip(view, base.place + u * base.along + v * across):
             return False
     middles = seen[seen[:, 1] > sizes.CLEAR_OF_LINE * width]
-    others_mm = max(sizes.DASH_MM, LONGER_WIDTHS * width)
+    others_mm = LONGER_WIDTHS * max(width, USUAL_WIDTH_MM)
     return not goes_on(view.cells, base, middles, others_mm, width)
 
 
@@ -186,7 +186,7 @@ def _is_clear(view: View, base: Base, middles: Array, touches: bool) -> bool:
     width = view.width_mm
     clear_mm = CLEAR_WIDTHS * width
     if not touches:
-        clear_mm = max(sizes.APART_MM, ABOUT_WIDTHS * width)
+        clear_mm = ABOUT_WIDTHS * max(width, USUAL_WIDTH_MM)
     beside_mm = sizes.CLEAR_OF_EDGE * width, clear_mm
     soiled = float(soiled_beside(view.cells, base, middles, beside_mm))
     return soiled < (sizes.SOILED if touches else sizes.APART_SOILED)

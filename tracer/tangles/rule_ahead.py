@@ -27,7 +27,7 @@ from morfax.tracer.effort import LOOKED_MM
 from morfax.tracer.head.course import ahead_mm, along_leg, onto
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.head.plan import Plan
-from morfax.tracer.junctions.rings import FARTHEST_MM, FARTHEST_WIDTHS
+from morfax.tracer.junctions.rings import farthest_mm
 from morfax.tracer.junctions.width_change import STEP
 from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.sensing.leg import Leg
@@ -53,7 +53,7 @@ def rule_ahead(view: View, approach: Approach, softness_mm: float) -> Plan | Non
     `softness_mm` is the lens's.
     """
     incoming, plan = approach.incoming, approach.plan
-    reach_mm = max(FARTHEST_MM, FARTHEST_WIDTHS * view.width_mm)
+    reach_mm = farthest_mm(view)
     behind_mm = _behind(approach, reach_mm)
     fronts = fronts_from(view, incoming.end_mm, incoming.heading_rad, reach_mm, behind_mm)
     for last in _lasts(view, fronts):

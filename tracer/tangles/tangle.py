@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.median import median
-from morfax.tracer.junctions.rings import FARTHEST_MM, FARTHEST_WIDTHS
-from morfax.tracer.limits import ABOUT_WIDTHS
+from morfax.tracer.junctions.rings import farthest_mm
+from morfax.tracer.limits import ABOUT_WIDTHS, USUAL_WIDTH_MM
 from morfax.tracer.sensing.leg import FEWEST_STATIONS, LEAST_WIDTHS, Leg, leg_of
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.wavefront import Fronts, fronts_from
@@ -31,11 +31,12 @@ from morfax.tracer.tangles.wavefront import Fronts, fronts_from
 Flags = NDArray[np.bool_]
 
 # Chosen by trial on the test drawings.
-STUB_MM = 1.5  # ink that ends sooner, and within `ABOUT_WIDTHS`, is a tip
 BEGIN_WIDTHS = 0.6  # from the start: a leg begins no nearer
 # of the line's width, as a mean of so many fronts
-LEAST_BROAD, MOST_BROAD, BROAD_FRONTS = 0.6, 1.4, 3
-LEAST_LIKE, MOST_LIKE = 0.75, 1.25  # of the line's width: a leg of it
+LEAST_BROAD, BROAD_FRONTS = 0.6, 3
+MOST_BROAD = 2 - LEAST_BROAD
+LEAST_LIKE = 0.75  # of the line's width: a leg of it, ...
+MOST_LIKE = 2 - LEAST_LIKE  # ... which is as much broader at the most
 # the far half of so many stations, in widths of the near half
 TAPERED, TAPERED_STATIONS = 0.94, 12
 CLEAN_FRONTS = 4  # as broad as the line, one after the other
@@ -60,7 +61,7 @@ class Tangle:
 
 def tangle_ahead(view: View, incoming: Leg) -> Tangle:
     """The tangle that begins at the clean end of an incoming leg."""
-    reach_mm = max(FARTHEST_MM, FARTHEST_WIDTHS * view.width_mm)
+    reach_mm = farthest_mm(view)
     fronts = fronts_from(view, incoming.end_mm, incoming.heading_rad, reach_mm)
     if not len(fronts.at):  # no ink joins the leg
         return Tangle([incoming], np.empty((0, 2)), np.empty(0), 0.0, whole=False)
@@ -99,7 +100,8 @@ def _tips(view: View, fronts: Fronts, reach_mm: float) -> Flags:
     """Which fronts lie in ink that ends soon, within the wave's reach."""
     beyond_mm = fronts.beyond_mm()
     ends_mm = fronts.at * fronts.step_mm + beyond_mm
-    soon = beyond_mm < min(ABOUT_WIDTHS * view.width_mm, STUB_MM)
+    # ink that ends sooner is a tip
+    soon = beyond_mm < ABOUT_WIDTHS * min(view.width_mm, USUAL_WIDTH_MM)
     return np.asarray(soon & (ends_mm < reach_mm - 2 * fronts.step_mm))
 
 
