@@ -18,9 +18,9 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.plane import BEND_RAD, left_of
-from morfax.motion.polyline import APART_MM, UM, closed_up, with_places
+from morfax.motion.polyline import APART_MM, UM, WITHIN_MM, closed_up, with_places
 
-PLAIN = 0.05 * UM  # a line is known by places between which it is straight within this
+PLAIN = WITHIN_MM  # a line is known by places between which it is straight within this
 DEEP_MM = 0.05  # nearer than the radius by this: no crossing there can count
 KINK_MM = 0.1 * UM  # ... if the way comes no nearer to the line than this; by trial
 BACK = math.radians(179)  # a line that turns by more comes back along itself: round its tip

@@ -9,6 +9,8 @@ from morfax.motion.compiled import njit
 
 Array = NDArray[np.float64]
 NOT_ZERO = 1e-12  # what divides is this at least: a length, a share, a time
+ROUNDED_SQUARE = 1e-14  # share of a sum of squares that rounding leaves of none
+AS_WRITTEN = 1e-6  # share of a figure by which it is rounded where it is written, at the most
 ROUNDED = 1e-9  # share of a figure, or of a step, that rounding adds at the most
 
 

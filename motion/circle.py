@@ -14,10 +14,8 @@ import math
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED_SQUARE, Array
 from morfax.motion.compiled import njit
-
-STRAIGHT = 1e-14  # of the places' spread, squared: what rounding leaves of a straight line
 
 
 def circle_through(places: Array) -> tuple[Array, float, float]:
@@ -41,7 +39,7 @@ def kasa(places):  # type: ignore[no-untyped-def]
         yr += dy * square
         rr += square
     across = xx * yy - xy * xy
-    if not across > STRAIGHT * (xx + yy) ** 2:
+    if not across > ROUNDED_SQUARE * (xx + yy) ** 2:  # more than of a straight line
         return x, y, math.inf
     a = 0.5 * (xr * yy - yr * xy) / across
     b = 0.5 * (yr * xx - xr * xy) / across

@@ -23,10 +23,12 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.plane import BEND_RAD, NOTHING_MM
 from morfax.motion.polyline import at_lengths, lengths_mm, steps_mm
+from morfax.motion.segments import SHARE
 from morfax.motion.speed_limits import reachable
 
-# shares of the acceleration: along the way; in its bend, and again in its turns from piece to piece
-ALONG, ACROSS = 0.7, 1 / 3
+ACROSS = (
+    1 / 3
+)  # of the acceleration: in the way's bend, and again in its turns from piece to piece
 SMOOTHED_S = 0.002
 BEND_WITHIN_MM = 0.1  # the bend at a place is that within this to either side; by trial
 STANDS_S = 2 * SMOOTHED_S  # at either end, so that the average comes to rest
@@ -40,7 +42,7 @@ def run_along(
     way_mm = _with_halves(way_mm)
     steps = steps_mm(way_mm)
     allowed = _allowed(way_mm, steps, feed_mm_s, acceleration_mm_s2)
-    speeds = reachable(allowed, 2 * ALONG * acceleration_mm_s2 * steps)
+    speeds = reachable(allowed, 2 * SHARE * acceleration_mm_s2 * steps)
     # 2. how far the tool has come at each period
     mean_mm_s = (speeds[1:] + speeds[:-1]) / 2
     t_s = np.r_[0.0, np.cumsum(steps / mean_mm_s)]

@@ -24,6 +24,9 @@ from pathlib import Path
 
 from morfax.motion.faults import FileFault
 
+HEAD_BYTES = (
+    1024  # of a file, in which its kind shows: the mark of a PDF, a zero of a binary file
+)
 _HIDDEN = ".morfax-"
 _DISK_FULL = {
     errno.ENOSPC: "the disk is full",

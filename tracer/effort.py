@@ -9,6 +9,7 @@ EVERY_MM = 0.05  # between the places that stand for a way where it is held agai
 LOOKED_MM = 0.1  # between the places of a way that are looked at one by one
 SOME_PLACES = 40  # of a line, which show where it runs
 # between the places at which an edge is looked for: a quarter of what cells average
+FINE_WIDTHS = 1 / 16  # of a line: its profiles are as fine as a pixel where it is up to 16 wide
 FINE_PX = 0.25
 MANY = 100  # lines, patches, pieces of a line: of more not each is looked at
 ROUNDS = 6  # times that a fit is made anew from the one before, at the most

@@ -22,7 +22,7 @@ from typing import Literal
 from morfax.jobs.figures import Figures
 from morfax.jobs.wrong_use import WrongUse
 from morfax.motion.faults import FileFault
-from morfax.motion.files import check_name, check_regular
+from morfax.motion.files import HEAD_BYTES, check_name, check_regular
 
 Kind = Literal["tape", "program", "drawing", "outline", "path"]
 
@@ -34,7 +34,6 @@ PLOTS = (".plt", ".hpgl")  # HP-GL
 DRAWN = (*OUTLINES, *PLOTS)  # what other programs and plotters read
 WITH_ARCS = (*BLOCKS, ".dxf", ".svg")
 
-_HEAD_BYTES = 1024  # of a file, in which a binary file has a zero
 _FIRST_BYTES: dict[bytes, Kind] = {
     b"RIFF": "tape",
     b"RF64": "tape",
@@ -69,7 +68,7 @@ def kind_of(file: FilePath) -> Kind:
     check_regular(file)
     try:
         with file.open("rb") as opened:
-            first = opened.read(_HEAD_BYTES)
+            first = opened.read(HEAD_BYTES)
     except OSError as error:
         raise FileFault(f"cannot read {file}: {error.strerror}; check the name") from error
     if (first[:4], first[8:12]) == (b"RIFF", b"WEBP") or first[4:8] == b"ftyp":  # HEIC, AVIF

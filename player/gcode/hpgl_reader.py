@@ -23,6 +23,7 @@ import re
 
 import numpy as np
 
+from morfax.motion.arrays import AS_WRITTEN
 from morfax.motion.faults import ProgramFault
 from morfax.motion.plane import NOTHING_MM
 from morfax.motion.usual import INCREMENT_MM, PLOTTER_MM
@@ -41,7 +42,6 @@ _ESCAPES = re.compile(r"\x1b(?:\.[@-Z()](?:[-\d;]*:)?|[^A-Za-z@]*[A-Za-z@])")
 _PASSED = ("IN", "SP", "FS", "DF", "LT", "PT", "PW", "AS")
 _PLACES, _ARCS = ("PU", "PD", "PA", "PR"), ("AA", "AR")
 _READ = "IN SP VS FS PU PD PA PR AA AR CI IP SC"
-SQUARE = 1e-6  # share by which units in X and Y may differ: what whole numbers of IP leave
 
 
 def read_hpgl(file: str | os.PathLike[str], machine: Machine) -> Program:
@@ -138,7 +138,7 @@ class _Pen:
         ]
         if (
             steps_mm[0] <= 0
-            or abs(steps_mm[1] / steps_mm[0] - 1) > SQUARE
+            or abs(steps_mm[1] / steps_mm[0] - 1) > AS_WRITTEN
             or values[4:] not in ([], [0.0], [1.0])
         ):
             raise ProgramFault(

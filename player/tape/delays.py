@@ -31,6 +31,7 @@ import numpy as np
 from morfax.motion.arrays import Array
 from morfax.motion.median import OUTLIERS
 from morfax.player.tape.phases import Phases
+from morfax.recorder.tape.check_signal import GAUGE_S
 
 WINDOW = 7  # of the delays told, 0.84 s: drift of 50 us/s is straight within it
 HALF = WINDOW // 2
@@ -38,7 +39,6 @@ NEAR = (1 / 3 - 1 / WINDOW) ** 0.5  # standard error of the difference, for one 
 DEAD_ZONE_S = 0.5e-6  # noise of 26 dB tells 0.4; half a us is 0.003 cycle
 KEPT = 40  # delays: more than rows are held for
 HELD_ERRORS = 2  # of frames: seven delays come from two
-SPEED_S = 0.002  # to either side, over which a speed is told
 
 
 class Delay:
@@ -46,7 +46,7 @@ class Delay:
 
     def __init__(self, reference_hz: float, rate_hz: float) -> None:
         self._reference_hz, self._rate_hz = reference_hz, rate_hz
-        self.span = max(round(SPEED_S * rate_hz), 1)
+        self.span = max(round(GAUGE_S * rate_hz), 1)
         self._rows: list[float] = []
         self._told: list[float] = []
         self._used: list[float] = []

@@ -24,10 +24,10 @@ from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.faults import LockFault, TapeFault
 from morfax.player.monitor.monitor import NEARLY
-from morfax.player.tape.delays import SPEED_S
 from morfax.player.tape.phases import Phases, Uncertain
 from morfax.player.tape.standstill import ALLOWED_CYCLES, Bearings, track_name
 from morfax.player.tape.warrant import StandsMm
+from morfax.recorder.tape.check_signal import GAUGE_S
 from morfax.recorder.tape.format import TapeFormat
 
 SHAKE_S = 0.096  # 576 rows at 6 kHz
@@ -67,7 +67,7 @@ class Watch:
         offset = np.abs(self._bearings.zero_cycles - np.round(self._bearings.zero_cycles))
         skew_s = np.minimum(offset, np.abs(0.5 - offset)) / self._bearings.reference_hz
         rate_hz = self._format.motion_rate_hz
-        stride = max(round(rate_hz * SPEED_S), 1)  # speeds over 2 ms, above the noise
+        stride = max(round(rate_hz * GAUGE_S), 1)  # speeds over 2 ms, above the noise
         if not _any_skewed(
             phases.cycles, stride, NEARLY * ALLOWED_CYCLES * stride / rate_hz, skew_s
         ):

@@ -21,7 +21,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import AS_WRITTEN, Array
 from morfax.motion.faults import DrawingFault
 from morfax.motion.units import MM_PER_INCH
 from morfax.recorder.drawings.drawn_units import NO_UNIT, UNITS_MM, ZERO, unit_mm
@@ -29,7 +29,6 @@ from morfax.recorder.drawings.drawn_units import NO_UNIT, UNITS_MM, ZERO, unit_m
 LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
 PHYSICAL_MM = {"mm": 1.0, "cm": 10.0, "in": MM_PER_INCH, "pt": MM_PER_INCH / 72, "pc": MM_PER_INCH / 6,
                "q": 0.25}  # fmt: skip
-SHAPED = 1e-6  # width and height that differ in scale by a smaller share are rounded
 
 
 class SvgSheet(NamedTuple):
@@ -102,7 +101,7 @@ def _laid(
     left, top, wide, high = box
     x_mm, y_mm = wide_mm / wide, high_mm / high
     how = root.get("preserveAspectRatio", "")
-    if "none" not in how and abs(x_mm / y_mm - 1) > SHAPED:
+    if "none" not in how and abs(x_mm / y_mm - 1) > AS_WRITTEN:
         x_mm = y_mm = max(x_mm, y_mm) if "slice" in how else min(x_mm, y_mm)
     aside_mm = (wide_mm - wide * x_mm) / 2
     down_mm = (high_mm - high * y_mm) / 2

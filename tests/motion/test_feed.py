@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
-from morfax.motion.feed import ACROSS, ALONG, SMOOTHED_S, STANDS_S, run_along
+from morfax.motion.feed import ACROSS, SMOOTHED_S, STANDS_S, run_along
 from morfax.motion.polyline import nearest_mm, with_places
+from morfax.motion.segments import SHARE
 
 RATE_HZ = 6000.0
 FEED_MM_S, MOST_MM_S2 = 20.0, 500.0
@@ -30,7 +31,7 @@ def test_a_straight_way_takes_as_long_as_its_feed_and_its_ramps() -> None:
     positions = run_along(way, FEED_MM_S, MOST_MM_S2, RATE_HZ)
     assert positions[0].tolist() == [0, 0] and positions[-1].tolist() == [20, 0]
     assert speeds_of(positions).max() == pytest.approx(FEED_MM_S, rel=1e-6)
-    ramp_s = FEED_MM_S / (ALONG * MOST_MM_S2)
+    ramp_s = FEED_MM_S / (SHARE * MOST_MM_S2)
     told_s = 20 / FEED_MM_S + ramp_s + 2 * STANDS_S
     assert len(positions) / RATE_HZ == pytest.approx(told_s, abs=2e-3)
 

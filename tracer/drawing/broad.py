@@ -25,12 +25,12 @@ from morfax.motion.arrays import NOT_ZERO, Array
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of
 from morfax.motion.polyline import at_lengths
-from morfax.tracer.drawing.hollow import FEWEST_PIECES, STEP, Seen, rows_of
-from morfax.tracer.effort import SOME_PLACES
+from morfax.tracer.drawing.hollow import FEWEST_PIECES, Seen, rows_of
+from morfax.tracer.effort import FINE_WIDTHS, SOME_PLACES
 from morfax.tracer.limits import PAPER, WIDER
 
 # All limits below were chosen by trial on pairs of lines, and on line art.
-ACROSS = np.arange(-1.5, 1.5 + STEP, STEP)  # of the line's width, to the left
+ACROSS = np.arange(-1.5, 1.5 + FINE_WIDTHS, FINE_WIDTHS)  # of the line's width, to the left
 INK = 0.5  # of the darkest: a place on the path that is paler is not on its ink
 TWO = (1.8, 2.15)  # widths of the pen
 # of the ink: a path with so much more on one side than on the other does not run between two lines, of which
@@ -87,7 +87,7 @@ def inks(profiles: Array) -> Array:
     middle = len(ACROSS) // 2
     left, right = _beside(profiles[:, middle:]), _beside(profiles[:, middle::-1])
     inked = left + right - profiles[:, middle]
-    return STEP * np.where(np.abs(left - right) < ASIDE * inked, inked, np.nan)
+    return FINE_WIDTHS * np.where(np.abs(left - right) < ASIDE * inked, inked, np.nan)
 
 
 def _beside(outward: Array) -> Array:

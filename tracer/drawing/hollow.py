@@ -27,6 +27,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import at_lengths, length_mm
+from morfax.tracer.effort import FINE_WIDTHS
 from morfax.tracer.limits import PIECE_MM
 
 # darkness (n, k) at places (n, 2) mm, across their headings (n,) rad, at distances (k,) mm to the left
@@ -36,9 +37,8 @@ PIECE_PX = 24.0
 AT_ONCE = 256  # pieces that are looked at in one go
 FEWEST_PIECES = 2  # in a row: one alone is where a line crosses, or a wall's end
 APART_PX = 2.0  # stations: pixels so far apart have noise of their own
-STEP = 1 / 16  # of the line's width: finer than a pixel on lines of up to 16
-OFFSETS = np.arange(-0.5, 0.5 + STEP, STEP)  # of the line's width, to the left
-BESIDE = 2 * STEP  # of the width: the dark rows are further from the path
+OFFSETS = np.arange(-0.5, 0.5 + FINE_WIDTHS, FINE_WIDTHS)  # of the line's width, to the left
+BESIDE = 2 * FINE_WIDTHS  # of the width: the dark rows are further from the path
 PALER = 0.05  # of the ink's darkness; the middle of a line of one pen is paler by 0.02 at most
 CERTAIN = 4.0  # standard deviations of a piece's mean
 

@@ -22,9 +22,8 @@ from morfax.motion.arrays import Array
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.plane import left_of_headings
 from morfax.motion.polyline import with_places
+from morfax.tracer.effort import FINE_WIDTHS
 
-# widths between places that stand for a line: 0.2 % of half a width farther than it
-APART = 1 / 16
 STEPS = np.arange(0.5, 1.0, 0.01)  # widths outward, among which the ink ends
 INKED = 0.495  # widths from a line: more than half of one, less what rounding leaves, is paper
 
@@ -35,7 +34,7 @@ class PenEdges:
     def __init__(self, lines_mm: Sequence[Array], width_mm: float) -> None:
         self._width_mm = width_mm
         self._near = Neighbours(
-            np.vstack([with_places(line[:, :2], APART * width_mm) for line in lines_mm])
+            np.vstack([with_places(line[:, :2], FINE_WIDTHS * width_mm) for line in lines_mm])
         )
 
     def middle_mm(self, places_mm: Array, headings_rad: Array) -> Array:

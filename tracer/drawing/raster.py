@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.faults import DrawingFault, Fault, FileFault
-from morfax.motion.files import check_regular
+from morfax.motion.files import HEAD_BYTES, check_regular
 from morfax.tracer.drawing import by_rows, exif, large
 from morfax.tracer.drawing import memory as room
 from morfax.tracer.drawing.coloured_paper import levels_on_white
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 
-HEAD_BYTES = 1024  # in which the mark of a PDF stands
 PDF, HEIF_BRANDS = (
     b"%PDF-",
     (b"heic", b"heix", b"hevc", b"hevx", b"heim", b"heis", b"mif1", b"msf1"),

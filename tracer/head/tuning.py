@@ -21,6 +21,7 @@ import numpy as np
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
+from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import Tuning
@@ -38,7 +39,6 @@ GUARD_AHEAD_MM = 0.15  # from the swinging cell to the guard cells
 LOOK_AHEAD_MM = 1.0  # from the swinging cell to cell 102
 # that a line may turn within half the window: a parabola still follows that
 TIGHTEST_RAD = 0.23
-NARROW_LEGS = 0.3  # of a leg: half of the narrowest window, which averages as stations do
 LEAST_SWEEP_PERIODS = 8  # fewer tell no fundamental
 
 
@@ -96,7 +96,7 @@ def tune(stance: Stance, settings: Settings, rate_hz: float) -> Tuning:
     """What the kernels need to follow the line under a stance."""
     view = stance.view
     placed = _placed(view, settings)
-    narrow_mm = NARROW_LEGS * view.leg_mm
+    narrow_mm = FELT_LEGS * view.leg_mm  # half of the narrowest window averages as stations do
     narrowest_rad = (EDGE if view.on_edge else LINE).narrowest_rad
     slope, mean, balance = _calibrate(stance, placed.amplitude_mm)
     # no cell parts the edges of a line that is thinner, and steps of pixels bend it more than it is bent

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from morfax.motion.arrays import Array
+from morfax.motion.arrays import ROUNDED_SQUARE, Array
 from morfax.motion.compiled import njit
 from morfax.tracer.tangles import figured
 from morfax.tracer.tangles.figured import Figured
@@ -31,7 +31,6 @@ TOLERANCE = 1e-8  # of the figures and of the slope, as scipy has it
 # what it should is taken back; and all else that is a tenth there: to which a step is as long as is trusted,
 # how much shorter the next may be, how much more may be wrong; and tries to find how a step is damped
 FIRST_STEP, GOOD, TENTH, TRIES = 100.0, 1e-4, 0.1, 10
-NOTHING = 1e-14  # of a square: what rounding leaves of it after others
 
 
 def fitted(drawn: Figured, ink: Ink, figures: Array, most: int) -> Array:
@@ -171,7 +170,7 @@ def _root(square, scale, damping):  # type: ignore[no-untyped-def]
                 rest -= root[i, k] * root[j, k]
             if i > j:
                 root[i, j] = rest / root[j, j] if root[j, j] > 0 else 0.0
-            elif rest > NOTHING * all_of_it:
+            elif rest > ROUNDED_SQUARE * all_of_it:
                 root[i, i] = math.sqrt(rest)
             else:
                 root[i, :i], is_whole = 0.0, False

@@ -13,11 +13,12 @@ from morfax.tracer.following.follower import Follower
 from morfax.tracer.following.start import put_down
 from morfax.tracer.head import kernel, loop, slow_cell, swinging
 from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.slow_cell import HEADS_RAD, Tried
 from morfax.tracer.head.stance import Stance
 from morfax.tracer.head.state import MORE, Home, Tuning
-from morfax.tracer.head.tuning import NARROW_LEGS, _placed, tune
+from morfax.tracer.head.tuning import _placed, tune
 from morfax.tracer.sensing.photocell import behind_aperture
 from morfax.tracer.sensing.view import View
 from tests.tracer.head.heads import PLACE, moving, white
@@ -110,4 +111,4 @@ def test_a_parabola_is_asked_for_less_than_half_a_radian_within_its_narrowest_wi
     """A cosine's parabola is 1 % off there."""
     for view in (seen, replace(seen, on_edge=True)):
         tuned = tune(Stance(PLACE, 0.0, view), Settings(), MOTION_RATE_HZ)
-        assert 0.3 < tuned.narrowest_per_mm * NARROW_LEGS * view.leg_mm < 0.5
+        assert 0.3 < tuned.narrowest_per_mm * FELT_LEGS * view.leg_mm < 0.5
