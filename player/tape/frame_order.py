@@ -24,7 +24,7 @@ from morfax.player.tape import check_faults as faults
 from morfax.player.tape.calm_frames import CalmFrames
 from morfax.player.tape.frame_report import FrameReport
 from morfax.player.tape.symbols import PARTS
-from morfax.recorder.tape.check_frame import NUMBERS, CheckFrame
+from morfax.recorder.tape.check_frame import LAST_AT, NUMBERS, CheckFrame
 from morfax.recorder.tape.check_signal import CYCLES_PER_FRAME
 from morfax.recorder.tape.format import TapeFormat
 
@@ -62,7 +62,7 @@ class FrameOrder:
         self._number = frames.number + frames.frames
         self._missing = [0] * len(self._told)
         self._told = frames.figures[-1, :, 1:-2].tolist()
-        self._is_last = [bool(told >> 60 & 1) for told in frames.told[-1].tolist()]
+        self._is_last = [bool(told >> LAST_AT & 1) for told in frames.told[-1].tolist()]
         return True
 
     def fault(self, report: FrameReport) -> Fault | None:

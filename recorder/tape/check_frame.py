@@ -42,6 +42,11 @@ NUMBERS = 1 << 16  # of frames, then they begin again: after nine hours
 MOST_TRACKS = 16  # of a tape; chosen here
 # the middle's bits are the last of the count's
 _COUNT_BITS, _MIDDLE_BITS, _CODE_BITS = 26, 6, 7
+# where in a frame's 64 bits its number begins, its track, whether it is the last, and its version
+_NUMBER_AT = _COUNT_BITS + 2 * _CODE_BITS
+_TRACK_AT = _NUMBER_AT + NUMBERS.bit_length() - 1
+LAST_AT = _TRACK_AT + MOST_TRACKS.bit_length() - 1
+_VERSION_AT = LAST_AT + 1
 _PER_OCTAVE = 8
 LEAST_SPEED, LEAST_ACCELERATION = 0.5, 32.0  # cycles/s and cycles/s²: of code 1; 0 is at rest
 
@@ -200,9 +205,9 @@ def tell(bits, white, byte_crcs, told, is_right):  # type: ignore[no-untyped-def
 @njit(cache=True, inline="always")
 def is_of(told, track, number):  # type: ignore[no-untyped-def]
     """Whether told bits are those of a track's frame of this number, of the version that is written now."""
-    is_new = told >> 61 & 7 == VERSION
-    is_its_own = told >> 56 & (MOST_TRACKS - 1) == track
-    return is_new and is_its_own and told >> 40 & (NUMBERS - 1) == number % NUMBERS
+    is_new = told >> _VERSION_AT & 7 == VERSION
+    is_its_own = told >> _TRACK_AT & (MOST_TRACKS - 1) == track
+    return is_new and is_its_own and told >> _NUMBER_AT & (NUMBERS - 1) == number % NUMBERS
 
 
 @njit(cache=True, inline="always")
@@ -222,10 +227,10 @@ def said_of_axis(told, values):  # type: ignore[no-untyped-def]
 
 def said_by(told: int) -> CheckFrame | None:
     """What the told bits say, behind a right check sum."""
-    version = told >> 61
+    version = told >> _VERSION_AT
     if version not in COUNTS_PER_CYCLE:
         return None
-    track = told >> 56 & (MOST_TRACKS - 1)
+    track = told >> _TRACK_AT & (MOST_TRACKS - 1)
     bits = middle_bits(version, track)
     codes = told & ((1 << 2 * _CODE_BITS) - 1)
     code_mask = (1 << _CODE_BITS) - 1
@@ -235,11 +240,11 @@ def said_by(told: int) -> CheckFrame | None:
         count -= 1 << _COUNT_BITS - bits
     return CheckFrame(
         track,
-        told >> 40 & (NUMBERS - 1),
+        told >> _NUMBER_AT & (NUMBERS - 1),
         count / COUNTS_PER_CYCLE[version],
         to_value(codes >> _CODE_BITS, LEAST_SPEED),
         to_value(codes & code_mask, LEAST_ACCELERATION),
-        bool(told >> 60 & 1),
+        bool(told >> LAST_AT & 1),
         version,
         middle / COUNTS_PER_CYCLE[version] if bits else None,
     )
