@@ -19,14 +19,15 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.against_ink.unexplained import Unexplained, ink_beside
 from morfax.tracer.program.head_runs import followed
-from morfax.tracer.program.laid.explained import mended
+from morfax.tracer.program.laid.explained import Explained, mended
+from morfax.tracer.program.laid.line_parts import is_bare, is_clear
 from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.laid.touches import touching
 from morfax.tracer.program.lines.marks_read import with_marks_read
 from morfax.tracer.program.lines.selection import NO_OTHERS, others_than
-from morfax.tracer.program.nets.net_outline import OfNet, of_net
-from morfax.tracer.program.patch_lines import among_others
+from morfax.tracer.program.nets.net_outline import OfNet, may_solve, of_net
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress, Setup
 
@@ -49,15 +50,36 @@ def trace(
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     line = _way_round(setup, start_mm)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
-    lines, unread = with_marks_read([line], operator)
     # the way along the line is told, and has come to its end; the head's runs so far are given up
     setup = replace(setup, progress=None)
-    told = among_others(setup, lines[0]) if start_mm is None and len(lines) == 1 else None
-    if told is None:
-        lines, left, _ = mended(setup, lines)
-    else:
-        lines, left = [told[0]], told[1]
+    told = _among_others(setup, line) if start_mm is None else None
+    lines, unread = with_marks_read([told[0] if told else line], operator)
+    lines, left, _ = Explained(lines, told[1]) if told else mended(setup, lines)
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=left)
+
+
+def _among_others(setup: Setup, line: Line) -> tuple[Line, tuple[Unexplained, ...]] | None:
+    """The same line as it is where the others of its patch of ink are known; None if it has none, or they
+    show no other.
+    """
+    if not _may_share(setup, line):
+        return None
+    from morfax.tracer.program.patch_lines import among_others
+
+    return among_others(setup, line)
+
+
+def _may_share(setup: Setup, line: Line) -> bool:
+    """Whether a line may share its patch of ink with others, and nobody says where it goes: the patch goes
+    round several areas, or round one and the line leaves ink of it.
+    """
+    if line.ending == "lost" or not is_bare(line) or not is_clear(setup.sheet.drawing):
+        return False
+    if not may_solve(setup) or setup.operator.reads_marks([line]):
+        return False
+    areas = int(setup.sheet.loops()[setup.sheet.patch_at(line.loop_mm[0])])
+    is_round = line.ending == "closed" and areas > 1
+    return is_round or (areas > 0 and any(ink_beside(setup.sheet, [line])))
 
 
 def _way_round(setup: Setup, start_mm: tuple[float, float] | None) -> Line:
