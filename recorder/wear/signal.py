@@ -61,7 +61,7 @@ class PrintThrough:
         return self.feed(np.zeros((self._delay, self._held.shape[1]), np.float32))
 
 
-class Band:
+class BandLimit:
     """Filters of the second order on all tracks, one after the other."""
 
     def __init__(self, sections: Array, tracks: int) -> None:
@@ -69,12 +69,12 @@ class Band:
         self._state = np.zeros((len(sections), 2, tracks))
 
     @classmethod
-    def below(cls, hz: float, rate_hz: float, tracks: int) -> Band:
+    def below(cls, hz: float, rate_hz: float, tracks: int) -> BandLimit:
         """A low-pass of the second order."""
         return cls(butter(2, min(hz, HIGHEST * rate_hz), fs=rate_hz, output="sos"), tracks)
 
     @classmethod
-    def telephone(cls, band_hz: tuple[float, float], rate_hz: float, tracks: int) -> Band:
+    def telephone(cls, band_hz: tuple[float, float], rate_hz: float, tracks: int) -> BandLimit:
         """A steep band-pass of the eighth order at either end, as of a telephone line."""
         edges = (band_hz[0], min(band_hz[1], HIGHEST * rate_hz))
         return cls(butter(TELEPHONE_ORDER, edges, "bandpass", fs=rate_hz, output="sos"), tracks)

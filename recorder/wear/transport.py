@@ -37,7 +37,7 @@ from morfax.recorder.sound.spool import Spool, medium
 from morfax.recorder.wear.codec import BLOCK_FRAMES, coded
 from morfax.recorder.wear.settings import Wear, check
 from morfax.recorder.wear.signal import (
-    Band,
+    BandLimit,
     Dropout,
     Dropouts,
     PrintThrough,
@@ -159,11 +159,11 @@ class Deck:
             if wear.print_db is not None
             else None
         )
-        self._bands: list[Band] = []
+        self._bands: list[BandLimit] = []
         if wear.bandwidth_hz:
-            self._bands.append(Band.below(wear.bandwidth_hz, rate_hz, tracks))
+            self._bands.append(BandLimit.below(wear.bandwidth_hz, rate_hz, tracks))
         if wear.band_hz is not None:
-            self._bands.append(Band.telephone(wear.band_hz, rate_hz, tracks))
+            self._bands.append(BandLimit.telephone(wear.band_hz, rate_hz, tracks))
         self._head, self._came, self._went, self._peak = Head(tracks), 0, 0, 0.0
 
     @property

@@ -105,7 +105,7 @@ def test_a_tape_read_at_its_own_frames_is_itself() -> None:
     assert np.abs(head.read(between) - expected).max() < 1e-4
 
 
-def seen(band: signal.Band, hz: float) -> float:
+def seen(band: signal.BandLimit, hz: float) -> float:
     """By how much a tone is turned down, dB."""
     t_s = np.arange(RATE_HZ) / RATE_HZ
     out = band.feed(np.sin(2 * np.pi * hz * t_s)[:, None].astype(np.float32))
@@ -113,15 +113,15 @@ def seen(band: signal.Band, hz: float) -> float:
 
 
 def test_a_telephone_s_band_is_3_db_down_at_its_ends_and_39_at_6_khz() -> None:
-    def band() -> signal.Band:
-        return signal.Band.telephone((300.0, 3400.0), RATE_HZ, 1)
+    def band() -> signal.BandLimit:
+        return signal.BandLimit.telephone((300.0, 3400.0), RATE_HZ, 1)
 
     assert seen(band(), 1000.0) == pytest.approx(0.0, abs=0.01)
     assert seen(band(), 300.0) == pytest.approx(-3.0, abs=0.1)
     assert seen(band(), 3400.0) == pytest.approx(-3.0, abs=0.1)
     assert seen(band(), 6000.0) < -39.0
     # a band that ends beyond half the rate ends just below it
-    wide = signal.Band.telephone((300.0, 40_000.0), RATE_HZ, 1)
+    wide = signal.BandLimit.telephone((300.0, 40_000.0), RATE_HZ, 1)
     assert seen(wide, 20_000.0) == pytest.approx(0.0, abs=0.1)
 
 
