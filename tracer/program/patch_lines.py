@@ -50,7 +50,7 @@ def among_others(setup: Setup, line: Line) -> tuple[Line, tuple[Unexplained, ...
     if contour is None:
         return None
     lines, left, _ = explained(setup, lines_of_patch(setup, contour))
-    if not _are_along(line, lines) or not _explain(setup, patch, lines, line):
+    if not _explain(setup, patch, lines, line):
         return None
     whole = [each for each in lines if each.ending in ("closed", line.ending)]
     nearest = min(whole, key=lambda each: _apart_mm(each, line), default=line)
@@ -118,12 +118,6 @@ def _explain(setup: Setup, patch: int, lines: list[Line], line: Line) -> bool:
         return less > MISSED
     differ = np.abs(ink.wrong(away_mm) - ink.wrong(own_mm)) > DIFFER
     return less > MISSED or ink.worst(away_mm, differ) < OFF
-
-
-def _are_along(line: Line, lines: list[Line]) -> bool:
-    """Whether some lines run along all that a line does, but for what it cut short."""
-    ways = np.vstack([each.places_mm for each in lines])
-    return bool(np.mean(nearest_mm(line.places_mm, ways) < line.width_mm) > selection.COVERED)
 
 
 def _apart_mm(one: Line, other: Line) -> float:
