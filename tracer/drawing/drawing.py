@@ -60,7 +60,8 @@ class Drawing:
     Of `both` solid areas are as dark as lines. Lines look `seen_px` wide on the picture's own pixels, paper
     or ink alone if it `is_hard`, or with rims laid through their steps if it `has_rims`; a `grainy` one is
     seen through a slit. `paper_noise` is the deviation of the paper's darkness, if that was measured before
-    it was made 0. Drawn lines of a PDF that `is_rendered` have any resolution that is asked for.
+    it was made 0. Drawn lines of a PDF that `is_rendered` have any resolution that is asked for. A drawing
+    `of_colour` holds one ink alone.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -83,6 +84,7 @@ class Drawing:
     grainy: bool = False
     paper_noise: float | None = None
     is_rendered: bool = False
+    of_colour: bool = False
     drawn: Darkness | None = None
     narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
 
@@ -200,7 +202,9 @@ class Drawing:
         notes = (*scan.notes, *scale.notes(scan))
         if reading.edge:
             return cls._of_shapes(scan.file, np.asarray(grey), pitch[0], notes)
-        reading = reading._replace(polarity=inks.polarity_of(ink))
+        reading = reading._replace(
+            polarity=inks.polarity_of(ink), of_colour=isinstance(ink, tuple)
+        )
         return cls._of_lines(scan, grey, pitch[0], notes, reading)
 
     @classmethod
@@ -243,6 +247,7 @@ class Drawing:
             grainy=lines.grainy,
             paper_noise=lines.paper_noise,
             is_rendered=scan.is_rendered,
+            of_colour=reading.of_colour,
             drawn=lines.drawn,
         )
         vars(drawing).update(lines.measured)
