@@ -201,7 +201,7 @@ class Drawing:
         grey = on_square_pixels(grey, pitch)
         notes = (*scan.notes, *scale.notes(scan))
         if reading.edge:
-            return cls._of_shapes(scan.file, np.asarray(grey), pitch[0], notes)
+            return cls._of_shapes(scan, np.asarray(grey), pitch[0], notes)
         reading = reading._replace(
             polarity=inks.polarity_of(ink), of_colour=isinstance(ink, tuple)
         )
@@ -209,7 +209,7 @@ class Drawing:
 
     @classmethod
     def _of_shapes(
-        cls, file: Path, grey: NDArray[Any], pitch_mm: float, notes: tuple[str, ...]
+        cls, scan: Scan, grey: NDArray[Any], pitch_mm: float, notes: tuple[str, ...]
     ) -> Drawing:
         """The edges of the filled shapes in grey levels on square pixels."""
         from morfax.tracer.drawing.shapes import outlined
@@ -218,11 +218,12 @@ class Drawing:
         return cls(
             rims.darkness,
             pitch_mm / rims.finer,
-            file,
+            scan.file,
             rims.finer,
             rims.edges_mm,
             rims.shade,
             notes=(*notes, *rims.notes),
+            is_rendered=scan.is_rendered,
         )
 
     @classmethod
