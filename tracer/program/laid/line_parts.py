@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import length_mm, lengths_mm, nearest_mm
+from morfax.motion.polyline import area_mm2, length_mm, lengths_mm, nearest_mm
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
@@ -79,6 +79,15 @@ def part_of(line: Line, first: int, last: int) -> Line:
 def back_along(line: Line) -> Line:
     """A line from its end to its beginning."""
     return replace(line, xy_mm=line.xy_mm[::-1], led=line.led.turned_round(len(line.xy_mm)))
+
+
+def going(line: Line, direction: str | None) -> Line:
+    """A line that came round, in the direction that is asked for: one within a rim goes as that does."""
+    if direction not in ("cw", "ccw") or not is_plain(line) or line.as_told:
+        return line
+    if (area_mm2(line.loop_mm) > 0) == (direction == "ccw"):
+        return line
+    return replace(back_along(line), junctions_mm=line.junctions_mm[::-1])
 
 
 def run_on(setup: Setup, parts: Sequence[Line], sides: Sequence[LaidWay]) -> Line:
