@@ -29,9 +29,16 @@ def of_many_pieces(drawing: Drawing) -> Iterator[str]:
     if pieces < FEWEST_PIECES:
         return
     short = pieces - len(np.unique(selection.lines_of(drawing.sheet)))
-    if short >= NEARLY_ALL * pieces:
+    if short < NEARLY_ALL * pieces:
+        return
+    if drawing.of_colour:
         yield (
-            f"{short} of {pieces} pieces of ink are too short to be lines: if they are printed in another"
-            " colour than your lines, name the colour of yours, such as --ink black; if they are the grain"
-            " of the paper, cut it off or raise the contrast"
+            f"{short} of {pieces} pieces of the ink that you named are too short to be lines: if they are"
+            " print or the grain of the paper, cut them off the picture"
         )
+        return
+    yield (
+        f"{short} of {pieces} pieces of ink are too short to be lines: if they are printed in another"
+        " colour than your lines, name the colour of yours, such as --ink black; if they are the grain"
+        " of the paper, cut it off or raise the contrast"
+    )

@@ -75,7 +75,7 @@ def _of_all(trace: Trace) -> Iterator[str]:
         yield (
             f"{trace.ink.pale_mm:.0f} mm of line ({100 * pale:.0f} %) are left out: less than half as dark "
             f"as the rest, or hardly a pixel wide (the longest at {x:.1f},{y:.1f} mm); if they belong to the "
-            "drawing, and are no print of the paper, scan it at a higher resolution, or raise its contrast "
+            "drawing, and are no print of the paper, scan at a higher resolution, or raise its contrast "
             "until they are black too"
         )
     yield from _of_areas(trace.ink)

@@ -78,7 +78,7 @@ SAID: dict[Kind, tuple[tuple[str, str], str]] = {
     "broad": (
         ("piece of ink is", "pieces of ink are"),
         "{many} about as broad as two lines, the longest {mm:.1f} mm at {at}: if it is a slot, a notch or a "
-        "tongue, its two sides are not followed; draw it with a finer pen, or scan it at a higher resolution",
+        "tongue, its two sides are not followed; draw it with a finer pen, or scan at a higher resolution",
     ),
     # strokes that leave ink, or go over paper, where lines meet
     "off": (

@@ -141,6 +141,7 @@ class DrawingFile:
         if wanted is None:
             if scale_given:
                 flattening.warn_of_tilt(scan, listener)
+            flattening.warn_of_table(scan, listener)
             return scan, None
         if not self._by_colour:
             scan = self._read(listener, coloured=True)

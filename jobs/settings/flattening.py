@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from morfax.tracer.flatten.projection import Focal
     from morfax.tracer.flatten.wanted import Wanted
 
+JPEG = b"\xff\xd8"  # with which such a file begins
 WORTH_A_WARNING_RAD = math.radians(2)  # of tilt: an outline found roughly tells no less
 NO_MARKS = "--bar is the bar of a sheet with marks; leave it out, or give --flatten marks"
 
@@ -95,6 +96,32 @@ def warn_of_tilt(scan: Scan, listener: Listener) -> None:
         f" sizes come out {100 * (1 / math.cos(tilt_rad) - 1):.1f} % wrong, and differ by up to"
         f" {100 * differ:.0f} % from one end of the sheet to the other;"
         " --flatten paper=a4, or a sheet with marks, makes it flat"
+    )
+
+
+def warn_of_table(scan: Scan, listener: Listener) -> None:
+    """Warn of a sheet on a table in a JPEG that tells of no camera, as messengers pass them on: all of it is
+    read. It is looked for on a picture that was made small while it was opened.
+    """
+    with scan.file.open("rb") as opened:
+        if scan.camera is not None or opened.read(len(JPEG)) != JPEG:
+            return
+    from PIL import Image, ImageOps
+
+    from morfax.tracer.flatten.outline import SMALL_PX, on_a_table
+
+    with Image.open(scan.file) as file:
+        file.draft("RGB", (SMALL_PX, SMALL_PX))
+        small = np.asarray(ImageOps.exif_transpose(file.convert("RGB")))
+    corners = on_a_table(small)
+    if corners is None:
+        return
+    corners *= max(scan.columns, scan.rows) / max(small.shape)
+    places = " ".join(f"{x:.0f},{y:.0f}" for x, y in corners.tolist())
+    listener.warning(
+        f"{scan.file}: a sheet of paper on a darker table shows, its corners at {places} px, and what lies"
+        " beside it is read too; give --flatten paper=a4, or the paper's own size such as paper=148x105mm,"
+        " instead of another scale: then the sheet alone is read"
     )
 
 

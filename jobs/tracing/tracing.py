@@ -15,6 +15,7 @@ from morfax.jobs.listener import never_back
 from morfax.jobs.remarks.many_pieces import of_many_pieces
 from morfax.jobs.remarks.on_contours import of_around, of_contouring, of_open, of_order
 from morfax.jobs.remarks.on_edges import of_picture_edge
+from morfax.jobs.remarks.on_pages import fault_of_page, of_page
 from morfax.jobs.remarks.on_reference import of_reference, of_zero
 from morfax.jobs.remarks.remarks import of_cutter, remarks
 from morfax.jobs.remarks.stub_lines import StubLines
@@ -26,7 +27,7 @@ from morfax.jobs.settings.zero import ZeroOnSheet
 from morfax.jobs.tracing.skips import gap_across_skips, of_pieces
 from morfax.jobs.tracing.traced import Traced
 from morfax.jobs.wrong_use import WrongUse
-from morfax.motion.faults import CardFault
+from morfax.motion.faults import CardFault, LineFault
 
 if TYPE_CHECKING:
     from pathlib import Path as FilePath
@@ -82,13 +83,19 @@ class Tracing:
         for text in of_many_pieces(drawing) if self.settings.line.lines != "all" else ():
             listener.warning(text)
         listener.compiling("the head", ("motion", "tracer", "recorder"))
-        followed = self._followed(drawing, listener)
+        try:
+            followed = self._followed(drawing, listener)
+        except LineFault as fault:
+            raise fault_of_page(fault, drawing) from None
+        for line in followed.lines:
+            if line.fault is not None:
+                fault_of_page(line.fault, drawing)
         led = WhoLed.along(followed)
         two = TwoLines.along(drawing, followed)
         stubs = StubLines.along(followed)
         said = self._remarks(drawing, followed, led)
         for text in (*said, *two.remarks(), *stubs.remarks()):
-            listener.warning(text)
+            listener.warning(of_page(text, drawing))
         # 2. the zero of the program
         zero = ZeroOnSheet.of(self.settings, drawing, followed)
         for text in of_zero(zero.place_mm, followed, self.settings):

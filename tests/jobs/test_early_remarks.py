@@ -30,3 +30,15 @@ def test_short_print_of_another_colour_is_told_and_the_advice_works(tmp_path: Pa
     own = opened(sheet, tmp_path / "a.png", "black")
     assert not list(of_many_pieces(own))
     assert own.sheet.patches.count < 20
+
+
+def test_no_colour_is_advised_where_one_was_given(tmp_path: Path) -> None:
+    """Black dashes under the black line: to name black once more would not help; a tone is no colour."""
+    sheet = np.full((PX, PX, 3), 250, np.uint8)
+    for x in range(40, 960, 50):
+        for y in range(40, 960, 50):
+            cv2.line(sheet, (x, y), (x + 28, y), (20, 20, 20), 5)
+    cv2.line(sheet, (100, 120), (900, 870), (20, 20, 20), 6)
+    for ink in ("black", "dark"):
+        [text] = of_many_pieces(opened(sheet, tmp_path / "a.png", ink))
+        assert ("--ink" in text) == (ink == "dark")

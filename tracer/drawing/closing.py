@@ -24,9 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.neighbours import pairs_within
+from morfax.motion.clusters import clusters
 from morfax.motion.plane import unit
-from morfax.tracer.drawing.components import draw_way, grouped
+from morfax.tracer.drawing.components import draw_way
 from morfax.tracer.drawing.spacing import CLEAR, Pairs
 from morfax.tracer.limits import DETAIL_PX
 
@@ -91,10 +91,12 @@ def covers(share: Grey, pairs: Pairs, softness_px: float) -> Iterator[Cover]:
 def places_of(share: Grey, pairs: Pairs, pitch_mm: float) -> list[Closed]:
     """The slits and bridges that pairs of places are of, the longest first."""
     middles = pairs.places.mean(axis=1)
-    group = grouped(pairs_within(middles, DETAIL_PX), len(middles))
+    group = clusters(middles, DETAIL_PX)
+    order = np.argsort(group, kind="stable")
     slits, found = _are_slits(share, pairs), list[Closed]()
-    for number in range(group.max(initial=-1) + 1):
-        mine = group == number
+    for mine in (
+        np.split(order, np.flatnonzero(np.diff(group[order])) + 1) if len(order) else ()
+    ):
         row, column = np.median(middles[mine], axis=0)
         along = np.round(pairs.along[mine][:, 0]).astype(int)
         gaps = np.full(along.max() + 1, np.inf)

@@ -60,7 +60,8 @@ class Drawing:
     Of `both` solid areas are as dark as lines. Lines look `seen_px` wide on the picture's own pixels, paper
     or ink alone if it `is_hard`, or with rims laid through their steps if it `has_rims`; a `grainy` one is
     seen through a slit. `paper_noise` is the deviation of the paper's darkness, if that was measured before
-    it was made 0. Drawn lines of a PDF that `is_rendered` have any resolution that is asked for.
+    it was made 0. Drawn lines of a PDF that `is_rendered` have any resolution that is asked for. A drawing
+    `of_colour` holds one ink alone.
     """
 
     darkness: Darkness  # of a large sheet Tiles, which hand out the same
@@ -83,6 +84,7 @@ class Drawing:
     grainy: bool = False
     paper_noise: float | None = None
     is_rendered: bool = False
+    of_colour: bool = False
     drawn: Darkness | None = None
     narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
 
@@ -199,13 +201,15 @@ class Drawing:
         grey = on_square_pixels(grey, pitch)
         notes = (*scan.notes, *scale.notes(scan))
         if reading.edge:
-            return cls._of_shapes(scan.file, np.asarray(grey), pitch[0], notes)
-        reading = reading._replace(polarity=inks.polarity_of(ink))
+            return cls._of_shapes(scan, np.asarray(grey), pitch[0], notes)
+        reading = reading._replace(
+            polarity=inks.polarity_of(ink), of_colour=isinstance(ink, tuple)
+        )
         return cls._of_lines(scan, grey, pitch[0], notes, reading)
 
     @classmethod
     def _of_shapes(
-        cls, file: Path, grey: NDArray[Any], pitch_mm: float, notes: tuple[str, ...]
+        cls, scan: Scan, grey: NDArray[Any], pitch_mm: float, notes: tuple[str, ...]
     ) -> Drawing:
         """The edges of the filled shapes in grey levels on square pixels."""
         from morfax.tracer.drawing.shapes import outlined
@@ -214,11 +218,12 @@ class Drawing:
         return cls(
             rims.darkness,
             pitch_mm / rims.finer,
-            file,
+            scan.file,
             rims.finer,
             rims.edges_mm,
             rims.shade,
             notes=(*notes, *rims.notes),
+            is_rendered=scan.is_rendered,
         )
 
     @classmethod
@@ -243,6 +248,7 @@ class Drawing:
             grainy=lines.grainy,
             paper_noise=lines.paper_noise,
             is_rendered=scan.is_rendered,
+            of_colour=reading.of_colour,
             drawn=lines.drawn,
         )
         vars(drawing).update(lines.measured)

@@ -16,7 +16,8 @@ from morfax.tracer.drawing.ruling import PaperKind
 class Reading(NamedTuple):
     """How a scan is read: the edges of filled shapes alone; printed lines of what kind of paper are left out;
     or filled shapes as ink, which is as dark as the lines that end at them; or pale lines as ink; lines of a
-    polarity if it is known; and bold ones, so that strokes are up to twice as broad as on other sheets.
+    polarity if it is known; bold ones, so that strokes are up to twice as broad as on other sheets; and the
+    grey levels may be those of one ink alone, told by its colour.
     """
 
     edge: bool = False
@@ -25,6 +26,7 @@ class Reading(NamedTuple):
     pale_is_ink: bool = False
     polarity: Polarity | None = None
     bold: bool = False
+    of_colour: bool = False
 
 
 AS_LINES = Reading()

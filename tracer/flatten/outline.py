@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.median import ROBUST
+from morfax.motion.median import ROBUST, median
 from morfax.motion.plane import left_of, unit
 from morfax.tracer.effort import ROUNDS
 from morfax.tracer.flatten.edges import LEAST_SHARE, Picture, crossings, light_at
@@ -35,6 +35,7 @@ SQUARE_COS = 0.6  # of a corner's angle: sheets are not seen so aslant
 BESIDE = 0.006  # of the diagonal: where paper and table are compared, from the edge
 SEEN_SHARE = 0.6  # of the outline: that must show an edge
 CLEAR_LIGHT = 0.04  # of white: between paper and table, where an edge is seen
+WHITE = 255  # levels
 EVERY_PX, AVERAGED = 4.0, 5  # between the places on a side; so many are averaged
 END = 0.02  # of a side, at both ends
 # how far from the outline an edge is looked for: of the diagonal; then px
@@ -59,6 +60,24 @@ def outline(picture: Picture) -> Array | None:
             if clear > clearest:
                 best, clearest = corners, clear
     return None if best is None else best / scale
+
+
+def on_a_table(picture: Picture) -> Array | None:
+    """The corners (4, 2) of a light sheet on something darker that shows all round it, px; None without one.
+
+    A frame drawn on paper is no sheet: there is paper about it.
+    """
+    corners = outline(picture)
+    size_px = np.array(picture.shape[1::-1], float)
+    if corners is None:
+        return None
+    if (np.minimum(corners, size_px - corners) < BESIDE * np.hypot(*size_px)).any():
+        return None
+    within = np.zeros(picture.shape[:2], np.uint8)
+    cv2.fillConvexPoly(within, np.round(corners).astype(np.int32), 1)
+    grey = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
+    paper, table = (median(grey[within == part]) for part in (1, 0))
+    return corners if paper - table > CLEAR_LIGHT * WHITE else None
 
 
 def sides(picture: Picture, corners_px: Array) -> list[tuple[Array, Array]] | None:
@@ -195,7 +214,7 @@ def _clearness(small: Picture, corners_px: Array) -> float:
         change = light_at(small, inner) - light_at(small, outer)
         steps.append(np.where(inside[:, None], change, 0.0))
     change = np.concatenate(steps)
-    usual = np.median(change, axis=0)
+    usual = np.array([median(channel) for channel in change.T])
     size = float(np.linalg.norm(usual))
     if size < CLEAR_LIGHT:
         return 0.0

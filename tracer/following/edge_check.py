@@ -66,7 +66,7 @@ def _lost(run: Followed, at: int, why: str) -> Followed:
     travel_mm = float(lengths_mm(kept)[-1])
     fault = LineFault(
         f"edge lost at {x:.2f},{y:.2f} mm, after {travel_mm:.1f} mm: the shape is too fine for the head,"
-        f" {why}; look at the drawing there, scan it at a higher resolution, or print it larger (--scale"
+        f" {why}; look at the drawing there, scan at a higher resolution, or print it larger (--scale"
         " brings it back)",
         x_mm=float(x),
         y_mm=float(y),

@@ -93,7 +93,7 @@ def _of_strokes(
     if not strokes:
         raise LineFault(
             "no line can be begun: the ink on the sheet is too short, or is filled shapes; follow the edges"
-            " of these with --edge, or scan the drawing at a higher resolution"
+            " of these with --edge, or scan at a higher resolution"
         )
     # 2. the longest first, and in an order with short idle ways
     strokes.sort(key=lambda stroke: -stroke.length_mm)
