@@ -88,6 +88,11 @@ class Drawing:
     narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
 
     @cached_property
+    def edge_cells(self) -> dict[float, Any]:
+        """What cells see of the shade, by their aperture, mm: the same from every edge."""
+        return {}
+
+    @cached_property
     def known_edges(self) -> KnownEdges:
         """The edges of filled shapes, to be asked for by place."""
         return KnownEdges(self.edges_mm)
