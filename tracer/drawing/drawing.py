@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from morfax.tracer.drawing import inks, raster
 from morfax.tracer.drawing.blocks import BLOCK_PX, darkest
 from morfax.tracer.drawing.components import INK
+from morfax.tracer.drawing.known_edges import KnownEdges
 from morfax.tracer.drawing.narrow import Strips
 from morfax.tracer.drawing.noise import Noise, measured
 from morfax.tracer.drawing.reading import AS_LINES, Reading
@@ -89,6 +90,16 @@ class Drawing:
     narrow_strips = cached_property(Strips.of)  # of paper, between lines; none on a large sheet
 
     @cached_property
+    def edge_cells(self) -> dict[float, Any]:
+        """What cells see of the shade, by their aperture, mm: the same from every edge."""
+        return {}
+
+    @cached_property
+    def known_edges(self) -> KnownEdges:
+        """The edges of filled shapes, to be asked for by place."""
+        return KnownEdges(self.edges_mm)
+
+    @cached_property
     def as_drawn(self) -> Drawing:
         """The drawing without the slit that it is seen through, with the same noise."""
         if self.drawn is None:
@@ -105,8 +116,7 @@ class Drawing:
         """
         if not self.edges_mm:
             return 1.0
-        away_mm = [np.hypot(*(edge - place_mm).T).min() for edge in self.edges_mm]
-        edge = self.edges_mm[int(np.argmin(away_mm))]
+        edge = self.known_edges.nearest(place_mm)
         radius_mm = float(np.hypot(*np.diff(edge, axis=0).T).sum()) / math.tau
         if radius_mm < LEAST_RADIUS_MM:
             return float(min(MOST_ENLARGED, math.ceil(LEAST_RADIUS_MM / radius_mm)))

@@ -17,6 +17,7 @@ be a shape: paper is what covers most of the sheet's border.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +28,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.faults import DrawingFault
+from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import lengths_mm as lengths_px
 from morfax.motion.polyline import with_places
 from morfax.tracer.drawing import tips
@@ -36,6 +38,7 @@ from morfax.tracer.drawing.sharpening import Edge, sharpened
 from morfax.tracer.drawing.spacing import EDGE_MM, finer, too_near
 from morfax.tracer.effort import FINE_PX, ROUNDS
 
+ROUNDED_PX = 1.0  # an edge and its pen, drawn to whole pixels, lie no further aside
 EDGE_PX = 2.0  # of a pen that leaves one line at any angle
 LEAST_MM = 2.0  # a shorter outline is a speck's
 LEAST_CONTRAST = 20.0  # levels
@@ -280,17 +283,15 @@ def _refined(edges: list[Array], share: Grey) -> list[Array]:
 
 def pen_along(edges: Sequence[Array], shape: tuple[int, ...], width_px: float) -> Grey:
     """The darkness that a round pen of a width leaves along edges (n, 2), rows and columns."""
-    from scipy.spatial import cKDTree
-
-    near = np.zeros(shape, np.uint8)
+    near, reach_px = np.zeros(shape, np.uint8), 0.5 * width_px + 0.5
     for edge in edges:
         pixels = np.round(edge[:, ::-1]).astype(np.int32)
-        cv2.polylines(near, [pixels], False, 1, 2 * round(width_px) + 3)
+        cv2.polylines(near, [pixels], False, 1, 2 * math.ceil(reach_px + ROUNDED_PX) + 1)
     rows, columns = np.nonzero(near)
-    tree = cKDTree(np.vstack([with_places(edge, 0.1) for edge in edges]))
-    away_px = tree.query(np.column_stack([rows, columns]))[0]
+    places = Neighbours(np.vstack([with_places(edge, 0.1) for edge in edges]))
+    away_px = places.nearest(np.column_stack([rows, columns]), reach_px)[0]
     darkness = np.zeros(shape, np.float32)
-    darkness[rows, columns] = np.clip(0.5 * width_px - away_px + 0.5, 0, 1)
+    darkness[rows, columns] = np.clip(reach_px - away_px, 0, 1)
     return darkness
 
 

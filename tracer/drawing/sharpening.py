@@ -109,13 +109,14 @@ def _corners(places: Array, softness_px: float, is_closed: bool) -> list[int]:
 
 def most_turned(turned: Array, least: float, apart: int) -> list[int]:
     """Numbers of the places about which a closed outline turns most, rad, further than so many apart."""
-    found = list[int]()
+    found, is_near = list[int](), np.zeros(len(turned), bool)
+    about = np.arange(-apart, apart + 1)
     for k in np.argsort(-turned):
         if turned[k] < least:
             break
-        away = np.abs(k - np.array(found))
-        if np.all(np.minimum(away, len(turned) - away) > apart):
+        if not is_near[k]:
             found.append(int(k))
+            is_near[(k + about) % len(turned)] = True
     return found
 
 

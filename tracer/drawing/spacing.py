@@ -121,8 +121,11 @@ class Pairs:
 def _legs_of_corners(edges: list[Edge], pairs: Pairs) -> NDArray[np.bool_]:
     """Which pairs are on the two legs of one corner."""
     legs, lengths = np.zeros(len(pairs.back), bool), _lengths(edges)
+    of_edge = np.where(pairs.edge[:, 0] == pairs.edge[:, 1], pairs.edge[:, 0], -1)
+    by_edge = np.argsort(of_edge, kind="stable")
+    firsts = np.searchsorted(of_edge, np.arange(len(edges) + 1), sorter=by_edge)
     for number, edge in enumerate(edges):
-        own = np.flatnonzero((pairs.edge == number).all(axis=1))
+        own = by_edge[firsts[number] : firsts[number + 1]]
         if not len(own) or not len(edge.corners):
             continue
         along = np.sort(pairs.along[own], axis=1)

@@ -102,7 +102,7 @@ class Attempts:
         wanted = Turns(turns, self.sides, self.tips, self.by_stations, told_turns)
         known = self.branches.known(stance, wanted)
         if known is not None:
-            return kept_to(self.drawing.edges_mm, reduced(known))
+            return kept_to(self.drawing.known_edges, reduced(known))
         follower, keep = self._taken_up(stance, wanted)
         branch, before = self.branches.head(stance, wanted)
         follower = follower or branch
@@ -113,7 +113,7 @@ class Attempts:
         reduced_told = None if told is None else lambda come_mm: told(come_mm / times)
         run = follower.follow(times * self.longest_mm, reduced_told, keep, before)
         self.branches.ended(follower, run)
-        return kept_to(self.drawing.edges_mm, reduced(run))
+        return kept_to(self.drawing.known_edges, reduced(run))
 
     def _taken_up(self, stance: Stance, turns: Turns) -> tuple[Follower | None, Keep | None]:
         """The head of an earlier run that began as this one will, and what keeps its knots; if anybody asks

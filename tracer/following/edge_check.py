@@ -15,10 +15,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from morfax.motion.arrays import Array
 from morfax.motion.faults import LineFault
 from morfax.motion.neighbours import Neighbours
 from morfax.motion.polyline import APART_MM, lengths_mm, with_places
+from morfax.tracer.drawing.known_edges import KnownEdges
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.head.slow_cell import CHECKED
 from morfax.tracer.limits import DETAIL_PX
@@ -34,22 +34,25 @@ def most_off_mm(pitch_mm: float) -> float:
     return max(OFF_MM, DETAIL_PX * pitch_mm)
 
 
-def kept_to(edges_mm: tuple[Array, ...], run: Followed) -> Followed:
+def kept_to(edges: KnownEdges, run: Followed) -> Followed:
     """The run, if it kept to the edges and, closed, left none of its edge out; else lost at that place."""
-    if not edges_mm:
+    if not edges.all_mm:
         return run
-    lines = [with_places(edge, APART_MM) for edge in edges_mm]
-    owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
     positions, most_mm = run.positions_mm[::CHECKED], most_off_mm(run.view.pitch_mm)
-    # 1. every position lies on an edge
-    away_mm, nearest = Neighbours(np.vstack(lines)).nearest(positions)
-    off = np.flatnonzero(away_mm > most_mm)
+    # 1. every position lies on an edge; how far one is away is asked of all of them
+    for some in (edges.near(positions, most_mm), edges.all_mm):
+        lines = [with_places(edge, APART_MM) for edge in some]
+        away_mm, nearest = Neighbours(np.vstack([*lines, np.empty((0, 2))])).nearest(positions)
+        off = np.flatnonzero(away_mm > most_mm)
+        if not len(off):
+            break
     if len(off):
         why = f"it goes {away_mm.max():.2f} mm away from the edge"
         left = np.flatnonzero(away_mm[: off[0]] < LEFT_MM)
         return _lost(run, CHECKED * int(left[-1] if len(left) else 0), why)
     # 2. a closed run passed every place of its own edge
     if run.ending == "closed":
+        owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
         own = lines[int(np.bincount(owner[nearest]).argmax())]
         missed_mm, passed = Neighbours(positions).nearest(own)
         worst = int(np.argmax(missed_mm))

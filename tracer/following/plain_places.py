@@ -78,9 +78,11 @@ def edge_view_of(drawing: Drawing, aperture_mm: float | None) -> View:
 
     assert drawing.shade is not None
     pitch_mm = drawing.pitch_mm * drawing.enlarged
-    shade = replace(drawing, darkness=drawing.shade, pitch_mm=pitch_mm)
-    cells = photocell.behind_aperture(shade, aperture_mm or EDGE_APERTURE_PX * pitch_mm)
-    return View(cells, EDGE_MM, on_edge=True)
+    aperture_mm = aperture_mm or EDGE_APERTURE_PX * pitch_mm
+    if aperture_mm not in drawing.edge_cells:
+        shade = replace(drawing, darkness=drawing.shade, pitch_mm=pitch_mm)
+        drawing.edge_cells[aperture_mm] = photocell.behind_aperture(shade, aperture_mm)
+    return View(drawing.edge_cells[aperture_mm], EDGE_MM, on_edge=True)
 
 
 def aperture_for(drawing: Drawing, width_mm: float) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.known_edges import KnownEdges
 from morfax.tracer.following.edge_check import OFF_MM, kept_to
 from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
@@ -33,12 +34,12 @@ def along(line: Points, ending: str = "closed") -> Followed:
 @pytest.mark.parametrize("line", [SQUARE, HOLE, SQUARE + np.array([0.0, 0.8 * OFF_MM])])
 def test_a_run_on_its_edge_stays_as_it_is(line: Points) -> None:
     run = along(line)
-    assert kept_to(EDGES, run) is run
+    assert kept_to(KnownEdges(EDGES), run) is run
 
 
 def test_lines_have_no_edges_to_keep_to() -> None:
     run = along(HOLE + 5.0)
-    assert kept_to((), run) is run
+    assert kept_to(KnownEdges(()), run) is run
 
 
 def test_a_run_that_leaves_the_edge_is_lost_where_it_does() -> None:
@@ -47,7 +48,7 @@ def test_a_run_that_leaves_the_edge_is_lost_where_it_does() -> None:
             (10, 10), (20, 10), (20.5, 10.9), (21, 10), (30, 10), (30, 30), (10, 30), (10, 10)
         )
     )
-    kept = kept_to(EDGES, run)
+    kept = kept_to(KnownEdges(EDGES), run)
     assert kept.ending == "lost" and kept.fault is not None
     assert abs(kept.travel_mm - 10) < 0.3 and np.allclose(
         kept.positions_mm[-1], [20, 10], atol=0.3
@@ -68,15 +69,15 @@ def test_a_closed_run_that_leaves_some_of_its_edge_out_is_lost() -> None:
     """A tooth 0.3 mm wide and 2 mm high is cut across: no place of the run is off the edge, but the tooth is
     missed.
     """
-    kept = kept_to((toothed(2.0), HOLE), along(SQUARE))
+    kept = kept_to(KnownEdges((toothed(2.0), HOLE)), along(SQUARE))
     assert kept.ending == "lost" and "it passes some of the edge 2.0" in str(kept.fault)
     assert 9.5 < kept.travel_mm < 10.8
 
 
 def test_what_an_open_run_has_not_come_to_is_no_fault() -> None:
     run = along(SQUARE[:3], "ended")
-    assert kept_to(EDGES, run) is run
-    assert kept_to(EDGES, replace(run, ending="closed")).ending == "lost"
+    assert kept_to(KnownEdges(EDGES), run) is run
+    assert kept_to(KnownEdges(EDGES), replace(run, ending="closed")).ending == "lost"
 
 
 @pytest.mark.parametrize("high_mm", [0.4, 1.2, 3.5])
@@ -87,7 +88,7 @@ def test_where_pixels_are_large_a_tooth_that_is_passed_by_is_told_and_not_lost(
     coarse = replace(VIEW, cells=VIEW.cells._replace(pitch_mm=0.5))
     for edge, way in ((toothed(high_mm), SQUARE), (SQUARE, toothed(high_mm))):
         run = replace(along(way), view=coarse)
-        kept = kept_to((edge,), run)
+        kept = kept_to(KnownEdges((edge,)), run)
         assert (kept is run) == (high_mm < 3)
         drawing = Drawing(np.zeros((8, 8), np.float32), 0.5, edges_mm=(edge,))
         told = list(_off_edges(drawing, [Line(run.positions_mm, "closed", 0.4, 80.0)]))

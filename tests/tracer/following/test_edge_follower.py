@@ -101,3 +101,12 @@ def test_stations_lie_on_the_edge(drawings: dict[str, Drawing]) -> None:
     away = np.hypot(*(seen[:, :2] - [16, 16]).T) - 10
     assert len(seen) > 2000 and np.sqrt(np.mean(away**2)) < 12 * UM
     assert np.ptp(np.unwrap(np.arctan2(seen[:, 1] - 16, seen[:, 0] - 16))) > 6.2
+
+
+def test_all_edges_of_a_sheet_are_seen_through_the_same_cells(
+    drawings: dict[str, Drawing],
+) -> None:
+    """They are made of all of the sheet: of a board with hundreds of pads once, and not for each."""
+    one, other = edge_view_of(drawings["disc"], None), edge_view_of(drawings["disc"], None)
+    assert one.cells is other.cells
+    assert edge_view_of(drawings["disc"], 2 * UM + one.cells.pitch_mm).cells is not one.cells

@@ -23,19 +23,19 @@ from itertools import groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.plane import CORNER_RAD
 from morfax.motion.polyline import nearest_mm
 from morfax.tracer.effort import ROUNDS
-from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import NEARLY, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import LEGS, is_whole
 from morfax.tracer.program.laid.spline_fit import FOLDED_RAD
-from morfax.tracer.program.laid.way_ink import BayInk, WayInk
+from morfax.tracer.program.laid.way_ink import BayInk, Relaid, WayInk
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import folding_rule
@@ -69,35 +69,50 @@ def with_chains(setup: Setup, own: OwnInk, laid_mm: Array = NONE) -> OwnInk:
     """Lines, held against their ink, with their chains of corners laid where they run beside it, and where
     they were laid anew (n, 2) mm: there the corners are near to where they belong.
     """
-    asked = own.doubtful | bool(len(laid_mm))
+    asked, news = own.doubtful | bool(len(laid_mm)), None
     for _ in range(ROUNDS):
         beside = [place.place_mm for place in own.beside(NEARLY)]
         left_mm = np.vstack([laid_mm, np.array(beside).reshape(-1, 2)])
         if not len(left_mm):
             break
-        every, before = BoxedLines.of(own.lines), own.lines
+        every = BoxedLines.of(own.lines)
         mended = [
-            _Chains(setup, line, every, left_mm).mended() if is_asked else line
-            for line, is_asked in zip(before, asked, strict=True)
+            _Chains(setup, line, every, left_mm, news).mended()
+            if is_asked
+            else Relaid(line, NONE)
+            for line, is_asked in zip(own.lines, asked, strict=True)
         ]
-        asked = np.array([new is not line for new, line in zip(mended, before, strict=True)])
+        asked = np.array([len(relaid.places_mm) > 0 for relaid in mended])
         if not asked.any():
             break
-        own, laid_mm = own.mended(mended), NONE
+        own, laid_mm = own.mended([relaid.line for relaid in mended]), NONE
+        news = _News(np.vstack([relaid.places_mm for relaid in mended]), left_mm)
     return own
+
+
+class _News(NamedTuple):
+    """The places (n, 2) mm that were laid anew when lines were last looked at, and those that ran beside
+    their ink before that.
+    """
+
+    laid_mm: Array
+    left_mm: Array
 
 
 @dataclass(frozen=True, eq=False)
 class _Chains(WayInk):
-    """The chains of corners of one of some lines, of which some places (n, 2) mm run beside their ink."""
+    """The chains of corners of one of some lines, of which some places (n, 2) mm run beside their ink; what
+    is new since it was last looked at, None if it was not.
+    """
 
     left_mm: Array
+    news: _News | None
 
-    def mended(self) -> Line:
+    def mended(self) -> Relaid:
         """The line as it is, or along the corners that explain its ink better."""
         if not is_whole(self.line) or self.line.as_told:
-            return self.line
-        return self.along([b for chain in self._chains() for b in self._bays(chain)]).line
+            return Relaid(self.line, NONE)
+        return self.along([b for chain in self._chains() for b in self._bays(chain)])
 
     def _chains(self) -> Iterator[list[_Corner]]:
         """The chains of corners of which each is near to the next, in the order of the way."""
@@ -117,12 +132,17 @@ class _Chains(WayInk):
         corners = list(map(_Corner, at - reach[:-1], at, at + reach[1:], places))
         ends = [0, *(1 + np.flatnonzero(~is_near[1:-1])).tolist(), len(at)]
         for first, last in pairwise(ends):
-            if last - first > 1 and self._is_beside(places[first:last]):
+            if last - first > 1 and self._is_beside(places[first:last], self.left_mm):
                 yield corners[first:last]
 
-    def _is_beside(self, corners_mm: Array) -> bool:
-        """Whether the way runs beside its ink near to some corners (n, 2) mm."""
-        return bool(nearest_mm(corners_mm, self.left_mm).min() < NEAR * self.line.width_mm)
+    def _is_beside(self, corners_mm: Array, left_mm: Array) -> bool:
+        """Whether some corners (n, 2) mm are near to where a way runs beside its ink."""
+        return bool(nearest_mm(corners_mm, left_mm).min() < NEAR * self.line.width_mm)
+
+    @cached_property
+    def _are_new(self) -> NDArray[np.bool_]:
+        """Which places of the way are new."""
+        return self.are_near(None if self.news is None else self.news.laid_mm)
 
     @cached_property
     def _inks(self) -> dict[tuple[int, int], BayInk | None]:
@@ -139,7 +159,7 @@ class _Chains(WayInk):
     def _bays(self, chain: list[_Corner]) -> Iterator[Bay]:
         """What is laid along those runs of a chain's corners that explain the ink, and the way does not."""
         chain = [
-            corner._replace(is_asked=self._leaves_ink(chain, k))
+            corner._replace(is_asked=self._is_asked(_about(chain, k)))
             for k, corner in enumerate(chain)
         ]
         for sweep in range(SWEEPS):
@@ -156,12 +176,26 @@ class _Chains(WayInk):
             if is_right and gain > GAIN:
                 yield self._bay([chain[k] for k in numbers], gain)
 
-    def _leaves_ink(self, chain: Sequence[_Corner], k: int) -> bool:
-        """Whether the way about a corner leaves as much ink as another would have to gain."""
-        seen = self._seen(_about(chain, k))
+    def _is_asked(self, near: Sequence[_Corner]) -> bool:
+        """Whether something about a corner is new, and the way leaves as much ink there as another would have
+        to gain.
+        """
+        seen = self._seen(near) if self._is_new(near) else None
         if seen is None:
             return False
         return seen.ink.misfit_along(seen.own) > GAIN * STEP_WIDTHS * len(seen.own)
+
+    def _is_new(self, near: Sequence[_Corner]) -> bool:
+        """Whether a corner was not looked at, or something near to it and its neighbours was laid anew since,
+        or runs beside its ink that did not before: it is settled as it was otherwise.
+        """
+        if self.news is None:
+            return True
+        stretch = np.arange(near[0].first, near[-1].last + 1) % len(self.way)
+        places_mm = np.array([corner.place_mm for corner in near])
+        is_beside = self._is_beside(places_mm, self.left_mm)
+        was_beside = self._is_beside(places_mm, self.news.left_mm)
+        return bool(self._are_new[stretch].any()) or (is_beside and not was_beside)
 
     def _settled(self, chain: Sequence[_Corner], k: int, is_first: bool) -> _Corner:
         """A corner of a chain where the rule over it and its neighbours explains the ink best; as it is, if

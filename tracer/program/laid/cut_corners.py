@@ -36,7 +36,7 @@ from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
 from morfax.tracer.program.against_ink.own_ink import NEARLY, BesideInk, OwnInk
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.corner_chains import with_chains
-from morfax.tracer.program.laid.line_parts import LEGS, REACH, is_clear, is_plain
+from morfax.tracer.program.laid.line_parts import LEGS, is_clear, is_plain
 from morfax.tracer.program.laid.news import near_box
 from morfax.tracer.program.laid.outer_rims import ON, with_outer_rims
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
@@ -99,7 +99,7 @@ class _Corners(WayInk):
         if not is_plain(self.line) or self.line.as_told:
             return self.along([])
         over, is_first = list(self._beside_ink()), self.news is None
-        is_new = self._are_new()
+        is_new = self.are_near(self.news)
         is_asked = self._are_within(over) if is_first else is_new
         bays = [self._bay(*each, is_asked) for each in [*over, *self._redrawn()][:MANY]]
         turns = (each for each in self._rounded() if is_new[self._places(*each)].any())
@@ -112,14 +112,6 @@ class _Corners(WayInk):
         for each in stretches:
             within[self._places(*each)] = True
         return within
-
-    def _are_new(self) -> NDArray[np.bool_]:
-        """Which places were not looked at, or lie near to news: the ink about the others is explained as it
-        was.
-        """
-        if self.news is None:
-            return np.ones(len(self.way), bool)
-        return np.asarray(nearest_mm(self.way, self.news) < REACH * self.line.width_mm)
 
     def _places(self, first: int, last: int) -> NDArray[np.int64]:
         """The numbers of the places from one to another."""

@@ -16,6 +16,7 @@ from hashlib import sha1
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import evenly, length_mm, nearest_mm
@@ -87,6 +88,14 @@ class WayInk:
     def round_mm(self) -> float:
         """How long the way is."""
         return length_mm(self.line.places_mm)
+
+    def are_near(self, news: Array | None) -> NDArray[np.bool_]:
+        """Which places of the way were not looked at, or lie near to what was laid since, (n, 2) mm: the ink
+        about the others is explained as it was.
+        """
+        if news is None:
+            return np.ones(len(self.way), bool)
+        return np.asarray(nearest_mm(self.way, news) < REACH * self.line.width_mm)
 
     def own(self, first: int, last: int) -> Array | None:
         """The stretch (n, 2) mm from one place to another; None if it is too long, or reaches an end."""

@@ -8,8 +8,16 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.motion.polyline import nearest_mm, with_places
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.against_ink.own_ink import OwnInk
-from morfax.tracer.program.laid.corner_chains import _along, _Corner, with_chains
+from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.own_ink import NEARLY, OwnInk
+from morfax.tracer.program.laid import cut_corners
+from morfax.tracer.program.laid.corner_chains import (
+    _along,
+    _Chains,
+    _Corner,
+    _News,
+    with_chains,
+)
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.trace import trace
 from tests.tracer.inked import UM, inked, polyline
@@ -86,6 +94,38 @@ def test_a_line_on_its_ink_stays_as_the_head_ran() -> None:
     drawing = inked(drawn, seed=3)
     own = OwnInk(drawing, trace(drawing).lines)
     assert with_chains(Setup(drawing.sheet), own) is own
+
+
+def test_only_chains_near_to_what_was_laid_anew_are_looked_at_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Along an outline of a coast 20 chains were fitted anew for each that was laid."""
+    drawn = drawn_at(bar(teeth(*SHORT)), 1.1)
+    drawing = inked(drawn, width_mm=PEN_MM, dpi=200, seed=3)
+    given = list[tuple[Setup, OwnInk]]()
+
+    def kept(setup: Setup, own: OwnInk, *laid_mm: Array) -> OwnInk:
+        given.append((setup, own))
+        return with_chains(setup, own, *laid_mm)
+
+    monkeypatch.setattr(cut_corners, "with_chains", kept)
+    trace(drawing)
+    setup, own = given[0]
+    (before,) = own.lines
+    (mended,) = with_chains(setup, own).lines
+    assert furthest_mm(drawn, mended) < furthest_mm(drawn, before)
+    # looked at again where it was laid, and where it was not beside its ink when it was last looked at
+    left_mm = np.array([place.place_mm for place in own.beside(NEARLY)])
+    far_mm = before.loop_mm.min(axis=0)[None] - 100.0
+    every = BoxedLines.of(own.lines)
+    for laid_mm, told_mm, is_laid in (
+        (far_mm, left_mm, False),
+        (before.loop_mm[::40], left_mm, True),
+        (far_mm, far_mm, True),
+    ):
+        news = _News(laid_mm, told_mm)
+        relaid = _Chains(setup, before, every, left_mm, news).mended()
+        assert (relaid.line is not before) is is_laid
 
 
 def test_a_chain_runs_through_its_sharp_corners_and_rounds_the_others_by_their_radius() -> None:
