@@ -133,15 +133,15 @@ class OwnInk:
         """Where lines that closed or ended run beside their ink, by more than some limits; nothing where no
         pen can be told.
         """
-        for half_px, station, over in self._judged:
+        for half_px, station, over in self.judged:
             usual = percentile(over, MOST)
             least, sure = (
                 max(float(each.of(half_px)), each.of_most * usual) for each in (limits, SURE)
             )
-            for first, last in _stretches(over > least):
+            for first, last in stretches_of(over > least):
                 worst = first + int(np.argmax(over[first:last]))
                 places = 1 + station[last - 1] - station[first]
-                place_mm = _mm(self.drawing, self._ways.places_px[station[worst]])
+                place_mm = place_of_mm(self.drawing, self.ways.places_px[station[worst]])
                 long_mm = float(places * PLACES_PX * self.drawing.pitch_mm)
                 yield BesideInk(place_mm, long_mm, bool(over[worst] > sure))
 
@@ -150,23 +150,23 @@ class OwnInk:
         """Which lines, of those that closed or ended, are not surely on their ink."""
         noise = self.drawing.noise
         is_told = bool(self.lines) and noise.softness_px > 0 and not self.drawing.grainy
-        if not is_told or not self._ways.judged.any():
+        if not is_told or not self.ways.judged.any():
             return np.zeros(len(self.lines), bool)
-        return _doubtful(self.drawing, self._ways, self.told)
+        return _doubtful(self.drawing, self.ways, self.told)
 
     @cached_property
-    def _ways(self) -> Ways:
+    def ways(self) -> Ways:
         """The ways of the lines."""
         return _ways(self.drawing, self.lines)
 
     @cached_property
-    def _judged(self) -> list[tuple[Array, NDArray[np.int64], Array]]:
+    def judged(self) -> list[tuple[Array, NDArray[np.int64], Array]]:
         """Of each line that is not surely on its ink half its width in pixels, the stations in the order of
         the way, and what is over there.
         """
         if not self.doubtful.any():
             return []
-        ways, doubtful = self._ways, self.doubtful
+        ways, doubtful = self.ways, self.doubtful
         found = zip(*_judged(self.drawing, ways, doubtful, self.told), strict=True)
         line, station, over = (np.concatenate(column) for column in found)
         of_line = (np.flatnonzero(line == number) for number in np.flatnonzero(doubtful))
@@ -190,7 +190,7 @@ def _ways(drawing: Drawing, lines: Sequence[Line]) -> Ways:
 def _doubtful(drawing: Drawing, ways: Ways, told: ByTile) -> NDArray[np.bool_]:
     """Which lines are not surely on their ink: most are, and need not be judged."""
     doubtful = np.zeros(len(ways.judged), bool)
-    least, pen = NEARLY.of(ways.half_px), _pen(drawing, ways)
+    least, pen = NEARLY.of(ways.half_px), pen_of(drawing, ways)
     for part in parts(drawing, ways, _are_stations(ways, ways.judged), QUICK_PX, pen):
         asked = ~doubtful[ways.line[part.stations]]
         line, at = ways.line[part.stations[asked]], part.at[asked]
@@ -206,7 +206,7 @@ def _judged(
     drawing: Drawing, ways: Ways, which: NDArray[np.bool_], told: ByTile
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int64], Array]]:
     """The stations of some lines, tile by tile: line, number of the place, and what is over."""
-    pen = _pen(drawing, ways)
+    pen = pen_of(drawing, ways)
     for part in parts(drawing, ways, _are_stations(ways, which), TILE_PX, pen):
         key = part.key(part.at)
         if key not in told:
@@ -275,7 +275,7 @@ def _near_ends(ways: Ways) -> NDArray[np.bool_]:
     return np.asarray((from_first < near) | (to_last < near))
 
 
-def _pen(drawing: Drawing, ways: Ways) -> PenOnInk:
+def pen_of(drawing: Drawing, ways: Ways) -> PenOnInk:
     """The pen of most lines; what it draws on paper matters above the least limit."""
     half_px, noise = median(ways.half_px[ways.judged]), drawing.noise
     reach_px, paper = 2 * FAR * half_px, 0.5 * noise.paper**2
@@ -287,13 +287,13 @@ def _every(ways: Ways) -> int:
     return max(1, round(2 * STATION_WIDTHS * float(np.min(ways.half_px)) / PLACES_PX))
 
 
-def _stretches(above: NDArray[np.bool_]) -> list[tuple[int, int]]:
+def stretches_of(above: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """The first and the one after the last of each stretch of stations that are above the limit."""
     edges = np.flatnonzero(np.diff(np.r_[False, above, False].astype(np.int8)))
     return [(int(first), int(last)) for first, last in edges.reshape(-1, 2)]
 
 
-def _mm(drawing: Drawing, place_px: NDArray[np.float32]) -> tuple[float, float]:
+def place_of_mm(drawing: Drawing, place_px: NDArray[np.float32]) -> tuple[float, float]:
     """A place in pixels, on the sheet in mm."""
     column, row = place_px.tolist()
     rows = drawing.darkness.shape[0]

@@ -137,7 +137,7 @@ def test_tiles_of_wider_lines_or_of_lines_that_are_not_judged_have_keys_of_their
     drawing = inked(notched(DEEP_MM), seed=1)
     ways = own_ink._ways(drawing, [closed(notched(DEEP_MM))])
     part = next(
-        parts(drawing, ways, np.ones(len(ways.line), bool), 64, own_ink._pen(drawing, ways))
+        parts(drawing, ways, np.ones(len(ways.line), bool), 64, own_ink.pen_of(drawing, ways))
     )
     wider = part.ways._replace(half_px=1.1 * part.ways.half_px)
     others = part.ways._replace(judged=~part.ways.judged)
