@@ -25,7 +25,7 @@ from itertools import combinations
 
 import numpy as np
 
-from morfax.motion.arrays import NOT_ZERO, ROUNDED, Array
+from morfax.motion.arrays import ROUNDED, Array
 from morfax.motion.curves import bow, hermite
 from morfax.motion.plane import left_of_headings
 from morfax.tracer.head.course import ON_INK, SMOOTH, on_ink, through_nodes
@@ -33,7 +33,6 @@ from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink, off_rims_mm
 from morfax.tracer.junctions.corner import Corner, sharp_corner
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
 from morfax.tracer.sensing.leg import Leg, turn
-from morfax.tracer.sensing.parabola import FEWEST
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.strands import stretches_over
 
@@ -242,20 +241,8 @@ def half_turn_rad(one: Leg, out: Leg, long_mm: float) -> float:
     """By how much an arc that bends as two legs do turns from its beginning onto its chord, rad; a quarter
     turn where no such arc has so long a chord.
     """
-    across = 0.25 * long_mm * (_bend_per_mm(one) + _bend_per_mm(out))
+    across = 0.25 * long_mm * (one.bends_on_per_mm + out.bends_on_per_mm)
     return math.asin(min(max(across, -1.0), 1.0))
-
-
-def _bend_per_mm(leg: Leg) -> float:
-    """The bend of the arc over a leg's first, middle and last station: the parabola of a leg that turns far
-    bends too little at its ends.
-    """
-    if not leg.bend_per_mm or len(leg.seen) < FEWEST:
-        return leg.bend_per_mm
-    first, middle, last = leg.seen[[0, len(leg.seen) // 2, -1], :2]
-    (ax, ay), (bx, by) = middle - first, last - middle
-    sides = math.hypot(ax, ay) * math.hypot(bx, by) * math.dist(first, last)
-    return 2 * float(ax * by - ay * bx) / max(sides, NOT_ZERO)
 
 
 def _is_inked(corner: Corner, view: View | None) -> bool:
