@@ -24,8 +24,8 @@ from morfax.tracer.drawing.numbering import ALIKE
 from morfax.tracer.following.direction import Arrow
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import ABOUT_WIDTHS
+from morfax.tracer.program.head_runs import followed
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import followed
 
 # Both limits below were chosen by trial.
 NEAR_MM = 1.0  # an arrow further from a line, and beyond `ABOUT_WIDTHS`, is on none

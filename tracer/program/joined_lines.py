@@ -34,9 +34,9 @@ from morfax.tracer.following.line import Line
 from morfax.tracer.following.plain_places import stance_near, view_of
 from morfax.tracer.limits import CLEAR_WIDTHS, OWN_WIDTHS
 from morfax.tracer.program.against_ink.left_ink import LeftInk
+from morfax.tracer.program.head_runs import followed_through
 from morfax.tracer.program.lines.selection import LETTER_MM, NEW, Contour, least_mm
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import followed_through
 
 # All limits below were chosen by trial on the test drawings.
 # ink nearer to a way is that way's; where that is all of it, a line may run close beside: then so near

@@ -28,6 +28,7 @@ from morfax.tracer.drawing.strokes import Sheet, Stroke
 from morfax.tracer.following.line import Line
 from morfax.tracer.following.start import a_dark_area
 from morfax.tracer.marks.reference import LARGEST_MM, may_lead, reach_mm
+from morfax.tracer.program.head_runs import followed, followed_from_an_end
 from morfax.tracer.program.laid.bridges import bridged
 from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.laid.touches import touching
@@ -38,7 +39,6 @@ from morfax.tracer.program.nets.net_outline import ABOUT_WIDTHS, goes_round, may
 from morfax.tracer.program.nets.open_ink import can_stand, is_open, strokes_of, strokes_told
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.program.taken import kept_off, taken_by
-from morfax.tracer.program.trace import followed, followed_from_an_end
 
 # mm from a patch to the edge of the window: twice as far as reference points and lead lines are looked for
 ABOUT_MM = 40.0

@@ -36,11 +36,11 @@ from morfax.tracer.following.open_ends import from_reference, stances_at
 from morfax.tracer.following.plain_places import aperture_for, stands_near, view_of
 from morfax.tracer.following.start import put_down
 from morfax.tracer.marks.reference import Reference, references
+from morfax.tracer.program.head_runs import followed_from_an_end
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.selection import Contour
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import followed_from_an_end
 from morfax.tracer.sensing.view import View
 
 Kind = Literal["closed", "open", "several", "dot", "joined", "lost"]

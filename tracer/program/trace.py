@@ -14,29 +14,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from morfax.motion.faults import LineFault
-from morfax.tracer.drawing.components import INK
-from morfax.tracer.drawing.deviation import darkness_across
 from morfax.tracer.drawing.drawing import Drawing
-from morfax.tracer.drawing.strokes import Stroke
-from morfax.tracer.following.attempts import Attempts, longest_mm
-from morfax.tracer.following.direction import goes, turned_about
-from morfax.tracer.following.followed import Followed
 from morfax.tracer.following.line import Line
-from morfax.tracer.following.start import ends_of, put_down
 from morfax.tracer.head.settings import Settings
-from morfax.tracer.head.stance import Stance, turned_round
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program.against_ink.unexplained import bare_ways
-from morfax.tracer.program.best_run import Target, best_of
-from morfax.tracer.program.laid.explained import mended
+from morfax.tracer.program.against_ink.unexplained import Unexplained, ink_beside
+from morfax.tracer.program.head_runs import followed
+from morfax.tracer.program.laid.explained import Explained, mended
+from morfax.tracer.program.laid.line_parts import is_bare, is_clear
 from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.laid.touches import touching
 from morfax.tracer.program.lines.marks_read import with_marks_read
 from morfax.tracer.program.lines.selection import NO_OTHERS, others_than
-from morfax.tracer.program.nets.net_outline import OfNet, of_net, round_ring
+from morfax.tracer.program.nets.net_outline import OfNet, may_solve, of_net
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress, Setup
 
@@ -59,11 +50,36 @@ def trace(
     setup = Setup(drawing.sheet, settings or Settings(), operator, progress)
     line = _way_round(setup, start_mm)
     others = NO_OTHERS if start_mm is not None else others_than(setup.sheet, line)
-    lines, unread = with_marks_read([line], operator)
     # the way along the line is told, and has come to its end; the head's runs so far are given up
     setup = replace(setup, progress=None)
-    lines, left, _ = mended(setup, lines)
+    told = _among_others(setup, line) if start_mm is None else None
+    lines, unread = with_marks_read([told[0] if told else line], operator)
+    lines, left, _ = Explained(lines, told[1]) if told else mended(setup, lines)
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=left)
+
+
+def _among_others(setup: Setup, line: Line) -> tuple[Line, tuple[Unexplained, ...]] | None:
+    """The same line as it is where the others of its patch of ink are known; None if it has none, or they
+    show no other.
+    """
+    if not _may_share(setup, line):
+        return None
+    from morfax.tracer.program.patch_lines import among_others
+
+    return among_others(setup, line)
+
+
+def _may_share(setup: Setup, line: Line) -> bool:
+    """Whether a line may share its patch of ink with others, and nobody says where it goes: the patch goes
+    round several areas, or round one and the line leaves ink of it.
+    """
+    if line.ending == "lost" or not is_bare(line) or not is_clear(setup.sheet.drawing):
+        return False
+    if not may_solve(setup) or setup.operator.reads_marks([line]):
+        return False
+    areas = int(setup.sheet.loops()[setup.sheet.patch_at(line.loop_mm[0])])
+    is_round = line.ending == "closed" and areas > 1
+    return is_round or (areas > 0 and any(ink_beside(setup.sheet, [line])))
 
 
 def _way_round(setup: Setup, start_mm: tuple[float, float] | None) -> Line:
@@ -89,81 +105,4 @@ def _along_net(found: OfNet) -> Line | None:
         return found.line
     return (
         own if own.ending == "closed" and own.length_mm > found.line.length_mm else found.line
-    )
-
-
-def followed(
-    setup: Setup,
-    start_mm: tuple[float, float] | None,
-    number: int = 1,
-    other_turns: bool = True,
-) -> Line:
-    """The head's best run along the line at a place, or along the longest line; of ink that closes, and on
-    which the head is lost, the way round that its junctions show, unless that leads over bare paper.
-
-    With `other_turns` it tries other turns than straight on if the line does not come back.
-    """
-    stances = put_down(setup.sheet, start_mm, setup.settings, setup.operator.reference_mm)
-    best, others = best_of(Target(setup, start_mm, number), stances, other_turns)
-    assert best is not None  # put_down gives a stance, or raises
-    if _is_from_hole(setup, best):
-        return followed(_without_references(setup), start_mm, number, other_turns)
-    if others:
-        raise _several_lead([best, *others])
-    found = round_ring(setup, best) if best.ending in ("lost", "joined") else None
-    if found is None or any(bare_ways(setup.sheet, [found], setup.settings.gap_mm)):
-        return best
-    return replace(found, number=number)
-
-
-def followed_from_an_end(setup: Setup, stroke: Stroke, number: int = 1) -> Line | None:
-    """The head's best run from the open ends of a line; None without open ends, or if lost from each."""
-    stances = ends_of(setup.sheet, stroke, setup.settings, setup.operator.reference_mm)
-    best, _ = best_of(Target(setup, number=number), iter(stances))
-    if best is not None and _is_from_hole(setup, best):
-        return followed_from_an_end(_without_references(setup), stroke, number)
-    return best if best is not None and best.ending != "lost" else None
-
-
-def _is_from_hole(setup: Setup, line: Line) -> bool:
-    """Whether a line begins at a ring that is a hole of the part, and no reference point: it leads to no
-    contour, and nobody says that a program is drawn.
-    """
-    if line.reference_mm is None or line.ending != "ended" or setup.operator.means_program:
-        return False
-    place = np.array([line.reference_mm])
-    middle = darkness_across(setup.sheet.drawing, place, np.zeros(1), np.zeros(1)).item()
-    return bool(middle < INK)  # a cross has ink in its middle
-
-
-def _without_references(setup: Setup) -> Setup:
-    """The set-up on a sheet whose crosses and rings are no reference points."""
-    return replace(setup, sheet=replace(setup.sheet, has_references=False))
-
-
-def followed_through(setup: Setup, stance: Stance) -> list[Followed]:
-    """The head's runs straight on through a stance, without other turns.
-
-    The last run goes round about in the direction asked for, or from end to end.
-    """
-    drawing, direction = setup.sheet.drawing, setup.operator.direction
-    attempts = Attempts(drawing, setup.settings, longest_mm(drawing, stance.view.width_mm))
-    first = attempts.run(stance)
-    runs = [first]
-    wrong_way = direction in ("cw", "ccw") and not goes(first, direction)
-    if first.ending == "ended":
-        back = turned_round(first.positions_mm[-1], first.heading_rad, first.view)
-        runs.append(attempts.run(back))
-    elif first.ending != "closed" or wrong_way:
-        runs.append(attempts.run(turned_about(stance)))
-    return runs
-
-
-def _several_lead(lines: list[Line]) -> LineFault:
-    """The fault of a drawing on which several lines may be the lead line."""
-    places = "; ".join(f"{x:.1f},{y:.1f}" for x, y in (line.start_mm for line in lines))
-    return LineFault(
-        f"{len(lines)} lines with a tick lead to the contour, from {places}, and no reference point shows"
-        " which of them is the lead line; draw a cross or ring at its beginning, or give one of these places"
-        " with --start X,Y or --reference-point X,Y"
     )

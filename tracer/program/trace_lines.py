@@ -26,10 +26,9 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.arrows import with_arrows
 from morfax.tracer.program.cutting_order import in_cutting_order
-from morfax.tracer.program.joined_lines import joined_to
+from morfax.tracer.program.head_runs import followed
 from morfax.tracer.program.laid.explained import explained, mended
 from morfax.tracer.program.laid.narrow_bays import with_bars
-from morfax.tracer.program.laid.own_rims import within_own_rims
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.lines.marks_read import with_marks_read
@@ -42,15 +41,10 @@ from morfax.tracer.program.lines.small_rings import (
     small_rings,
     unclear_patches,
 )
-from morfax.tracer.program.one_of_each import (
-    is_inside,
-    one_of_each,
-    references_of,
-)
+from morfax.tracer.program.one_of_each import is_inside, one_of_each
+from morfax.tracer.program.patch_lines import further_lines
 from morfax.tracer.program.program import Trace
 from morfax.tracer.program.setup import HeadProgress, Setup
-from morfax.tracer.program.taken import kept_off, taken_by
-from morfax.tracer.program.trace import followed
 
 # shares of the work that are done, as the bar has them; by the times of a form and a page of handwriting:
 # when one line of each patch is found, when bays that show as bars are laid, of what it takes to find all ...
@@ -187,7 +181,7 @@ def found_lines(setup: Setup, which: Which) -> FoundLines:
     # 2. the other lines of those patches
     others = [line for some in strokes.values() for line in some]
     lines = with_bars(setup.part(ONE_OF_EACH, WITH_BARS), lines, others)
-    joined, left_mm = _joined(setup.part(WITH_BARS, 1.0), asked, lines, strokes)
+    joined, left_mm = further_lines(setup.part(WITH_BARS, 1.0), asked, lines, strokes)
     patch_of = dict[int, int]()
     if beyond or not numbers:
         further = _numbered_on(joined, patches + len(holes))
@@ -223,31 +217,6 @@ def _high_enough(setup: Setup, asked: list[Contour]) -> tuple[list[Contour], tup
 def _small_asked(setup: Setup, which: Which, are_numbered: bool) -> list[tuple[int, Line]]:
     """The small lines with their patches, where contours are asked for, or a number that one may have."""
     return small_lines(setup) if which == "contours" or are_numbered else []
-
-
-def _joined(
-    setup: Setup, asked: list[Contour], lines: list[Line], strokes: dict[int, list[Line]]
-) -> tuple[list[tuple[Line, int]], dict[int, float]]:
-    """Further lines of the patches on which a line was followed, each with its patch's number: the strokes
-    that are known, or those that the head finds; and the length of ink left over of each, mm.
-    """
-    joined, left_mm = list[tuple[Line, int]](), dict[int, float]()
-    own, taken = {line.number: k for k, line in enumerate(lines)}, taken_by(setup, lines)
-    for k, contour in enumerate(asked):
-        setup.come(k, len(asked))
-        if (n := own.get(contour.number)) is not None and len(lines[n].xy_mm) > 1:
-            line = lines[n]  # not one that was never begun
-            here = kept_off(setup, taken - {contour.stroke.patch})
-            others, more_mm = joined_to(line, contour, here, strokes.get(contour.number))
-            found = [line, *others]
-            told = within_own_rims(here, contour.stroke.patch, found)
-            if told is not found:
-                (lines[n], *others), more_mm = told, 0.0
-            joined += [(other, contour.number) for other in others]
-            left_mm[contour.stroke.patch] = more_mm
-    begins_mm = references_of(lines)
-    kept = [each for each in joined if not selection.are_about(each[0].places_mm, begins_mm)]
-    return kept, left_mm
 
 
 def _numbered_on(joined: list[tuple[Line, int]], last: int) -> list[tuple[Line, int]]:

@@ -14,8 +14,8 @@ from morfax.tracer.following import follower, two_corners
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
+from morfax.tracer.program.head_runs import followed
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import followed
 from morfax.tracer.sensing.leg import Leg
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles import likeness

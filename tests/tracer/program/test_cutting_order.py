@@ -11,8 +11,8 @@ from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program import arrows
 from morfax.tracer.program.cutting_order import in_cutting_order
+from morfax.tracer.program.head_runs import followed
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import followed
 from tests.tracer.inked import UM, WIDTH_MM, inked, polyline
 
 END_MM = 36.0  # of the lower stroke, as of its ink

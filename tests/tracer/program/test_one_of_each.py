@@ -12,9 +12,9 @@ from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
 from morfax.tracer.marks import reference
 from morfax.tracer.program import one_of_each
+from morfax.tracer.program.head_runs import followed_from_an_end
 from morfax.tracer.program.lines import selection
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.program.trace import followed_from_an_end
 from tests.tracer.inked import arc, inked, polyline
 
 SHEET = Sheet.of(inked(arc((16, 16), 10)))

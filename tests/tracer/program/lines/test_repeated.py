@@ -65,7 +65,7 @@ def test_each_line_of_many_is_looked_through_once(monkeypatch: pytest.MonkeyPatc
 def test_contours_have_no_repeats_and_numbers_have(monkeypatch: pytest.MonkeyPatch) -> None:
     lines = [along(arc((20, 20), 12), number=1), along(arc((20, 20), 12), number=2)]
     monkeypatch.setattr(trace_lines, "one_of_each", lambda *_: OneOfEach(lines, [], {}))
-    monkeypatch.setattr(trace_lines, "_joined", lambda *_: ([], 0.0))
+    monkeypatch.setattr(trace_lines, "further_lines", lambda *_: ([], 0.0))
     drawing = inked(arc((20, 20), 12, 0, 170), arc((20, 20), 12, 190, 350))
     setup = Setup(drawing.sheet)
     assert len(trace_lines.found_lines(setup, "contours").lines) == 1

@@ -14,7 +14,7 @@ from morfax.tracer.following import lost
 from morfax.tracer.following.line import Line
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.operator.operator import Operator
-from morfax.tracer.program import trace
+from morfax.tracer.program import head_runs, trace
 from morfax.tracer.program.nets.net_outline import of_net
 from morfax.tracer.program.setup import Setup
 from tests.tracer.inked import WIDTH_MM, Points, inked
@@ -71,8 +71,8 @@ def test_where_the_head_is_lost_the_junctions_show_the_way_round(
     setup = Setup(inked(line, seed=119).sheet, Settings(), Operator(), None)
     half = line[: len(line) // 2]
     head = Line(half, "lost", WIDTH_MM, length_mm(half))
-    monkeypatch.setattr(trace, "best_of", lambda *_: (head, []))
-    found = trace.followed(setup, None, number=3)
+    monkeypatch.setattr(head_runs, "best_of", lambda *_: (head, []))
+    found = head_runs.followed(setup, None, number=3)
     assert found.ending == "closed" and found.number == 3
     # spikes narrower than two lines are left out, and said
     assert share_on(line, found.xy_mm) > 0.85 and away_mm(line, found.xy_mm) < AWAY_MM
@@ -85,8 +85,8 @@ def test_an_open_line_on_which_the_head_is_lost_stays_lost(
     line = ragged(119)[:-8]
     setup = Setup(inked(line, seed=119).sheet, Settings(), Operator(), None)
     head = Line(line, "lost", WIDTH_MM, length_mm(line))
-    monkeypatch.setattr(trace, "best_of", lambda *_: (head, []))
-    assert trace.followed(setup, None) is head
+    monkeypatch.setattr(head_runs, "best_of", lambda *_: (head, []))
+    assert head_runs.followed(setup, None) is head
 
 
 @pytest.mark.parametrize("run_mm, ending", [(5.0, "lost"), (30.0, "closed")])
@@ -97,5 +97,5 @@ def test_a_head_whose_cell_fails_at_once_is_shown_no_way(
     setup = Setup(inked(line, seed=119).sheet, Settings(), Operator(), None)
     fault = LineFault(f"line lost: {lost.CONTRADICT}")
     head = Line(line[:9], "lost", WIDTH_MM, run_mm, fault=fault)
-    monkeypatch.setattr(trace, "best_of", lambda *_: (head, []))
-    assert trace.followed(setup, None).ending == ending
+    monkeypatch.setattr(head_runs, "best_of", lambda *_: (head, []))
+    assert head_runs.followed(setup, None).ending == ending
