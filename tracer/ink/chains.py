@@ -212,19 +212,30 @@ class Junctions:
         """
         line, widths = self.net.lines[number], list[float]()
         for last in (False, True):
-            there = self.at(side := Side(number, last))
-            leg = there.leg(side)
-            onward = [
-                other.width_mm
-                for other in there.legs
-                if other.width_mm < wide_mm
-                and abs(turn(leg.heading_rad, other.heading_rad + math.pi)) < TURNS_OFF
-            ]
+            onward = self._onward_mm(Side(number, last), wide_mm)
             if len(onward) != 2:
                 return None
             widths += onward
         width_mm = float(np.mean(widths))
         return width_mm if line.width_mm < TWO * width_mm else None
+
+    def _onward_mm(self, side: Side, wide_mm: float) -> list[float]:
+        """The widths of the lines that are narrower than `wide_mm` and go on from a side, mm: straight on by
+        their headings, or if these are not two as smooth ways do, which bend.
+        """
+        there = self.at(side)
+        k, leg = there.sides.index(side), there.leg(side)
+        turned = [turn(leg.heading_rad, other.heading_rad + math.pi) for other in there.legs]
+        for turns_rad in (np.abs(turned), there.crossing.turnings_rad[k]):
+            narrow = zip(there.legs, turns_rad < TURNS_OFF, strict=True)
+            onward = [
+                other.width_mm
+                for other, goes_on in narrow
+                if goes_on and other.width_mm < wide_mm and other is not leg
+            ]
+            if len(onward) == 2:
+                break
+        return onward
 
     def end_mm(self, side: Side) -> float:
         """How far beyond its leg's clean end a line ends that has no partner, mm."""

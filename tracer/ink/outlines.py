@@ -26,6 +26,7 @@ from morfax.motion.polyline import broad_mm
 from morfax.tracer.drawing.numbering import InkSpread, longest_first
 from morfax.tracer.ink.areas import Edge, ways_round
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
+from morfax.tracer.ink.partners import half_turn_rad
 from morfax.tracer.sensing.leg import FACING, Leg, turn
 from morfax.tracer.tangles.beside_itself import NEAR_WIDTHS
 
@@ -161,15 +162,15 @@ def turned_by(one: Leg, other: Leg) -> float:
     """By how much a way turns from an incoming leg onto an outgoing one, rad, or by how much more than their
     bends let expect, whichever is less: a bend felt beside other ink is none.
     """
-    chord, whole = other.end_mm - one.end_mm, turn(one.heading_rad, other.heading_rad)
+    chord = other.end_mm - one.end_mm
     long_mm = float(np.hypot(*chord))
     if long_mm < one.width_mm:
-        return abs(whole)
+        return abs(turn(one.heading_rad, other.heading_rad))
     along = math.atan2(chord[1], chord[0])
     before, after = turn(one.heading_rad, along), turn(along, other.heading_rad)
-    half = 0.25 * long_mm * (one.bend_per_mm + other.bend_per_mm)
+    half = half_turn_rad(one, other, long_mm)
     most = (
-        max(abs(whole - 2 * bend), abs(before - bend), abs(after - bend))
+        max(abs(before + after - 2 * bend), abs(before - bend), abs(after - bend))
         for bend in (0.0, half)
     )
     return min(most)

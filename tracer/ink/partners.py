@@ -232,9 +232,17 @@ def _bends_on(one: Leg, out: Leg) -> bool:
 def _turned(one: Leg, out: Leg, chord: Array, share: float) -> float:
     """By how much a way turns from leg to leg over a chord, besides a share of what both bend, rad."""
     along = math.atan2(chord[1], chord[0])
-    bend = share * 0.25 * math.hypot(*chord) * (one.bend_per_mm + out.bend_per_mm)
+    bend = share * half_turn_rad(one, out, math.hypot(*chord))
     before, after = turn(one.heading_rad, along), turn(along, out.heading_rad)
     return _bending(before - bend, after - bend)
+
+
+def half_turn_rad(one: Leg, out: Leg, long_mm: float) -> float:
+    """By how much an arc that bends as two legs do turns from its beginning onto its chord, rad; a quarter
+    turn where no such arc has so long a chord.
+    """
+    across = 0.25 * long_mm * (one.bends_on_per_mm + out.bends_on_per_mm)
+    return math.asin(min(max(across, -1.0), 1.0))
 
 
 def _is_inked(corner: Corner, view: View | None) -> bool:

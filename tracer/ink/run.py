@@ -9,7 +9,7 @@ Source: our own.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from morfax.motion.moments import (
 )
 from morfax.tracer.head.course import FELT_LEGS
 from morfax.tracer.sensing.leg import Leg, leg_of
+from morfax.tracer.sensing.parabola import BLOT
 from morfax.tracer.sensing.view import View
 
 LEAST_PLACES = 5  # for a parabola of their own; by trial
@@ -103,7 +104,9 @@ class Run:
         if last not in self._legs:
             count = self._leg_stations
             near = self.stations()[-count:] if last else self.stations()[:count]
-            self._legs[last] = leg_of(near, last, self._leg_mm)
+            leg = leg_of(near, last, self._leg_mm)
+            is_long = self._leg_mm > self.view.leg_mm and leg.bend_per_mm
+            self._legs[last] = with_arc(leg) if is_long else leg
         return self._legs[last]
 
     @property
@@ -113,6 +116,20 @@ class Run:
     @property
     def _leg_stations(self) -> int:
         return round(self._leg_mm / self.view.step_mm) + 1
+
+
+def with_arc(leg: Leg) -> Leg:
+    """A leg with the bend of the arc through its stations, if these lie on one."""
+    places = leg.seen[:, :2] - leg.end_mm
+    if len(places) < LEAST_PLACES:
+        return leg
+    round_it = np.column_stack([2 * places, np.ones(len(places))])
+    x, y, rest = np.linalg.lstsq(round_it, np.sum(places**2, axis=1))[0].tolist()
+    radius_mm = math.sqrt(max(rest + x * x + y * y, NOT_ZERO))
+    off_mm = np.hypot(*(places - (x, y)).T) - radius_mm
+    if np.sqrt(np.mean(off_mm**2)) > BLOT * leg.width_mm:
+        return leg
+    return replace(leg, arc_per_mm=math.copysign(1 / radius_mm, leg.bend_per_mm))
 
 
 def smooth(run: Run) -> Run:

@@ -41,7 +41,8 @@ Meeting = tuple[float, float]
 class Leg:
     """A clean stretch of line at a junction, with its stations `seen`.
 
-    `end_mm` is its clean end; the heading there and the bend are along the travel.
+    `end_mm` is its clean end; the heading there and the bend are along the travel. Of a long leg `arc_per_mm`
+    is the bend of the arc over all of it: where it turns far, a parabola bends too little at its ends.
     """
 
     end_mm: Array
@@ -49,6 +50,12 @@ class Leg:
     bend_per_mm: float
     width_mm: float
     seen: Array
+    arc_per_mm: float | None = None
+
+    @property
+    def bends_on_per_mm(self) -> float:
+        """The bend with which its line goes on far beyond its end, 1/mm."""
+        return self.bend_per_mm if self.arc_per_mm is None else self.arc_per_mm
 
     def at(self, along_mm: float | Array) -> Array:
         """Places (…, 2) at distances from the clean end along the travel (negative: before it)."""
@@ -77,7 +84,9 @@ class Leg:
     def turned_round(self) -> Leg:
         """The same leg, to go back along it."""
         heading = math.remainder(self.heading_rad + math.pi, math.tau)
-        return Leg(self.end_mm, heading, -self.bend_per_mm, self.width_mm, self.seen[::-1])
+        arc = None if self.arc_per_mm is None else -self.arc_per_mm
+        seen = self.seen[::-1]
+        return Leg(self.end_mm, heading, -self.bend_per_mm, self.width_mm, seen, arc)
 
     def heading_at(self, along_mm: float) -> float:
         """Heading at a distance from the clean end, rad."""

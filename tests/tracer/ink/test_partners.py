@@ -8,15 +8,18 @@ import numpy as np
 import pytest
 
 from morfax.motion.arrays import Array
+from morfax.tracer.ink.outlines import turned_by
 from morfax.tracer.ink.partners import (
+    SMOOTHLY,
     is_corner,
     likeliest,
     meeting_place,
     partners,
     turnings,
 )
+from morfax.tracer.ink.run import with_arc
 from morfax.tracer.junctions.corner import Corner
-from morfax.tracer.sensing.leg import Leg
+from morfax.tracer.sensing.leg import Leg, leg_of
 
 WIDTH_MM = 0.5
 NOISE_RAD = math.radians(1.0)  # more than felt legs are off
@@ -106,6 +109,40 @@ def test_bends_are_allowed_for() -> None:
         for side in (1, -1)
     ]
     assert paired(legs) == {frozenset({0, 2}), frozenset({1, 3})}
+
+
+def on_circle(centre: float, radius_mm: float, at_deg: float, ahead: int) -> Leg:
+    """The leg of 1 rad of a circle that ends at an angle, on the circle's way ahead or back."""
+    turned = math.radians(at_deg) - ahead * np.linspace(1.0, 0.0, 20)
+    places = np.column_stack([centre + radius_mm * np.cos(turned), radius_mm * np.sin(turned)])
+    seen = np.column_stack([places, np.full(20, WIDTH_MM)])
+    return with_arc(leg_of(seen, True, 2 * radius_mm))
+
+
+@pytest.mark.parametrize("half_deg", [60.0, 75.0, 92.0])
+def test_a_circle_goes_on_over_half_a_turn(half_deg: float) -> None:
+    """In the ink that it shares with one that is larger: the parabolas of its legs bend a quarter too little
+    at their ends, and its ways turned by 35 degrees more than these: it had no partner.
+    """
+    legs = [on_circle(0.0, 2.7, -half_deg, 1), on_circle(0.0, 2.7, half_deg, -1)]
+    legs += [on_circle(-3.5, 6.3, -0.6 * half_deg, 1), on_circle(-3.5, 6.3, 0.6 * half_deg, -1)]
+    assert legs[0].bend_per_mm < 0.85 / 2.7
+    assert [each.arc_per_mm for each in legs[:2]] == pytest.approx(
+        [1 / 2.7, -1 / 2.7], rel=0.01
+    )
+    turned = turnings(legs, WIDTH_MM)
+    assert max(turned[0, 1], turned[2, 3]) < SMOOTHLY
+    assert paired(legs) == {frozenset({0, 1}), frozenset({2, 3})}
+    assert turned_by(legs[0], legs[1].turned_round()) < SMOOTHLY
+
+
+def test_a_leg_that_is_no_arc_bends_as_its_parabola() -> None:
+    """It is straight for 1.5 mm, then turns within another 1.5: no arc tells how it goes on."""
+    along = np.linspace(0.0, 3.0, 40)
+    aside = 0.3 * np.maximum(along - 1.5, 0.0) ** 2
+    bent = leg_of(np.column_stack([along, aside, np.full(40, WIDTH_MM)]), True, 3.0)
+    assert bent.bend_per_mm > 0
+    assert with_arc(bent).arc_per_mm is None
 
 
 def test_of_many_lines_each_has_its_own_partner() -> None:
