@@ -9,8 +9,6 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from morfax.tracer.drawing.coarse import at_dpi, finer_dpi
-
 if TYPE_CHECKING:
     from morfax.motion.faults import LineFault
     from morfax.tracer.drawing.drawing import Drawing
@@ -23,6 +21,8 @@ def of_page(text: str, drawing: Drawing) -> str:
     """A text that may advise a finer scan, as the drawing's file can be had finer."""
     if not drawing.is_rendered:
         return text
+    from morfax.tracer.drawing.coarse import at_dpi, finer_dpi
+
     text = re.sub(r"scan at (\d+) dpi", r"give --dpi \1", text)
     dpi = finer_dpi(drawing.pitch_mm * drawing.finer * drawing.enlarged, TIMES)
     return text.replace(FINER, at_dpi(dpi, is_rendered=True))

@@ -52,15 +52,15 @@ RAGGED, MOST = 6.0, 95.0  # and which is meant, percent of the line
 ROUND = 3
 
 
-def surely_left(own: OwnInk, left: Sequence[Unexplained]) -> tuple[Unexplained, ...]:
-    """Those of some places that lines leave unexplained that are sure, and where one box shows that they run
-    beside their ink; the longest first.
+def with_boxes(own: OwnInk, sure: Sequence[Unexplained]) -> tuple[Unexplained, ...]:
+    """Some places that lines leave unexplained, and where one box shows that they run beside their ink; the
+    longest first.
     """
-    sure = [place for place in left if place.is_sure]
+    found = list(sure)
     for place_mm, long_mm, _ in _surely_beside(own):
         place = Unexplained(place_mm, long_mm, "beside")
-        sure += [] if is_about(place, sure, own.lines) else [place]
-    return tuple(sorted(sure, key=lambda place: -place.length_mm))
+        found += [] if is_about(place, found, own.lines) else [place]
+    return tuple(sorted(found, key=lambda place: -place.length_mm))
 
 
 def _surely_beside(own: OwnInk) -> Iterator[BesideInk]:

@@ -27,7 +27,7 @@ from morfax.tracer.effort import MANY, ROUNDS
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.against_ink.bars import bar_at
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
-from morfax.tracer.program.against_ink.in_one_box import surely_left
+from morfax.tracer.program.against_ink.in_one_box import with_boxes
 from morfax.tracer.program.against_ink.own_ink import OwnInk
 from morfax.tracer.program.against_ink.unexplained import (
     Unexplained,
@@ -113,7 +113,9 @@ def _mended(
     uncut = with_grain_corners(setup, with_corners(setup, own))
     if uncut is not own:
         own, left = uncut, left_by(setup, uncut)
-    return list(own.lines), surely_left(own, left)
+    is_read = setup.operator.reads_marks(own.lines)
+    sure = tuple(place for place in left if place.is_sure)
+    return list(own.lines), sure if is_read else with_boxes(own, sure)
 
 
 def _once_mended(

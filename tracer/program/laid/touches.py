@@ -180,7 +180,8 @@ def _mended(setup: Setup, lines: Sequence[Line], touch: Touch) -> list[Line] | N
     own = left(*ways)
     # 2. the ways as their legs go on, or within the rims
     both = smooth_ways(*longer, LEG, width_mm, left, may_exchange=one is other)
-    if both.left > LEAVES or not (both.is_exchanged or both.left < own - GAIN):
+    # legs that bend smoothly cut no corner: half of that gain is still more than noise
+    if both.left > LEAVES or not (both.is_exchanged or both.left < own - 0.5 * GAIN):
         goes_over = one is other and len(crossings(*ways)) % 2 == 1
         rims = None
         if goes_over or own > LEAVES:

@@ -13,7 +13,7 @@ import pytest
 from morfax.motion.arrays import Array
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.program.against_ink import in_one_box as module
-from morfax.tracer.program.against_ink.in_one_box import surely_left
+from morfax.tracer.program.against_ink.in_one_box import with_boxes
 from morfax.tracer.program.against_ink.own_ink import (
     NEARLY,
     TILE_PX,
@@ -36,7 +36,7 @@ def plate(high_mm: float) -> Points:
 
 def told(drawing: Drawing, way: Points) -> list[tuple[float, float]]:
     """Where a closed way surely runs beside its ink."""
-    return [place.place_mm for place in surely_left(OwnInk(drawing, [closed(way)]), ())]
+    return [place.place_mm for place in with_boxes(OwnInk(drawing, [closed(way)]), ())]
 
 
 def speckled(drawing: Drawing, x_mm: float) -> Drawing:
@@ -64,7 +64,7 @@ def test_a_light_speck_beside_a_dark_one_is_none() -> None:
     drawing = speckled(inked(plate(0.0), seed=1), 20.0)
     own = OwnInk(drawing, [closed(plate(0.0))])
     assert list(own.beside(NEARLY)), "specks must be over, or nothing is tried"
-    assert surely_left(own, ()) == ()
+    assert with_boxes(own, ()) == ()
 
 
 def test_ticks_blots_and_other_lines_are_none() -> None:
