@@ -26,8 +26,7 @@ from morfax.motion.polyline import broad_mm
 from morfax.tracer.drawing.numbering import InkSpread, longest_first
 from morfax.tracer.ink.areas import Edge, ways_round
 from morfax.tracer.ink.chains import Chain, Junctions, Link, Side
-from morfax.tracer.ink.partners import half_turn_rad
-from morfax.tracer.sensing.leg import FACING, Leg, turn
+from morfax.tracer.sensing.leg import FACING, Leg, half_turn_rad, turn
 from morfax.tracer.tangles.beside_itself import NEAR_WIDTHS
 
 # of the way round the net's outside: two lines that overlap each make half of it or more, and a closed chain

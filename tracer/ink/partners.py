@@ -32,7 +32,7 @@ from morfax.tracer.head.course import ON_INK, SMOOTH, on_ink, through_nodes
 from morfax.tracer.ink.shared_ink import SharedInk, kept_in_ink, off_rims_mm
 from morfax.tracer.junctions.corner import Corner, sharp_corner
 from morfax.tracer.junctions.planner import BEYOND_MM, Planner
-from morfax.tracer.sensing.leg import Leg, turn
+from morfax.tracer.sensing.leg import Leg, half_turn_rad, turn
 from morfax.tracer.sensing.view import View
 from morfax.tracer.tangles.strands import stretches_over
 
@@ -235,14 +235,6 @@ def _turned(one: Leg, out: Leg, chord: Array, share: float) -> float:
     bend = share * half_turn_rad(one, out, math.hypot(*chord))
     before, after = turn(one.heading_rad, along), turn(along, out.heading_rad)
     return _bending(before - bend, after - bend)
-
-
-def half_turn_rad(one: Leg, out: Leg, long_mm: float) -> float:
-    """By how much an arc that bends as two legs do turns from its beginning onto its chord, rad; a quarter
-    turn where no such arc has so long a chord.
-    """
-    across = 0.25 * long_mm * (one.bends_on_per_mm + out.bends_on_per_mm)
-    return math.asin(min(max(across, -1.0), 1.0))
 
 
 def _is_inked(corner: Corner, view: View | None) -> bool:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO, Array
+from morfax.motion.circle import circle_through
 from morfax.motion.compiled import njit
 from morfax.motion.moments import (
     NO_PLACES,
@@ -105,8 +106,8 @@ class Run:
             count = self._leg_stations
             near = self.stations()[-count:] if last else self.stations()[:count]
             leg = leg_of(near, last, self._leg_mm)
-            is_long = self._leg_mm > self.view.leg_mm and leg.bend_per_mm
-            self._legs[last] = with_arc(leg) if is_long else leg
+            is_long = self._leg_mm > self.view.leg_mm
+            self._legs[last] = with_arc(leg) if is_long and leg.bend_per_mm else leg
         return self._legs[last]
 
     @property
@@ -120,14 +121,10 @@ class Run:
 
 def with_arc(leg: Leg) -> Leg:
     """A leg with the bend of the arc through its stations, if these lie on one."""
-    places = leg.seen[:, :2] - leg.end_mm
-    if len(places) < LEAST_PLACES:
+    if len(leg.seen) < LEAST_PLACES:
         return leg
-    round_it = np.column_stack([2 * places, np.ones(len(places))])
-    x, y, rest = np.linalg.lstsq(round_it, np.sum(places**2, axis=1))[0].tolist()
-    radius_mm = math.sqrt(max(rest + x * x + y * y, NOT_ZERO))
-    off_mm = np.hypot(*(places - (x, y)).T) - radius_mm
-    if np.sqrt(np.mean(off_mm**2)) > BLOT * leg.width_mm:
+    _, radius_mm, misfit_mm = circle_through(leg.seen[:, :2])
+    if misfit_mm > BLOT * leg.width_mm:
         return leg
     return replace(leg, arc_per_mm=math.copysign(1 / radius_mm, leg.bend_per_mm))
 

@@ -22,7 +22,7 @@ from morfax.tracer.operator.operator import Operator
 from morfax.tracer.program.against_ink.unexplained import Unexplained, ink_beside
 from morfax.tracer.program.head_runs import followed
 from morfax.tracer.program.laid.explained import Explained, mended
-from morfax.tracer.program.laid.line_parts import going, is_bare, is_clear
+from morfax.tracer.program.laid.line_parts import in_direction, is_bare, is_clear
 from morfax.tracer.program.laid.small_loops import SmallLoops
 from morfax.tracer.program.laid.touches import touching
 from morfax.tracer.program.lines.marks_read import with_marks_read
@@ -53,7 +53,7 @@ def trace(
     # the way along the line is told, and has come to its end; the head's runs so far are given up
     setup = replace(setup, progress=None)
     told = _among_others(setup, line) if start_mm is None else None
-    line = going(told[0], operator.direction) if told else line
+    line = in_direction(told[0], operator.direction) if told else line
     lines, unread = with_marks_read([line], operator)
     lines, left, _ = Explained(lines, told[1]) if told else mended(setup, lines)
     return Trace(tuple(lines), operator, others=others, unread=unread, unexplained=left)

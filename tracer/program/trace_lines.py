@@ -28,7 +28,7 @@ from morfax.tracer.program.arrows import with_arrows
 from morfax.tracer.program.cutting_order import in_cutting_order
 from morfax.tracer.program.head_runs import followed
 from morfax.tracer.program.laid.explained import explained, mended
-from morfax.tracer.program.laid.line_parts import going
+from morfax.tracer.program.laid.line_parts import in_direction
 from morfax.tracer.program.laid.narrow_bays import with_bars
 from morfax.tracer.program.laid.small_lines import small_lines
 from morfax.tracer.program.lines import selection
@@ -95,7 +95,7 @@ def trace_lines(
     _refuse_none_begun(lines, found.unclear)
     laid = explained if which == "contours" else mended  # some lines show no whole patch
     lines, left, one = laid(setup.part(FOUND, EXPLAINED), lines)
-    lines = [going(line, operator.direction) for line in lines]
+    lines = [in_direction(line, operator.direction) for line in lines]
     sheet = setup.sheet
     is_searched = _is_searched(setup, which, lines)
     return Trace(

@@ -33,9 +33,8 @@ FARTHEST_PX = 0.5  # by which a circle is moved at once
 # size of a fundamental that still is an edge: four times that of a scan's noise
 FAINTEST = 0.04
 CERTAIN = 0.1  # size of one that shows the way
-SHORTEST = (
-    0.3  # of a step: what comes less far on is none, and what comes as much too far is two
-)
+# of a step: what comes less far on is none, and what comes as much too far is two
+SHORTEST = 0.3
 LONGEST = 2 - SHORTEST
 TURNS = 0.5  # cosine: a step turns less than 60 degrees
 TURN_SAMPLES = 36  # all round

@@ -120,6 +120,14 @@ def turn(a: float, b: float) -> float:
     return math.remainder(b - a, math.tau)
 
 
+def half_turn_rad(one: Leg, out: Leg, long_mm: float) -> float:
+    """By how much an arc that bends as two legs do turns from its beginning onto its chord, rad; a quarter
+    turn where no such arc has so long a chord.
+    """
+    across = 0.25 * long_mm * (one.bends_on_per_mm + out.bends_on_per_mm)
+    return math.asin(min(max(across, -1.0), 1.0))
+
+
 def meet(incoming: Leg, outgoing: Leg) -> Meeting | None:
     """Distances (beyond the incoming leg's end, before the outgoing leg's) where they cross, mm, or None."""
     they_meet, s, u = _meet(incoming._line, outgoing._line)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.compiled import njit
-from morfax.motion.median import percentile
+from morfax.motion.median import NEARLY_ALL, percentile
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.program.against_ink.off_ink import EDGE
 from morfax.tracer.program.against_ink.own_ink import (
@@ -47,7 +47,7 @@ from morfax.tracer.tangles.pen import ink_at
 # times what all but one in twenty of a line's stations have: of lines that are ragged throughout, as in
 # prints, none has more. The least that tells, as of all that is in doubt, is thrice what any of 230 000
 # stations of right ways has, on lines of 2.7 to 10 pixels; most burrs of a line drawn by hand leave less
-RAGGED, MOST = 6.0, 95.0  # and which is meant, percent of the line
+RAGGED = 6.0
 # sides of a box, odd: in one so broad about it, other ink reaches as far as is looked at
 ROUND = 3
 
@@ -69,7 +69,7 @@ def _surely_beside(own: OwnInk) -> Iterator[BesideInk]:
         if over.max() < DOUBT.over:
             continue
         both = _both_at(own, station)
-        limit = max(DOUBT.over, RAGGED * percentile(both, MOST))
+        limit = max(DOUBT.over, RAGGED * percentile(both, NEARLY_ALL))
         for first, last in stretches_of(both > limit):
             worst = station[first + int(np.argmax(both[first:last]))]
             long_px = PLACES_PX * (1 + station[last - 1] - station[first])

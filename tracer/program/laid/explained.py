@@ -35,8 +35,8 @@ class Explained(NamedTuple):
 
 
 def explained(setup: Setup, lines: Sequence[Line]) -> Explained:
-    """All lines of a sheet as they explain the ink: those of a patch that is one outline as that, unless the
-    lines that were found leave less of its ink when they are mended.
+    """All lines of a sheet, or of a patch, as they explain the ink: those of a patch that is one outline as
+    that, unless the lines that were found leave less of its ink when they are mended.
 
     A patch that goes round several areas of paper is asked at once; another one if its lines leave some ink
     when they are mended.

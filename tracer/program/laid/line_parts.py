@@ -81,8 +81,8 @@ def back_along(line: Line) -> Line:
     return replace(line, xy_mm=line.xy_mm[::-1], led=line.led.turned_round(len(line.xy_mm)))
 
 
-def going(line: Line, direction: str | None) -> Line:
-    """A line that came round, in the direction that is asked for: one within a rim goes as that does."""
+def in_direction(line: Line, direction: str | None) -> Line:
+    """A line; one that came round in the direction that is asked for, whichever way its rim was felt."""
     if direction not in ("cw", "ccw") or not is_plain(line) or line.as_told:
         return line
     if (area_mm2(line.loop_mm) > 0) == (direction == "ccw"):
