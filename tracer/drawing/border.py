@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 
 from morfax.tracer.drawing.components import FRINGE_PX, INK, Patches, runs_of, strips
 from morfax.tracer.drawing.contrast import LEAST_STROKE_PX
-from morfax.tracer.drawing.even_lines import SPANNED
 from morfax.tracer.drawing.tiles import Tiles, paper_like
 
 # All limits below were chosen by trial on framed and badly cropped pictures.
 AT_EDGE = 0.005  # of the shorter side: ink as near to an edge, or as its own fringe is broad, is at it
+ALONG = 0.6  # of an edge along which there is ink: it is a border's
 MARGIN = 0.05  # of the shorter side: a border reaches no further into the picture
 
 Picture = NDArray[np.float32] | Tiles
@@ -60,7 +60,7 @@ def without_border(darkness: Picture, ink: float = INK) -> tuple[str, ...]:
     # 1. patches in the margin that lie along an edge
     borders, edges = np.zeros(patches.count, bool), set[str]()
     longer_px = patches.longer_sides
-    long_enough = longer_px >= SPANNED * min(darkness.shape)
+    long_enough = longer_px >= ALONG * min(darkness.shape)
     for patch in np.flatnonzero(long_enough & _are_in_margin(patches, darkness.shape)):
         along = _edges_along(patches, int(patch), bands)
         borders[patch] = bool(along)
@@ -96,16 +96,14 @@ def _bands(shape: tuple[int, ...]) -> list[_Band]:
 def _is_inked(darkness: Picture, band: _Band, ink: float) -> bool:
     """Whether there is ink along an edge, whatever it belongs to."""
     pixels = darkness[band.top : band.bottom, band.left : band.right]
-    return band.covered(pixels > ink) >= SPANNED
+    return band.covered(pixels > ink) >= ALONG
 
 
 def _edges_along(patches: Patches, patch: int, bands: list[_Band]) -> set[str]:
     """The edges along which a patch lies."""
     alone = patches.alone(patch)
     return {
-        band.edge
-        for band in bands
-        if band.covered(patches.painted(alone, *band[1:5])) >= SPANNED
+        band.edge for band in bands if band.covered(patches.painted(alone, *band[1:5])) >= ALONG
     }
 
 

@@ -36,7 +36,7 @@ BROADEST_MM = 0.6  # of a printed line
 OFF_PERIOD = 0.06  # of the period: a printed line is as near to its place
 PRESENT = 0.85  # of the lines that the period asks for
 SOFT_PX = 1.5  # beside a printed line: its soft edges
-SPANNED = 0.6  # of a line's length is inked, or of a sheet's edge by its border
+SPANNED = 0.6  # of a line's length is inked
 SPREAD = 0.5  # of the sheet's length and width: so far printed lines run
 SHADE = 0.02  # of ink's darkness: a printed line is so much darker than the paper beside it
 
