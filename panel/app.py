@@ -162,7 +162,7 @@ class _Pages:
         return JSONResponse({"option": option, "name": file.name})
 
     async def tile(self, request: Request) -> Response:
-        """A square of the sheet, or of its lines; nothing of a picture that has changed since it was asked for."""
+        """A square of the sheet, or of its lines; nothing where the picture has changed since."""
         bench, at = self._bench, request.path_params
         sources: dict[str, Any] = {"sheet": bench.picture, "lines": bench.line_map}
         if at["kind"] not in sources:
