@@ -8,7 +8,7 @@ from morfax.motion.arrays import Array
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.program.lines import selection
-from morfax.tracer.program.nets.open_ink import is_open
+from morfax.tracer.program.nets.open_ink import _ends_of_open, is_open
 from morfax.tracer.program.setup import Setup
 from tests.tracer.inked import WIDTH_MM, arc, inked, polyline
 
@@ -41,3 +41,14 @@ def test_a_patch_whose_end_faces_another_across_a_gap_is_not_open(
     begin = 30 + 0.7 + WIDTH_MM
     other = polyline((begin, 10), (begin + 12, 10))
     assert longest(TRUNK, other, gap_mm=crosses_mm) is is_so
+
+
+@pytest.mark.parametrize(
+    ("lines", "ends"),
+    [((TRUNK,), 2), ((TRUNK, BRANCH), 3), ((RING,), None), ((RING, BRANCH), None)],
+)
+def test_only_of_open_ink_the_ends_are_counted(
+    lines: tuple[Array, ...], ends: int | None
+) -> None:
+    setup = Setup(Sheet.of(inked(*lines, seed=2)))
+    assert _ends_of_open(setup, setup.sheet.stroke(0)) == ends
