@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from morfax.tracer.program.laid.line_parts import OF_LOOP, REACH
 from morfax.tracer.program.laid.smooth_ways import smooth_ways
-from morfax.tracer.program.laid.way_ink import LONGEST, OF_LOOP, WayInk
+from morfax.tracer.program.laid.way_ink import LONGEST, WayInk
 from tests.tracer.inked import WIDTH_MM, polyline
 from tests.tracer.program.laid.ways import run_along
 
@@ -58,3 +59,13 @@ def test_a_smooth_way_is_of_a_pen_as_broad_as_the_line(width_mm: float) -> None:
     one, other = np.column_stack([x, 0 * x]), np.column_stack([x, 0 * x + width_mm])
     both = smooth_ways(one, other, 2.0, width_mm, lambda *_: 0.0, may_exchange=False)
     assert both.one.half_mm == both.other.half_mm == pytest.approx(0.5 * width_mm)
+
+
+def test_only_places_near_to_what_was_laid_since_are_looked_at_again() -> None:
+    """All of them, where nothing was laid yet."""
+    ink, reach_mm = along(BAR, "ended"), REACH * WIDTH_MM
+    assert ink.are_near(None).all()
+    near = ink.are_near(np.array([[20.0, 5.0]]))
+    away_mm = np.abs(ink.way[:, 0] - 20.0)
+    assert near[away_mm < 0.99 * reach_mm].all() and near.any()
+    assert not near[away_mm > 1.01 * reach_mm].any()
