@@ -168,8 +168,7 @@ class Doubled(NamedTuple):
 def _second_mm(found: Mapping[int, Swelling], broad: Mapping[int, Flags]) -> float:
     """The width of a second pen, mm, by the stations of ink that is broader than the first; NaN if none."""
     some = [found[n].averaged[flags] for n, flags in broad.items()]
-    widths = np.concatenate([each[np.isfinite(each)] for each in some]) if some else np.empty(0)
-    return second_pen_of(widths, sum(len(each.known) for each in found.values()))
+    return second_pen_of([each[np.isfinite(each)] for each in some])
 
 
 def _of_the_pen(
