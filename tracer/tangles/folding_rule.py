@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
-from morfax.motion.polyline import area_mm2, evenly, length_mm
+from morfax.motion.polyline import area_mm2, evenly, length_mm, nearest_mm
 from morfax.tracer.sensing.leg import TURNS_BACK
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import bent_rule, beside_itself, distances
@@ -121,6 +121,21 @@ def along(way: Array, half_mm: float) -> Iterator[Rule]:
             kept.append(way)
     for each in reversed(kept):
         yield from _of_corners(each[0], each[-1], each[1:-1], half_mm)
+
+
+def by_tip(way: Array, tip_mm: Array, half_mm: float) -> Iterator[Rule]:
+    """Rules along a way (n, 2) mm that turn at a tip (x, y) mm beside it as well, in place of the piece that
+    is nearest to it or of the next.
+    """
+    for count in range(2, max(ROUNDED) + 2):
+        kept = _reduced(way, count)
+        pieces = [kept[k : k + 2] for k in range(len(kept) - 1)]
+        away_mm = [
+            nearest_mm(tip_mm[None], evenly(piece, 0.1 * half_mm))[0] for piece in pieces
+        ]
+        for k in np.argsort(away_mm)[:2].tolist():
+            corners_mm = np.vstack([kept[1 : k + 1], tip_mm[None], kept[k + 1 : -1]])
+            yield from _of_corners(kept[0], kept[-1], corners_mm, half_mm)
 
 
 def sharp(first_mm: Array, last_mm: Array, corners_mm: Array, half_mm: float) -> Rule:
