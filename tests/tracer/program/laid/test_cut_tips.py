@@ -10,6 +10,7 @@ from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.leaders import REDRAWN
 from morfax.tracer.program.against_ink.in_one_box import with_boxes
 from morfax.tracer.program.against_ink.own_ink import OwnInk
+from morfax.tracer.program.against_ink.unexplained import Unexplained
 from morfax.tracer.program.laid.cut_tips import with_tips
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.tangles import folding_rule
@@ -42,6 +43,20 @@ def test_a_tip_that_was_cut_is_laid(seed: int | None) -> None:
     assert nearest_mm(truth, line.places_mm).max() < OFF_MM
     assert nearest_mm(line.places_mm, truth).max() < OFF_MM
     assert REDRAWN in line.led.leaders, "the head runs there from memory"
+
+
+def test_of_two_strands_the_one_that_was_cut_is_laid() -> None:
+    """A tip within the ink of another side, which is told at that side."""
+    begin, far = (
+        ((4.0, 6.0), (34.2, 6.0)),
+        ((20.0, 27.0), (34.6, 27.0), (34.6, 3.0), (4.0, 3.0)),
+    )
+    drawn = polyline(*begin, (34.2, 16.8), (33.55, 16.0), *far, begin[0])
+    ran = polyline(*begin, (34.2, 15.9), (33.55, 16.0), *far, begin[0])
+    drawing, told = inked(drawn, seed=1), Unexplained((34.6, 16.4), 0.5, "beside")
+    (line,) = with_tips(Setup(drawing.sheet), OwnInk(drawing, [closed(ran)]), [told]).lines
+    truth = with_places(drawn, 0.01)
+    assert nearest_mm(truth, line.places_mm).max() < OFF_MM
 
 
 def test_a_way_on_its_ink_is_as_it_was() -> None:
