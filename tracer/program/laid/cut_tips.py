@@ -5,8 +5,8 @@
 
 What one box shows both of is no tick and no gap (see `in_one_box`). So the way may run further aside there
 than at a corner that the head cut a little (see `cut_corners`): a folding rule is laid by the ink between
-clean places on either side, along the way or by the tip of the ink that is left. Several strands may come by;
-it is laid in place of that of which it takes the fewest figures.
+clean places on either side, along the way or by the tip of the ink that is left: sharp, of three corners at
+the most. Several strands may come by; it is laid in place of that of which it takes the fewest figures.
 
 Signals: the sheet and lines, held against their ink, in; the lines with their tips out.
 
@@ -113,9 +113,8 @@ class _Tips(WayInk):
         own, ink = seen.own, seen.ink
         by_own = ink.best_drawn(distances.away_from(ink.places_mm, own))
         left_mm = ink.without_specks(ink.darkness - by_own > INK)
-        rules = list(folding_rule.along(own, ink.half_mm))
-        if len(left_mm):
-            rules += folding_rule.by_tip(own, _tip(own, left_mm, ink.half_mm), ink.half_mm)
+        tip_mm = _tip(own, left_mm, ink.half_mm) if len(left_mm) else None
+        rules = list(folding_rule.by_tip(own, tip_mm, ink.half_mm))
         rule = self.explained(ink, rules, of_bay=False)
         if rule is None or _crosses_itself(rule, self.step_mm):
             return None
