@@ -30,14 +30,11 @@ from morfax.tracer.head.course import SMOOTH
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.head.trail import Trail
 from morfax.tracer.ink.crossing_ink import WaysOn
-from morfax.tracer.ink.crossing_on_ink import (
-    is_explained,
-    is_one_with_a_tip,
-    told_by_ink,
-)
+from morfax.tracer.ink.crossing_on_ink import is_explained, is_one_with_a_tip, told_by_ink
 from morfax.tracer.ink.felt import usual_width_mm
 from morfax.tracer.ink.lifted import Loose, ends_in_ink_mm
 from morfax.tracer.ink.net import COVERED, Inner
+from morfax.tracer.ink.over_paper import without_paper
 from morfax.tracer.ink.partners import (
     CORNERED,
     Pair,
@@ -111,8 +108,8 @@ class Crossing:
             are_two = self._tips and not is_one_with_a_tip(self, (0, 1))
             return WaysOn(() if are_two else ((0, 1),), {})
         if vertices := self._vertices:
-            return WaysOn(tuple(sorted(vertices)), vertices)
-        return told_by_ink(self, WaysOn(tuple(self._by_turnings), {}))
+            return without_paper(self, WaysOn(tuple(sorted(vertices)), vertices))
+        return without_paper(self, told_by_ink(self, WaysOn(tuple(self._by_turnings), {})))
 
     def as_drawn(self, drawn: WaysOn) -> Crossing:
         """The same crossing with its lines going on in another way; one for each way to go on."""
