@@ -127,6 +127,31 @@ def test_kinks_are_where_a_way_turns_more_than_about_them() -> None:
     assert not len(kinks_of(evenly(arc((0, 0), 2.0), 0.05)))
 
 
+def crescent(x: float, y: float, radius_mm: float, from_deg: float) -> Points:
+    """A crescent about a place whose horns are 30 degrees sharp, the lower one so far up from the right."""
+    outer = arc((0, 0), radius_mm, from_deg, 360 - from_deg)
+    horn, heading = outer[0], math.radians(from_deg + 90 + 30)
+    inner_mm = horn[1] / math.sin(heading + math.pi / 2)
+    middle = horn[0] + abs(inner_mm) * math.cos(heading + math.pi / 2)
+    to_deg = math.degrees(math.atan2(horn[1], horn[0] - middle)) % 360
+    inner = arc((middle, 0), abs(inner_mm), 360 - to_deg, to_deg)
+    return np.vstack([outer, inner, outer[:1]]) + np.array([x, y])
+
+
+@pytest.mark.parametrize(("apart", "seed"), [(0.0, 2), (0.3, 1), (0.6, 4)])
+def test_a_horn_that_touches_a_ring_is_no_way_into_it(apart: float, seed: int) -> None:
+    """The head went from the horn round the ring and back: one closed line, and nothing was told."""
+    moon = crescent(10, 10, 5.0, 40.0)
+    heading = math.radians(40 + 90 + 180 + 15)  # of the upper horn, between its two sides
+    ahead = np.array([math.cos(heading), math.sin(heading)])
+    x, y = moon[0] + (apart * WIDTH_MM + 2.0) * ahead
+    ring = arc((float(x), float(y)), 2.0)
+    trace = trace_lines(inked(moon, ring, width_mm=WIDTH_MM, seed=seed), "contours")
+    assert [line.ending for line in trace.lines] == ["closed", "closed"]
+    for each in (moon, ring):
+        assert min(off_mm(line, each) for line in trace.lines) < 60 * UM
+
+
 def beam(left_mm: float, low_mm: float = 5) -> Points:
     """The outline of a beam of 12 mm whose flanges are 8 mm long and 1 mm high, from a place up."""
     half = [(-4, 0), (4, 0), (4, 1), (1.5, 2), (1.5, 10), (4, 11), (4, 12), (-4, 12)]
