@@ -49,7 +49,7 @@ ACROSS = (
 )  # of the way to where ink beside a line ends: it is dark all that way
 
 
-class Piece(NamedTuple):
+class MissedInk(NamedTuple):
     """A piece of ink beside all ways: where it is furthest from them, and how far it reaches; or, if it is as
     broad to both sides of a way, a place on the way, and for how long; mm.
     """
@@ -59,7 +59,7 @@ class Piece(NamedTuple):
     is_broad: bool = False
 
 
-def pieces_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Piece]:
+def pieces_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[MissedInk]:
     """The ink, beside all ways, of the patches of those of some lines that must account for all of theirs."""
     whole = _accountable(sheet, lines)
     if not whole:
@@ -104,7 +104,7 @@ class _Runs(NamedTuple):
         far = away_mm.max(axis=0) > far_mm
         return cls(own[far], ends[:, far], away_mm[:, far], wide_mm[far], far_mm[far])
 
-    def pieces(self, sheet: Sheet, which: NDArray[np.bool_]) -> Iterator[Piece]:
+    def pieces(self, sheet: Sheet, which: NDArray[np.bool_]) -> Iterator[MissedInk]:
         """Those of some that lie together, where each reaches furthest."""
         patches, own = sheet.patches, self.numbers[which]
         ends, away_mm = self.ends_mm[:, which], self.away_mm[:, which]
@@ -113,7 +113,7 @@ class _Runs(NamedTuple):
             mine = np.flatnonzero(group == number)
             furthest = np.unravel_index(np.argmax(away_mm[:, mine]), (2, len(mine)))
             x, y = ends[:, mine][furthest].tolist()
-            yield Piece((x, y), float(away_mm[:, mine].max()))
+            yield MissedInk((x, y), float(away_mm[:, mine].max()))
 
 
 class _BroadInk(NamedTuple):
@@ -155,14 +155,14 @@ class _BroadInk(NamedTuple):
         )
         return np.asarray((of > 0) & (2 * so_many >= of))
 
-    def stretches(self, which: NDArray[np.bool_], width_mm: float) -> Iterator[Piece]:
+    def stretches(self, which: NDArray[np.bool_], width_mm: float) -> Iterator[MissedInk]:
         """The stretches of the ways beside which some of the runs lie."""
         beside = self.on_way[self.is_so & self.is_broader & which[self.run]]
         cluster = clusters(beside, ABOUT_WIDTHS * width_mm)
         for number in range(cluster.max(initial=-1) + 1):
             own = beside[cluster == number]
             x, y = own[len(own) // 2].tolist()
-            yield Piece((x, y), float(np.hypot(*np.ptp(own, axis=0))), True)
+            yield MissedInk((x, y), float(np.hypot(*np.ptp(own, axis=0))), True)
 
 
 def _accountable(sheet: Sheet, lines: Sequence[Line]) -> list[Line]:

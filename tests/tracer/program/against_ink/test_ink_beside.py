@@ -10,7 +10,7 @@ import pytest
 from morfax.motion.polyline import at_lengths, length_mm
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.following.line import Line
-from morfax.tracer.program.against_ink.ink_beside import Piece, pieces_beside
+from morfax.tracer.program.against_ink.ink_beside import MissedInk, pieces_beside
 from tests.tracer.inked import Points, arc, tick, together
 
 WIDTH_MM = 0.5
@@ -20,7 +20,7 @@ CENTRE, RADIUS_MM = (20.0, 20.0), 12.0
 PIXEL_MM = 0.17
 
 
-def beside(*more: tuple[Points, float]) -> list[Piece]:
+def beside(*more: tuple[Points, float]) -> list[MissedInk]:
     """What is beside a way round a circle, on which more is drawn by some pens."""
     circle = arc(CENTRE, RADIUS_MM)
     drawing = together((circle, WIDTH_MM), *more, seed=1)
