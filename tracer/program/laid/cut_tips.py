@@ -32,6 +32,7 @@ from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.line_parts import is_clear, is_plain
 from morfax.tracer.program.laid.news import near_box
 from morfax.tracer.program.laid.way_ink import MOST_LEFT, BayInk, Relaid, WayInk
+from morfax.tracer.program.lines.stubs import stubs
 from morfax.tracer.program.setup import Setup
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import distances, folding_rule
@@ -77,7 +78,11 @@ class _Tips(WayInk):
             return self.along([])
         near = near_box(self.places, *bounds(self.way), self.line.width_mm)
         bays = [bay for place in near if (bay := self._bay(place)) is not None]
-        return self.along(bays)
+        return self.along([bay for bay in bays if not self._is_stub(bay)])
+
+    def _is_stub(self, bay: Bay) -> bool:
+        """Whether the way would go out along a tick or a burr and come back."""
+        return len(stubs(self.along([bay]).line)) > len(stubs(self.line))
 
     def _bay(self, place: Unexplained) -> Bay | None:
         """The rule about a place that takes least, if one explains its ink."""

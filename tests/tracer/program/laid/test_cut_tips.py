@@ -18,12 +18,12 @@ from tests.tracer.inked import Points, inked, polyline
 from tests.tracer.program.against_ink.test_own_ink import closed
 
 OFF_MM = 0.05  # two thirds of a pixel; the tip is 0.5 mm off a way that cuts it
-PLATE = (4.0, 4.0), (44.0, 4.0), (44.0, 24.0)
+PLATE = (4.0, 4.0), (44.0, 4.0)
 
 
 def plate(*upper_side: tuple[float, float]) -> Points:
     """A plate with some places on its upper side."""
-    return polyline(*PLATE, *upper_side, (4, 24), (4, 4))
+    return polyline(*PLATE, (44, 24), *upper_side, (4, 24), (4, 4))
 
 
 DRAWN = plate((24, 24), (20.0, 24.5), (20.4, 23.7))
@@ -63,6 +63,12 @@ def test_a_way_on_its_ink_is_as_it_was() -> None:
     drawing = inked(DRAWN, polyline((30, 24), (30, 25)), seed=1)
     own = OwnInk(drawing, [closed(DRAWN)])
     assert with_tips(Setup(drawing.sheet), own, with_boxes(own, ())) is own
+
+
+def test_no_way_is_laid_out_along_a_tick_and_back() -> None:
+    drawing = inked(plate(), polyline((30, 24), (30, 24.5)), seed=1)
+    own, told = OwnInk(drawing, [closed(plate())]), Unexplained((30.0, 24.2), 0.5, "beside")
+    assert with_tips(Setup(drawing.sheet), own, [told]) is own
 
 
 def test_rules_by_a_tip_turn_there() -> None:
