@@ -7,7 +7,8 @@
                                                       POST /own/OPTION/NAME   a card, settings, a machine
     WS   /watch               news, at most 30 a second
 
-Whatever is refused is answered in one line of words.
+Whatever is refused is answered in one line of words. A tile or a result that is gone by the time it is asked
+for is no fault: it is answered by 204, without content.
 """
 
 from __future__ import annotations
@@ -161,11 +162,14 @@ class _Pages:
         return JSONResponse({"option": option, "name": file.name})
 
     async def tile(self, request: Request) -> Response:
-        """A square of the sheet, or of its lines."""
+        """A square of the sheet, or of its lines; nothing where the picture has changed since."""
         bench, at = self._bench, request.path_params
-        source: Any = {"sheet": bench.picture, "lines": bench.line_map}.get(at["kind"])
+        sources: dict[str, Any] = {"sheet": bench.picture, "lines": bench.line_map}
+        if at["kind"] not in sources:
+            raise HTTPException(404, "there is no such picture")
+        source = sources[at["kind"]]
         if source is None or at["picture"] != bench.picture_id:
-            raise HTTPException(404, "there is no such picture any more")
+            return Response(status_code=HTTPStatus.NO_CONTENT)
         try:
             tile = await asyncio.to_thread(source.tile, at["level"], at["column"], at["row"])
         except IndexError:
@@ -173,9 +177,9 @@ class _Pages:
         return Response(tile, media_type="image/png")
 
     async def result(self, request: Request) -> Response:
-        """The curves of the last run."""
+        """The curves of the last run; nothing where another run has begun since they were asked for."""
         if self._bench.kept.result is None:
-            raise HTTPException(404, "there is no result yet")
+            return Response(status_code=HTTPStatus.NO_CONTENT)
         return JSONResponse(self._bench.kept.result)
 
     async def file(self, request: Request) -> Response:

@@ -74,11 +74,12 @@ SAID: dict[Kind, tuple[tuple[str, str], str]] = {
         "ink of spikes that are narrower than two lines tells little of them; look there in --picture, and "
         "draw it with a finer pen",
     ),
-    # strokes within ink that is as broad as two lines
+    # a way within ink that is as broad as two lines or more
     "broad": (
         ("piece of ink is", "pieces of ink are"),
-        "{many} about as broad as two lines, the longest {mm:.1f} mm at {at}: if it is a slot, a notch or a "
-        "tongue, its two sides are not followed; draw it with a finer pen, or scan at a higher resolution",
+        "{many} as broad as two lines or more, the longest {mm:.1f} mm at {at}: if a broader pen has "
+        "drawn it, the path is right; if it is a slot, a notch or a tongue, its two sides are not followed: "
+        "draw it with a finer pen, or scan at a higher resolution",
     ),
     # strokes that leave ink, or go over paper, where lines meet
     "off": (

@@ -38,6 +38,7 @@ def _of_line_width(width_mm: float) -> Iterator[str]:
         yield (
             f"the lines are {width_mm:.2g} mm wide by this scale; pens draw {THINNEST_MM:g} to "
             f"{BROADEST_MM:g} mm: check the scale (--dpi, --width, --known)"
+            + (", or give --edge if they are filled shapes" if width_mm > BROADEST_MM else "")
         )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from morfax.motion.arrays import NOT_ZERO
 from morfax.motion.long_array import one_in
+from morfax.motion.median import median
 from morfax.motion.usual import THINNED
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ class WhoLed:
     lengths_mm: tuple[float, ...]
     runs_mm: tuple[tuple[int, Array], ...] = ()
     of_lines: Mapping[int, float] = field(default_factory=dict)
+    width_mm: float = 0.0  # of most lines
 
     @classmethod
     def along(cls, trace: Trace) -> WhoLed | None:
@@ -56,7 +58,8 @@ class WhoLed:
         of_lines = {
             line.number: share_of_cell(mm) for line, mm in zip(lines, each_mm, strict=True)
         }
-        return cls(tuple(lengths_mm.tolist()), tuple(runs), of_lines)
+        width_mm = median(np.array([line.width_mm for line in lines]))
+        return cls(tuple(lengths_mm.tolist()), tuple(runs), of_lines, width_mm)
 
     @property
     def cell_share(self) -> float:
@@ -83,12 +86,19 @@ class WhoLed:
 
     def remarks(self) -> Iterator[str]:
         """A remark if the cell led less than it should."""
+        from morfax.jobs.remarks.scale_doubts import BROADEST_MM
+
         share = self.cell_on_lines_share
         if share < LEAST_CELL_SHARE:
+            helps = (
+                f"; if lines {self.width_mm:.1f} mm wide are filled shapes, --edge follows their outlines"
+                if self.width_mm > BROADEST_MM
+                else ", or scan at a higher resolution"
+            )
             yield (
                 f"the swinging cell led the head only {100 * share:.0f} % of the way between corners and"
-                " crossings, places felt ahead led the rest: --picture shows where; check the path there, or"
-                " scan at a higher resolution"
+                " crossings, places felt ahead led the rest: --picture shows where; check the path there"
+                f"{helps}"
             )
 
 

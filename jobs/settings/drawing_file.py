@@ -15,6 +15,7 @@ from morfax.jobs.settings import correction_settings, flattening
 from morfax.jobs.settings.correction_settings import CorrectionSettings
 from morfax.jobs.settings.flattening import FlattenSettings
 from morfax.jobs.settings.line_settings import LineSettings
+from morfax.jobs.settings.on_pages import of_page
 from morfax.jobs.wrong_use import WrongUse
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ class DrawingFile:
         if made is not None:  # a copy would measure its ink once more
             drawing = replace(drawing, flattening=made)
         for note in drawing.notes:
-            listener.note(note)
+            listener.note(of_page(note, drawing))
         return self._corrected(drawing, scan, listener)
 
     def for_lines(self, line: LineSettings) -> DrawingFile:

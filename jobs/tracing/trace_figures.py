@@ -22,7 +22,7 @@ UNEXPLAINED: dict[Kind, str] = {
     "bare": "way without ink",
     "beside": "way beside its ink",
     "crossed": "way that crosses itself",
-    "broad": "strokes within ink as broad as two lines",
+    "broad": "way within ink as broad as two lines or more",
     "off": "strokes off their ink",
     "pale": "pixels too large to tell",
 }

@@ -15,7 +15,6 @@ from morfax.jobs.listener import never_back
 from morfax.jobs.remarks.many_pieces import of_many_pieces
 from morfax.jobs.remarks.on_contours import of_around, of_contouring, of_open, of_order
 from morfax.jobs.remarks.on_edges import of_picture_edge
-from morfax.jobs.remarks.on_pages import fault_of_page, of_page
 from morfax.jobs.remarks.on_reference import of_reference, of_zero
 from morfax.jobs.remarks.remarks import of_cutter, remarks
 from morfax.jobs.remarks.stub_lines import StubLines
@@ -23,6 +22,7 @@ from morfax.jobs.remarks.two_lines import TwoLines
 from morfax.jobs.remarks.who_led import WhoLed
 from morfax.jobs.settings import correction_settings
 from morfax.jobs.settings.depths import of_tabs
+from morfax.jobs.settings.on_pages import fault_of_page, of_page
 from morfax.jobs.settings.zero import ZeroOnSheet
 from morfax.jobs.tracing.skips import gap_across_skips, of_pieces
 from morfax.jobs.tracing.traced import Traced

@@ -7,6 +7,12 @@ import { drawErrors, drawMachine, drawWorst, errorPaths, errorScale, showLegend 
 
 const by = (id) => document.getElementById(id);
 
+// None where another run has begun since; a server that ends in the middle throws.
+async function lastResult() {
+  const answer = await fetch("/result");
+  return answer.status === 200 ? answer.json() : null;
+}
+
 export class Outcome {
   // onNew() hears that there is another result, onOverride(share) that the machine is to run at another feed
   constructor(sheet, goTo, onNew, onOverride) {
@@ -26,8 +32,7 @@ export class Outcome {
     by("stale").hidden = !state.result || state.result.is_of_now;
     if (now === this.shown) return;
     this.shown = now;
-    const answer = state.result ? await fetch("/result").catch(() => null) : null;
-    const taken = answer?.ok ? await answer.json() : null;
+    const taken = state.result ? await lastResult().catch(() => null) : null;
     if (now !== this.shown) return;
     const before = this.taken, same = taken && this.result && JSON.stringify([taken.figures, taken.override]) === JSON.stringify([this.result.figures, this.result.override]);
     const ranAgain = taken && this.result && taken.override !== this.result.override;

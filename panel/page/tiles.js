@@ -9,6 +9,12 @@ export function colourOf(number) {
   return COLOURS[(number - 1) % COLOURS.length];
 }
 
+// None of a sheet that has changed since; a server that ends in the middle throws.
+async function squareAt(address) {
+  const answer = await fetch(address);
+  return answer.status === 200 ? answer.blob() : null;
+}
+
 export class Tiles {
   constructor(size, onLoaded) {
     this.size = size;
@@ -63,10 +69,10 @@ export class Tiles {
   }
 
   async load(tile, kind, level, column, row) {
-    const answer = await fetch(`/tile/${this.id}/${kind}/${level}/${column}/${row}`).catch(() => null);
-    if (!answer?.ok) return;
+    const square = await squareAt(`/tile/${this.id}/${kind}/${level}/${column}/${row}`).catch(() => null);
+    if (!square) return;
     const options = { premultiplyAlpha: "none", colorSpaceConversion: "none" };
-    const image = await createImageBitmap(await answer.blob(), options);
+    const image = await createImageBitmap(square, options);
     if (tile.dropped) return image.close();
     if (kind === "lines") {
       const canvas = new OffscreenCanvas(image.width, image.height);

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import morfax as package
-from morfax.jobs.remarks.on_pages import FINER, fault_of_page, of_page
+from morfax.jobs.settings.on_pages import FINER, fault_of_page, of_page
 from morfax.motion.faults import LineFault
 from morfax.tracer.drawing.drawing import Drawing
 from tests.console.conftest import Morfax
@@ -40,3 +40,13 @@ def test_a_page_on_which_no_line_can_be_begun_is_to_be_read_finer(
     square = written(here / "square.pdf", "50 50 3 3 re f", (100.0, 100.0))
     answer = morfax("trace", square, "--lines", "all", "--path", "square.csv")
     assert "no line can be begun" in answer.fault and "give --dpi 1200" in answer.fault
+
+
+def test_what_is_told_while_a_page_is_opened_is_that_page(here: Path, morfax: Morfax) -> None:
+    """A frame of 0.8 mm, drawn filled, of a page that is read at 40 dpi: little more than a pixel."""
+    page = written(
+        here / "thin.pdf", "20 20 60 60 re 20.8 20.8 58.4 58.4 re f*", (100.0, 100.0)
+    )
+    answer = morfax("trace", page, "--dpi", "40", "--path", "thin.csv")
+    assert "pixels wide" in answer.err and "give --dpi" in answer.err
+    assert "scan at" not in answer.err

@@ -78,16 +78,22 @@ def looked_at(chromium: Any, server: Server) -> Iterator[Any]:
     complaints = list[str]()
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on(
-        "console", lambda said: complaints.append(said.text) if said.type == "error" else None
+        "console",
+        lambda said: (
+            complaints.append(f"{said.text} {said.location['url']}")
+            if said.type == "error"
+            else None
+        ),
     )
     opened(page, server)
     yield page
     page.close()
-    assert not [
+    told = [
         text
         for text in complaints
         if "ERR_CONNECTION_REFUSED" not in text and "409" not in text
     ]
+    assert not told, f"the page complained: {told}"
 
 
 def opened(page: Any, server: Server) -> None:

@@ -192,6 +192,24 @@ def test_a_gap_of_6_mm_is_bridged_and_the_program_is_the_commands(
         assert made == (folder / name).read_bytes(), name
 
 
+def test_a_tile_that_is_asked_for_when_another_drawing_lies_there_is_no_fault(
+    page: Any, tmp_path: Path
+) -> None:
+    """A request that waits in a busy browser until the sheet has changed."""
+    waiting = list[Any]()
+    page.route("**/tile/**", lambda tile: tile.continue_() if waiting else waiting.append(tile))
+    page.reload()
+    soon(lambda: bool(page.wait_for_timeout(50) or waiting))
+    ring_with_a_gap(tmp_path / "later.png")
+    page.set_input_files("#upload", tmp_path / "later.png")
+    page.wait_for_selector("#title:has-text('later.png')")
+    page.wait_for_selector("#lines li:has-text('open')", timeout=RUN_MS)
+    with page.expect_response(waiting[0].request.url) as answered:
+        waiting[0].continue_()
+    assert answered.value.status == 204
+    # the page itself is asked once more when it closes: it has not complained
+
+
 def test_a_reload_a_second_page_and_a_killed_server_lose_nothing(
     chromium: Any, tmp_path: Path
 ) -> None:

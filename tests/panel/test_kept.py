@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 from typing import Any
 
@@ -84,15 +85,23 @@ def test_the_last_result_comes_back_with_its_words_and_nonsense_is_none(tmp_path
     assert again.result is None
 
 
+def shown(page: TestClient, bench: Bench) -> None:
+    """Wait until the picture is there, which is read beside the answers, and has its number."""
+    late_s = time.monotonic() + 60
+    while bench.picture is None and time.monotonic() < late_s:
+        page.get("/state")
+
+
 def test_the_numbers_of_the_lines_that_were_seen_are_there_as_tiles(
     page: TestClient, bench: Bench
 ) -> None:
     numbers = np.zeros((4, 5), np.uint16)
     numbers[2] = 300
     seen = {"numbers": numbers, "picture": None, "figures": {"drawing": "cam.png"}}
+    shown(page, bench)
     bench.look()
     at = f"/tile/{bench.picture_id}/lines/0/0/0"
-    assert page.get(at).status_code == 404
+    assert page.get(at).status_code == 204
     bench.heard({"say": "done", "number": bench._job, "kind": "lines", "result": seen})
     answer = page.get(f"/tile/{bench.picture_id}/lines/0/0/0")
     tile = cv2.imdecode(np.frombuffer(answer.content, np.uint8), cv2.IMREAD_UNCHANGED)
@@ -101,8 +110,24 @@ def test_the_numbers_of_the_lines_that_were_seen_are_there_as_tiles(
     # looked at again in vain: the numbers are of no sheet that is there
     failed = {"say": "failed", "number": bench._job, "kind": "lines", "place_mm": None}
     bench.heard({**failed, "text": "no line"})
-    assert page.get(f"/tile/{bench.picture_id}/lines/0/0/0").status_code == 404
+    assert page.get(f"/tile/{bench.picture_id}/lines/0/0/0").status_code == 204
     assert page.get("/state").json()["state"]["sheet"] is None
+
+
+def test_what_is_gone_by_the_time_it_is_asked_for_is_answered_without_content(
+    page: TestClient, bench: Bench
+) -> None:
+    """A fault would stand in the console of a page that has asked a moment too late."""
+    assert page.get("/result").status_code == 204
+    bench.kept.result = {"program": None}
+    assert page.get("/result").json() == {"program": None}
+    shown(page, bench)
+    now = bench.picture_id
+    assert page.get(f"/tile/{now}/sheet/0/0/0").status_code == 200
+    assert page.get(f"/tile/{now - 1}/sheet/0/0/0").status_code == 204
+    # what never was is one
+    assert page.get(f"/tile/{now}/sheet/9/0/0").status_code == 404
+    assert page.get(f"/tile/{now}/nothing/0/0/0").status_code == 404
 
 
 def test_a_page_that_looks_on_is_woken_by_each_step_and_each_word_of_the_worker(

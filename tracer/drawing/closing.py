@@ -36,6 +36,7 @@ BEYOND = 2.0  # standard deviations of the lens: so far beyond the edges their s
 STROKE_PX = 3  # of the strokes from edge to edge, which are a pixel apart
 TOLD = 3  # places that are told one by one
 ROOM = 1.15  # times the least distance: what is printed so large is followed
+LONGEST_MM = 1189.0  # of paper: A0 (ISO 216)
 TIP_PERCENT = 10.0
 NARROWS = 0.5  # of the usual distance: a slit that is nearer somewhere narrows to a tip
 # darkness of a streak, its depth in the shape (standard deviations of the lens), its least length; by trial
@@ -133,8 +134,8 @@ def streaks_of(share: Grey, softness_px: float, pitch_mm: float) -> list[Closed]
     return sorted(found, key=lambda closed: -closed.length_mm)
 
 
-def note(closed: list[Closed], softness_mm: float) -> str:
-    """What the operator should know of places that were closed across, and what to do."""
+def note(closed: list[Closed], softness_mm: float, sheet_mm: float) -> str:
+    """What the operator should know of places that were closed across, and what to do, on a sheet so long."""
     told = "; ".join(map(str, closed[:TOLD]))
     more = f"; and {len(closed) - TOLD} more places" if len(closed) > TOLD else ""
     least_mm = CLEAR * softness_mm
@@ -146,6 +147,13 @@ def note(closed: list[Closed], softness_mm: float) -> str:
     if not even:
         return f"{text}; only a finer scan, or a larger print, can show their shape"
     times = math.ceil(10 * ROOM * least_mm / min(even)) / 10
+    if times * sheet_mm > LONGEST_MM:
+        blur_mm = float(np.median([each.length_mm for each in closed]))
+        return (
+            f"{text}; no paper is so large that a print of it would part them: they are texture of the shape"
+            f" or the paper; fill the shape evenly, or blur the picture by {blur_mm:.1f} mm"
+            f" (Gaussian, standard deviation) in a picture editor, and trace that"
+        )
     return (
         f"{text}; to follow them, print the shape {times:g} times as large and give --scale"
         f" {1 / times:.4g}"

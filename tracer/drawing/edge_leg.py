@@ -37,10 +37,8 @@ class EdgeLeg(NamedTuple):
         along = unit(origin - end)
         out = leg - origin
         u, v = out @ along, out @ left_of(along)
-        from numpy.polynomial import polynomial
-
-        straight, bent = (polynomial.polyfit(u, v, degree) for degree in (1, 2))
-        off = [float(np.std(v - polynomial.polyval(u, each))) for each in (straight, bent)]
+        straight, bent = fitted(u, v)
+        off = [float(np.std(v - np.polyval(each[::-1], u))) for each in (straight, bent)]
         return cls(origin, along, bent if off[1] < BENT * off[0] else straight)
 
     def beside(self, place: Array) -> tuple[Array, Array]:
@@ -67,3 +65,22 @@ class EdgeLeg(NamedTuple):
             if np.hypot(*beyond) > reach or beyond @ leg.along < 0:
                 return None
         return place, t, w
+
+
+def fitted(u: Array, v: Array) -> tuple[Array, Array]:
+    """The straight line and the parabola through places, each as its powers' shares, from the lowest on.
+
+    Of polynomials that stand at right angles on these places each share is a quotient: there are thousands of
+    legs on a rough edge.
+    """
+    middle = float(u.mean())
+    first = u - middle
+    square = float(first @ first)
+    slope = float(first @ v) / square
+    straight = np.array([float(v.mean()) - slope * middle, slope])
+    # the second: first² - skew · first - spread
+    spread, skew = square / len(u), float(first @ first**2) / square
+    second = first * first - skew * first - spread
+    bend = float(second @ v) / float(second @ second)
+    bent = bend * np.array([middle * middle + skew * middle - spread, -2 * middle - skew, 1.0])
+    return straight, bent + np.append(straight, 0.0)

@@ -18,6 +18,11 @@ from functools import lru_cache
 
 import numpy as np
 
+# standard deviations from the place, and what the lens sees there of the place, by the rule of trapezoids
+AWAY = np.linspace(-5, 5, 1001)
+WEIGHTS = np.exp(-0.5 * AWAY**2) * (AWAY[1] - AWAY[0]) / math.sqrt(2 * math.pi)
+WEIGHTS[[0, -1]] *= 0.5
+
 
 @lru_cache(maxsize=4096)
 def way_inside(angle: float) -> float:
@@ -44,10 +49,10 @@ def _seen(angle: float, radius: float, way: float) -> float:
 
     half = angle / 2
     middle = radius / math.sin(half)
-    x = np.linspace(way - 5, way + 5, 1001)
-    on_leg = np.maximum(x, 0) * math.tan(half)
-    on_round = np.sqrt(np.maximum(radius**2 - (x - middle) ** 2, 0))
-    on_round = np.where(x < middle - radius, 0, on_round)
-    across = np.where(x < middle * math.cos(half) ** 2, on_round, on_leg)
-    seen = erf(across / math.sqrt(2)) * np.exp(-0.5 * (x - way) ** 2)
-    return float(np.trapezoid(seen, x)) / math.sqrt(2 * math.pi)
+    x = way + AWAY
+    across = np.maximum(x, 0) * math.tan(half)
+    if radius:
+        on_round = np.sqrt(np.maximum(radius**2 - (x - middle) ** 2, 0))
+        on_round[x < middle - radius] = 0
+        across = np.where(x < middle * math.cos(half) ** 2, on_round, across)
+    return float(erf(across / math.sqrt(2)) @ WEIGHTS)

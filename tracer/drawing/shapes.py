@@ -95,7 +95,7 @@ def outlined(grey: NDArray[Any], pitch_mm: float) -> Outlined:
         sharp, softness_px, notes = _edges(share, pitch_mm)
     closed += streaks_of(share, softness_px, pitch_mm)
     if closed:
-        notes = (*notes, note(closed, softness_px * pitch_mm))
+        notes = (*notes, note(closed, softness_px * pitch_mm, max(share.shape) * pitch_mm))
     notes = (*notes, *_of_tips(sharp, softness_px, share.shape, pitch_mm))
     # 2. where they are, as a line
     times = finer(sharp, share.shape, pitch_mm)

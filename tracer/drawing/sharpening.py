@@ -195,7 +195,7 @@ def _corner(
     """
     at, dense = room.at, softness_px / FINE_PX
     # 1. feel the legs, from further away where the corner that they make is narrow or round
-    fit, angle, touch = None, math.pi / 2, 0.0
+    fit, angle, touch, felt = None, math.pi / 2, 0.0, None
     for _ in range(TRIES):
         clear = FADES / max(math.sin(min(angle, math.pi / 2)), 0.2)
         away = max(clear, touch + CLEAR_OF_ROUND) * dense
@@ -204,10 +204,11 @@ def _corner(
         ]
         if min(ends) - away < SHORTEST_LEG * dense:
             break
-        legs = (
-            EdgeLeg.felt(places, at, -away, -ends[0]),
-            EdgeLeg.felt(places, at, away, ends[1]),
-        )
+        before, after = (round(-away), round(-ends[0])), (round(away), round(ends[1]))
+        if (before, after) == felt:  # the legs of the try before, and so of all to come
+            break
+        felt = before, after
+        legs = EdgeLeg.felt(places, at, *before), EdgeLeg.felt(places, at, *after)
         first, last = max(0, round(at - away)), min(len(places) - 1, round(at + away))
         fit = _fit(places[first : last + 1], legs, softness_px)
         # legs that do not meet stand on the round of a narrow tip

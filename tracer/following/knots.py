@@ -21,8 +21,8 @@ stops are read off the way when it is whole, so a told stop needs no knot: the r
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Hashable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Hashable
+from contextlib import AbstractContextManager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
@@ -31,6 +31,7 @@ import cv2
 import numpy as np
 
 from morfax.motion.arrays import Array
+from morfax.motion.held import held
 from morfax.tracer.corrections.on_sheet import REACH_MM, REACH_WIDTHS, TurnAt
 from morfax.tracer.drawing.drawing import Darkness, Drawing
 from morfax.tracer.drawing.tiles import Tiles
@@ -203,14 +204,9 @@ def memory() -> Memory | None:
     return _MEMORY.get()
 
 
-@contextmanager
-def remembering(kept: Memory) -> Iterator[None]:
+def remembering(kept: Memory) -> AbstractContextManager[None]:
     """Have the runs of the head from here on remembered, and those that are known replayed."""
-    before = _MEMORY.set(kept)
-    try:
-        yield
-    finally:
-        _MEMORY.reset(before)
+    return held(_MEMORY, kept)
 
 
 def _reach_mm(head: Follower) -> float:

@@ -29,7 +29,7 @@ from morfax.tracer.sensing.leg import Leg
 MEMORY_MM = 8.0  # how far back the rings know the way in: more than they grow
 ROOM = 1024  # places to begin with
 BOXED = 256  # places to a box: 7 mm of travel
-CHORD = 4  # places on either side, that a heading is taken over
+CHORD = 4  # places that a heading is taken over
 MOSTLY = 0.5  # of a leg's first third: so many of its places
 
 

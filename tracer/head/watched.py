@@ -12,10 +12,11 @@ thread in which `watching` was entered, and in no other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, Protocol
+
+from morfax.motion.held import held
 
 if TYPE_CHECKING:
     from morfax.motion.arrays import Array
@@ -46,11 +47,6 @@ def watcher() -> Watcher | None:
     return _WATCHER.get()
 
 
-@contextmanager
-def watching(who: Watcher) -> Iterator[None]:
+def watching(who: Watcher) -> AbstractContextManager[None]:
     """Have the heads that are put down from here on watched."""
-    before = _WATCHER.set(who)
-    try:
-        yield
-    finally:
-        _WATCHER.reset(before)
+    return held(_WATCHER, who)

@@ -38,7 +38,14 @@ from morfax.tracer.ink.nib import (
     what_swells,
 )
 from morfax.tracer.ink.run import Run
-from morfax.tracer.ink.swelling import TWO, Swelling, pen_of, pen_of_hollow, stands_out
+from morfax.tracer.ink.swelling import (
+    TWO,
+    Swelling,
+    pen_of,
+    pen_of_hollow,
+    second_pen_of,
+    stands_out,
+)
 from morfax.tracer.limits import AS_WIDE, CLEAR_WIDTHS, WIDER
 
 Flags = NDArray[np.bool_]
@@ -77,13 +84,15 @@ class Doubled(NamedTuple):
     """The pen's width, mm, and the stretches that two lines share: which of the stations of each.
 
     Short pieces of the same lines are `cut` by others that cross them. Where it is not sure that they are two
-    they are run once, and told if a place along them looks so.
+    they are run once, and told if a place along them looks so. `second_mm` is the width of a second, broader
+    pen, if there is one.
     """
 
     pen_mm: float = math.nan
     stations: dict[int, Flags] = {}  # noqa: RUF012 - a NamedTuple's default, never written to
     cut: frozenset[int] = frozenset()
     is_sure: bool = True
+    second_mm: float = math.nan
 
     @classmethod
     def of(
@@ -118,7 +127,8 @@ class Doubled(NamedTuple):
         spreads = {n: spread(found[n].averaged) for n in broad}
         steps = {n: sure.step_mm / median(found[n].known) for n in broad}
         even = {n for n in broad if spreads[n] <= max(EVEN, steps[n])}
-        if _are_most(felt, even, broad):
+        second_mm = _second_mm(found, broad)
+        if _are_most(felt, even, broad) or second_mm > 0:
             swell = {n for n in broad if spreads[n] > max(SWELLS, steps[n])}
         else:
             swell = {n for n in broad if spreads[n] > EVEN}
@@ -128,7 +138,14 @@ class Doubled(NamedTuple):
         if ink == SwellingKind.EITHER:
             told = {n: stations[n] for n in stations if like_two_lines(found[n], pen_mm)}
             return cls(pen_mm, told, is_sure=False)
-        return cls(pen_mm, stations, _cut(felt, patch_of, swell, pen_mm))
+        return cls(pen_mm, stations, _cut(felt, patch_of, swell, pen_mm), second_mm=second_mm)
+
+    def is_second(self, run: Run) -> bool:
+        """Whether a stretch is a line of the second pen: about as broad as that all along."""
+        known = run.widths_mm[np.isfinite(run.widths_mm)]
+        if not self.second_mm > 0 or not len(known):
+            return False
+        return abs(median(known) / self.second_mm - 1) < AS_WIDE and spread(known) <= SWELLS
 
     def length_mm(self, felt: Sequence[Run], number: int) -> float:
         """The length of the ink of a stretch that two lines share, mm."""
@@ -146,6 +163,12 @@ class Doubled(NamedTuple):
             if end_mm < FROM_ENDS * self.pen_mm:
                 found.add(n)
         return found
+
+
+def _second_mm(found: Mapping[int, Swelling], broad: Mapping[int, Flags]) -> float:
+    """The width of a second pen, mm, by the stations of ink that is broader than the first; NaN if none."""
+    some = [found[n].averaged[flags] for n, flags in broad.items()]
+    return second_pen_of([each[np.isfinite(each)] for each in some])
 
 
 def _of_the_pen(

@@ -54,6 +54,7 @@ def solved(sheet: FeltSheet, told: Told | None = None) -> Junctions:
             stretch: width_mm
             for n, stretch in enumerate(_heard(lines, told, done, quarter))
             if stretch not in parted | bare
+            and not sheet.doubled.is_second(sheet.felt[stretch])
             and (width_mm := junctions.single_mm(n, _narrower_mm(sheet, stretch))) is not None
         }
         too_long = parted.intersection(lines) - two - bare
@@ -75,7 +76,21 @@ def solved(sheet: FeltSheet, told: Told | None = None) -> Junctions:
             return junctions
         two |= more & (doubled | sheet.together)
         bare |= more - two
-    return Junctions(net_of(sheet, two | bare), sheet.settings, known)
+    return _without_bare(sheet, two | bare, known)
+
+
+def _without_bare(
+    sheet: FeltSheet, own: set[int], known: dict[Hashable, Crossing]
+) -> Junctions:
+    """The junctions of a sheet, of which some stretches are lines of their own, and all others along which no
+    way goes: ways across a junction that is as long as these would lead over bare paper.
+    """
+    while True:
+        junctions = Junctions(net_of(sheet, own), sheet.settings, known)
+        more = {it.stretch for it in junctions.net.inner if not junctions.covers(it)}
+        if not more:
+            return junctions
+        own = own | more
 
 
 def _unexplained(junctions: Junctions, sheet: FeltSheet, known: set[int]) -> set[int]:

@@ -165,8 +165,12 @@ class FeltSheet:
                 if (lines := lines_beside(felt[n], pen_mm, ends[n]))
             }
         if doubled.is_sure and math.isfinite(doubled.pen_mm):
-            for n in set(some).intersection(of_two_lines(straight, measured, doubled.pen_mm)):
+            second = {n for n in some if doubled.is_second(felt[n])}
+            two = of_two_lines(straight, measured, doubled.pen_mm)
+            for n in set(some).intersection(two) - second:
                 widths[n] = doubled.pen_mm
+            for n in second:
+                widths[n] = measured[n].width_mm
         return cls(graph, felt, measured, widths, settings, ends, doubled, beside)
 
 

@@ -23,7 +23,7 @@ from morfax.motion.arrays import Array
 from morfax.motion.median import median
 from morfax.motion.plane import heading_of, meeting
 from morfax.tracer.marks.sizes import ALIKE, CROSS_MM, INKED, SQUARE
-from morfax.tracer.sensing.probe import is_tip, lines_on
+from morfax.tracer.sensing.probe import TIP_WIDTHS, is_tip, lines_on
 from morfax.tracer.sensing.view import View
 
 LEAST_MM, LARGEST_MM = CROSS_MM
@@ -79,7 +79,7 @@ def _cross(view: View, a: Array, b: Array, c: Array) -> Cross | None:
         return None
     # 3. no lines pass or cross here
     reach_mm = float(reaches.max())
-    if lines_on(view, centre, reach_mm + 1.2 * view.width_mm) > 1:
+    if lines_on(view, centre, reach_mm + TIP_WIDTHS * view.width_mm) > 1:
         return None
     return Cross(centre, reach_mm, "symbol" if _is_circled(view, centre) else "cross")
 

@@ -80,7 +80,9 @@ def _may_share(setup: Setup, line: Line) -> bool:
         return False
     areas = int(setup.sheet.loops()[setup.sheet.patch_at(line.loop_mm[0])])
     is_round = line.ending == "closed" and areas > 1
-    return is_round or (areas > 0 and any(ink_beside(setup.sheet, [line])))
+    if is_round or areas == 0:
+        return is_round
+    return any(place.kind == "ink" for place in ink_beside(setup.sheet, [line]))
 
 
 def _way_round(setup: Setup, start_mm: tuple[float, float] | None) -> Line:

@@ -138,6 +138,23 @@ def test_dropouts_come_as_often_and_are_as_long_as_they_say() -> None:
     assert np.std(np.log(lengths_s)) == pytest.approx(0.5, rel=0.1)
 
 
+def test_a_dropout_turns_its_track_down_to_what_it_leaves_and_never_about() -> None:
+    made = signal.Dropouts(60.0, 0.01, 0.1, False, (1, 2))
+    made.gains(0.0, 5 * RATE_HZ, RATE_HZ, 4)
+    hole = made.met[0]
+    first_s = hole.start_s - 0.01
+    gains = made.gains(first_s, round(0.03 * RATE_HZ), RATE_HZ, 4)
+    assert gains is not None
+    its, others = gains[:, hole.track % 4], np.delete(gains, hole.track % 4, axis=1)
+    assert its.min() == pytest.approx(0.1) and its.max() == 1.0
+    middle = round((hole.start_s + 0.5 * hole.length_s - first_s) * RATE_HZ)
+    assert its[middle] == pytest.approx(0.1)
+    # half of it is lost where it begins
+    begins = round((hole.start_s - first_s) * RATE_HZ)
+    assert its[begins] == pytest.approx(0.55, abs=0.03)
+    assert (others == 1.0).all()
+
+
 def test_the_level_rises_and_falls_slowly_by_as_many_db() -> None:
     uneven = signal.Unevenness(1.0, 2, (1, 2))
     gains = [uneven.gains(k * 4801, 1, RATE_HZ) for k in range(4000)]  # 400 s

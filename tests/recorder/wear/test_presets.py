@@ -84,3 +84,19 @@ def test_a_codec_gives_back_as_many_frames_at_their_time(tape: Path, tmp_path: P
 def test_a_codec_that_is_none_is_refused(tape: Path, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="codec is 'mp2'; it must be one of mp3-64"):
         age(tape, tmp_path / "b.wav", Wear(codec="mp2"))
+
+
+@pytest.mark.parametrize(
+    ("better", "worse"), [("studio-15ips", "reel"), ("cassette", "answering-machine")]
+)
+def test_a_studio_s_machine_is_no_worse_than_a_reel_nor_a_cassette_than_half_its_speed(
+    better: str, worse: str
+) -> None:
+    """In each part that both have; of what is told in dB below the carrier more is better."""
+    first, second = SETS[better], SETS[worse]
+    parts = "speed", "wow", "flutter", "scrape", "skew_s", "weave_s", "third", "uneven_db"
+    lost = "dropouts_per_min", "dropout_s", "dropout_db"
+    for name in (*parts, *lost):
+        assert 0 < getattr(first, name) <= getattr(second, name), name
+    assert first.noise_db is not None and second.noise_db is not None
+    assert first.noise_db > second.noise_db

@@ -6,7 +6,6 @@ the limit for three drawings.
 
 from __future__ import annotations
 
-import math
 import re
 from pathlib import Path
 
@@ -107,20 +106,6 @@ def test_two_clean_lines_beside_each_other_have_no_grain(dpi: float, apart: floa
         assert np.sqrt(np.mean(off_mm**2)) < 0.1 * MM_PER_INCH / dpi
 
 
-@pytest.mark.parametrize("heading_deg", [0.0, 30.0, 90.0])
-def test_the_slit_is_as_long_and_as_wide_as_it_is_told(heading_deg: float) -> None:
-    """By the moments of its weights; what it is cut off beyond makes it a tenth shorter."""
-    slit, heading = grain.Slit(6.0, 1.5, 8.0), math.radians(heading_deg)
-    weights = grain._kernel(slit, heading)
-    half = len(weights) // 2
-    down, right = np.mgrid[-half : half + 1, -half : half + 1]
-    along = right * math.cos(heading) + down * math.sin(heading)
-    across = down * math.cos(heading) - right * math.sin(heading)
-    assert weights.sum() == pytest.approx(1.0, abs=1e-5)
-    assert math.sqrt((weights * along**2).sum()) == pytest.approx(6.0, rel=0.1)
-    assert math.sqrt((weights * across**2).sum()) == pytest.approx(1.5, rel=0.01)
-
-
 def test_clean_ink_and_lines_of_several_pens_have_no_grain() -> None:
     """A scanner's noise is no grain, nor is a second pen half as dark: each line is like itself."""
     dark, pale = polyline((5, 5), (45, 8)), polyline((5, 20), (45, 26))
@@ -167,30 +152,6 @@ def test_a_marker_that_is_dry_in_a_quarter_of_its_line_is_seen_through_the_slit(
     assert drawing.grainy and not opened(wet).grainy
     assert run.ending == "closed"
     assert distance(run.xy_mm[::4], line).path_to_reference.max_mm < 0.15
-
-
-@pytest.mark.parametrize(("width_mm", "by"), [(1.6, 2), (3.0, 4)])
-def test_a_wide_slit_sees_the_same_on_a_reduced_picture(
-    monkeypatch: pytest.MonkeyPatch, width_mm: float, by: int
-) -> None:
-    """A page of a broad pencil took 27 s; the ink's rims stay within a tenth of a pixel, on the mean."""
-    line = polyline((8, 12), (40, 15))
-    darkness = (235 - pencilled(line, 0.35, 1, width_mm)) / (BLACK_LEVELS * FAINT)
-    slit = grain.slit_for(0.35, width_mm / PITCH_MM, PITCH_MM)
-    assert slit is not None and slit.by == by
-    reduced = grain.behind(slit, np.asarray(darkness, np.float32))
-    monkeypatch.setattr(grain, "REDUCED", ())
-    plain = grain.behind(slit, np.asarray(darkness, np.float32))
-    columns = slice(round(12 / PITCH_MM), round(36 / PITCH_MM))
-    assert np.sqrt(np.mean((reduced - plain)[:, columns] ** 2)) < 0.01  # of the ink's darkness
-    for edge in (0, -1):  # the first and the last row of ink
-        rows = [
-            np.array(
-                [np.flatnonzero(column > grain.INK)[edge] for column in seen[:, columns].T]
-            )
-            for seen in (reduced, plain)
-        ]
-        assert abs(float(np.mean(rows[0] - rows[1]))) < 0.1
 
 
 def test_a_pencil_too_thin_for_the_slit_is_told_and_the_advice_works() -> None:

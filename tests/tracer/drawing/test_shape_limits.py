@@ -17,6 +17,7 @@ from morfax.motion.contour import distance
 from morfax.motion.faults import DrawingFault
 from morfax.motion.motion import thin
 from morfax.tracer.drawing.drawing import Drawing
+from morfax.tracer.drawing.shapes import outlined
 from morfax.tracer.drawing.strokes import Sheet
 from morfax.tracer.program.trace import trace
 from morfax.tracer.program.trace_lines import trace_lines
@@ -152,6 +153,27 @@ def test_the_advice_on_a_slit_works(tmp_path: Path) -> None:
     assert not drawing.notes and [line.ending for line in run.lines] == ["closed", "closed"]
     assert distance(thin(run), larger).hausdorff_mm < 60 * UM
     assert abs(scale * times - 1) < 0.001
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_advice_on_texture_works(seed: int) -> None:
+    """A disc of 40 mm whose grey goes up and down over 0.1 mm, up to the paper's: a print of the gaps would
+    have to be 20 times as large and more. Blurred as told, one outline is left, and it is the disc's.
+    """
+    pitch_mm, pixels = 25.4 / 150, 354
+    grain = np.random.default_rng(seed).normal(size=(pixels, pixels)).astype(np.float32)
+    grain = np.asarray(cv2.GaussianBlur(grain, (0, 0), 0.7))
+    row, column = np.mgrid[:pixels, :pixels] - pixels / 2
+    shape = 1 / (1 + np.exp((np.hypot(row, column) - pixels / 3) / 0.8))
+    dark = shape * (0.75 + 0.35 * grain / grain.std())
+    grey = np.clip(255 * (1 - dark), 0, 255).astype(np.float32)
+    (note,) = outlined(grey, pitch_mm).notes
+    told = re.search(r"they are texture .* blur the picture by (\d\.\d) mm", note)
+    assert told is not None and "times as large" not in note, note
+    found = outlined(cv2.GaussianBlur(grey, (0, 0), float(told[1]) / pitch_mm), pitch_mm)
+    assert not found.notes and len(found.edges_mm) == 1
+    across_mm = np.ptp(found.edges_mm[0], axis=0)
+    assert np.abs(across_mm - 2 * pixels / 3 * pitch_mm).max() < 0.3
 
 
 def test_a_slit_that_is_a_streak_only_is_told_of(tmp_path: Path) -> None:

@@ -75,3 +75,11 @@ def test_a_small_share_of_the_cell_is_told(cell_mm: float, said: int) -> None:
     led = WhoLed((cell_mm, 40.0, 500.0, 0.0))
     assert len(list(led.remarks())) == said
     assert led.figures()["cell_on_lines_share"] == pytest.approx(cell_mm / (cell_mm + 40))
+
+
+@pytest.mark.parametrize(("width_mm", "advice"), [(1.9, "scan at a higher"), (2.4, "--edge")])
+def test_where_lines_are_broader_than_pens_draw_the_advice_is_for_filled_shapes(
+    width_mm: float, advice: str
+) -> None:
+    (said,) = WhoLed((1.0, 40.0, 500.0, 0.0), width_mm=width_mm).remarks()
+    assert advice in said

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import math
 
 import numpy as np
+import pytest
 
-from morfax.tracer.head.trail import BOXED, ROOM, Trail, come_near
+from morfax.tracer.head.trail import BOXED, ROOM, Trail, come_near, place_back
 from morfax.tracer.limits import NEAR, PIECE_MM
 
 STEP_MM = 0.03
@@ -62,3 +64,23 @@ def test_the_kernel_notes_the_places_near_to_which_the_trail_came() -> None:
             come_near(marks, leg, width_mm, near)
             away = np.hypot(*(before[:, None] - leg).transpose(2, 0, 1)).min(axis=0)
             assert np.array_equal(near, away < NEAR * width_mm)
+
+
+@pytest.mark.parametrize(("ago", "middle_ago"), [(40, 38), (10, 8), (2, 2), (0, 2)])
+def test_the_heading_of_a_place_on_the_trail_is_that_of_a_chord_of_four_places(
+    ago: int, middle_ago: int
+) -> None:
+    """Round a circle of 1 mm a chord has the heading of the arc's middle, two places on; of the newest place
+    it is that of the last four.
+    """
+    radius_mm = 1.0
+    around = STEP_MM / radius_mm * 1.0001 * np.arange(120)
+    trail = Trail(np.array([radius_mm, 0.0]), STEP_MM)
+    trail.add(radius_mm * np.column_stack([np.cos(around), np.sin(around)])[1:])
+    places = trail.places()
+    x_mm, y_mm, heading = place_back(trail.marks(0), ago * STEP_MM)
+    at = places[-1 - ago]
+    assert (x_mm, y_mm) == pytest.approx(tuple(at))
+    middle = places[-1 - middle_ago]
+    tangent = math.atan2(middle[1], middle[0]) + math.pi / 2
+    assert math.remainder(heading - tangent, math.tau) == pytest.approx(0.0, abs=1e-6)

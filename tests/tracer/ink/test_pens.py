@@ -6,10 +6,12 @@ import itertools
 import math
 
 import numpy as np
+import pytest
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
 from morfax.tracer.ink.left_out import ink_left
+from morfax.tracer.ink.solving import solved
 from morfax.tracer.ink.stretches import FeltSheet
 from morfax.tracer.ink.swelling import Swelling, pen_of_hollow
 from tests.tracer.inked import WIDTH_MM, inked, polyline, together
@@ -33,6 +35,29 @@ def test_broad_lines_among_those_of_pens_of_several_widths_are_one_line_each() -
     thin = [(polyline((x, 8), (x, 24)), WIDTH_MM) for x in (8, 52)]
     felt = felt_of(together(*even, *swells, *thin, (CLEAR, WIDTH_MM), seed=1))
     assert not felt.doubled.stations
+
+
+def test_lines_of_a_second_pen_that_swell_a_little_are_one_line_each() -> None:
+    """As the outlines of a colouring page, which all swell a little; thin lines end on them, and some that
+    narrow in their middle look like lines that cross.
+    """
+    along = list(itertools.pairwise(np.linspace(5, 55, 201).tolist()))
+    broad = [
+        (polyline((a, y), (b, y)), (1.4 + 0.035 * math.sin(a / 3)) * WIDTH_MM)
+        for y in (10, 26)
+        for a, b in along
+    ]
+    tapered = [
+        (polyline((x, 18 + 8 * a), (x, 18 + 8 * b)), (1 + 0.5 * abs(a)) * WIDTH_MM)
+        for x in (21, 39)
+        for a, b in itertools.pairwise(np.linspace(-1, 1, 81).tolist())
+    ]
+    thin = [(polyline((x, 10), (x + 1, 26)), WIDTH_MM) for x in (9, 15, 27, 33, 45, 51)]
+    felt = felt_of(together(*broad, *tapered, *thin, (CLEAR, WIDTH_MM), seed=1))
+    solved(felt)
+    level = {n for n, run in enumerate(felt.felt) if np.ptp(run.places_mm[:, 1]) < WIDTH_MM}
+    assert felt.doubled.second_mm == pytest.approx(1.4 * WIDTH_MM, rel=0.1)
+    assert not level & {*felt.doubled.stations, *felt.together}
 
 
 def test_a_band_that_is_paler_in_its_middle_tells_no_pen() -> None:

@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.head.settings import Settings
+from morfax.tracer.ink import solving
 from morfax.tracer.ink.chains import Junctions
 from morfax.tracer.ink.left_out import ink_left
 from morfax.tracer.ink.net import net_of
@@ -63,6 +64,19 @@ def test_a_small_loop_is_run_round() -> None:
     nine = arc((12.0, 20.0), 1.7), polyline((13.7, 20), (13.7, 14))
     ink = trace_ink(inked(*nine, polyline((5, 5), (30, 5)), width_mm=0.4, seed=1)).ink
     assert ink is not None and ink.followed_share > 0.995
+
+
+def test_no_stretch_is_left_without_a_way_when_the_rounds_are_used_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Ways that joined the lines about such stretches led over bare paper."""
+    drawing = printed("DejaVuSerif-Bold.ttf", 48, "REARED")
+    felt = FeltSheet.of(drawing, Settings(), ink_left(drawing.sheet).ink)
+    first = Junctions(net_of(felt, set()), Settings())
+    assert not all(first.covers(inner) for inner in first.net.inner)
+    monkeypatch.setattr(solving, "ROUNDS", 0)
+    junctions = solving.solved(felt)
+    assert all(junctions.covers(inner) for inner in junctions.net.inner)
 
 
 def test_lines_that_are_found_elsewhere_do_not_undo_what_was_solved(

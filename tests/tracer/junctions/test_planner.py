@@ -57,3 +57,5 @@ def test_ink_beside_a_line_that_ends_in_a_tip_is_come_back_along_from_there() ->
     assert run is not None and run.back is not None
     assert len(run.seen) == 41 and run.back[:, 0] == pytest.approx(x[40:9:-1])
     assert run.back[:, 1] == pytest.approx(-excess[40:9:-1], abs=1e-12)
+    # the third is the line's width, as of any stations
+    assert run.back.shape == (31, 3) and set(run.back[:, 2]) == {0.5}

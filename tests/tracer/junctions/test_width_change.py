@@ -27,6 +27,7 @@ from morfax.tracer.sensing.view import View
 from tests.tracer.inked import DPI, UM, arc, inked, polyline, together
 
 SEEDS = pytest.mark.parametrize("seed", [1, 2, 3])
+PIXEL_MM = MM_PER_INCH / DPI
 CENTRE, RADIUS_MM = (26.0, 26.0), 20.0
 
 
@@ -165,3 +166,16 @@ def test_what_is_more_than_three_and_a_half_times_as_wide_ahead_is_no_line(
     view = View(behind_aperture(drawn, 0.15), 0.5)
     incoming = leg_of(view.feel(np.array([8.0, 12.0]), 0.0, 4.0), True, view.leg_mm)
     assert bool(list(_straight_ahead(view, incoming))) is is_line
+
+
+@pytest.mark.parametrize("width_mm", [0.3, 0.5, 1.2])
+def test_a_pen_twice_as_broad_straight_ahead_is_a_line_however_broad_the_first_is(
+    width_mm: float,
+) -> None:
+    drawn = together(
+        (polyline((4, 12), (16, 12)), width_mm), (polyline((16, 12), (40, 12)), 2 * width_mm)
+    )
+    view = View(behind_aperture(drawn, 0.06), width_mm)
+    incoming = leg_of(view.feel(np.array([10.0, 12.0]), 0.0, 8.0), True, view.leg_mm)
+    onward = next(_straight_ahead(view, incoming))
+    assert onward.leg.width_mm == pytest.approx(2 * width_mm, abs=0.5 * PIXEL_MM)

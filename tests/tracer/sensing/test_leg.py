@@ -166,6 +166,17 @@ def test_legs_that_bend_meet_where_their_curves_cross() -> None:
     assert outgoing.at(-met[1]) == pytest.approx(np.zeros(2), abs=1 * UM)
 
 
+@pytest.mark.parametrize(("away_mm", "do"), [(9.9, True), (10.1, False)])
+def test_legs_that_would_meet_more_than_a_centimetre_away_do_not_meet(
+    away_mm: float, do: bool
+) -> None:
+    """Ahead of the incoming leg, behind it, and before the outgoing one."""
+    incoming = straight((0, 0), 0)
+    assert (meet(incoming, straight((away_mm, 1), 90)) is not None) is do
+    assert (meet(incoming, straight((-away_mm, 1), 90)) is not None) is do
+    assert (meet(incoming, straight((1, away_mm), 90)) is not None) is do
+
+
 def test_legs_in_line_do_not_meet() -> None:
     assert meet(straight((0, 0), 0), straight((2, 0), 0.5)) is None
     assert meet(straight((0, 0), 0), straight((2, 0.3), 0)) is None

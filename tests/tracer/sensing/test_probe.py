@@ -142,11 +142,22 @@ def test_a_hairline_gap_parts_a_stroke_and_a_speck_beside_its_middle_does_not() 
     assert lines_from(view(Drawing(beside, pitch)), centre, 1.0) == 2
 
 
-def test_a_speck_on_a_ring_is_no_stroke() -> None:
+@pytest.mark.parametrize("pixels", [1, 2])
+def test_a_speck_on_a_ring_is_no_stroke(pixels: int) -> None:
     drawing = strokes(0, 180)
-    rows, pitch = len(drawing.darkness), drawing.pitch_mm
-    drawing.darkness[rows - 1 - int(11 / pitch), int(10 / pitch)] = 1.0
+    pitch = drawing.pitch_mm
+    row, column = len(drawing.darkness) - 1 - int(11 / pitch), int(10 / pitch)
+    drawing.darkness[row : row + pixels, column : column + pixels] = 1.0
     assert lines_on(view(drawing), np.array(CENTRE), 1.0) == 2
+
+
+@pytest.mark.parametrize(("hair_mm", "count"), [(0.15, 2), (0.25, 3)])
+def test_ink_below_four_tenths_of_the_line_s_width_is_no_stroke(
+    hair_mm: float, count: int
+) -> None:
+    line, hair = polyline((4, 10), (16, 10)), polyline(CENTRE, (10, 16))
+    eyes = view(together((line, WIDTH_MM), (hair, hair_mm)))
+    assert lines_on(eyes, np.array(CENTRE), 1.5) == count
 
 
 @pytest.mark.parametrize("pixels", [1, 2])
@@ -165,3 +176,11 @@ def test_a_speck_of_paper_on_a_thin_line_is_not_its_end(pixels: int) -> None:
             eyes.feel(np.array([10.0, 7.0]), math.atan2(1, 2), 1.2), False, eyes.leg_mm
         )
         assert stroke_end(eyes, leg, 5.0) is None
+
+
+@pytest.mark.parametrize("dpi", [300.0, 600.0, 1200.0])
+def test_a_place_on_a_line_is_no_tip_however_finely_it_is_scanned(dpi: float) -> None:
+    """The ring about it reaches beyond the pen's round: within it all is ink, as at a tip."""
+    way_on, tip = inked(polyline((6, 10), (14, 10)), dpi=dpi), inked(polyline((6, 10), CENTRE))
+    assert not is_tip(view(way_on), np.array(CENTRE))
+    assert is_tip(view(tip), np.array(CENTRE))

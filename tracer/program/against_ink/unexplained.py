@@ -3,8 +3,8 @@
 Signals: the sheet and the lines that were followed in; out the places at which the head's own pen would not
 have drawn what is there.
 
-    ───╮  ╭───     a tip that the head passed by: its ink lies more than a width and a quarter beside every
-       │──│        way; the points of pointed tips apart (see `pointed`)
+    ───╮  ╭───     a tip that the head passed by: its ink lies beside every way (see `ink_beside`)
+       │──│
        ╰──╯        a way over bare paper, longer than a gap that the head may cross
 
 A line that comes round may still be another than the one that was drawn, where tips and bays are narrower
@@ -28,10 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
-from morfax.motion.plane import heading_of
-from morfax.motion.polyline import WITHIN_MM, at_lengths, lengths_mm, nearest_mm, with_places
+from morfax.motion.polyline import lengths_mm, nearest_mm, with_places
 from morfax.tracer.drawing import coarse
-from morfax.tracer.drawing.components import joined
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.drawing.sharpening import turned_at
 from morfax.tracer.drawing.strokes import Sheet
@@ -40,26 +38,16 @@ from morfax.tracer.following.edge_check import OFF_MM, most_off_mm
 from morfax.tracer.following.line import Line
 from morfax.tracer.limits import ABOUT_WIDTHS, CLEAR_WIDTHS, PAPER, TIP_RAD
 from morfax.tracer.program.against_ink.crossed_ink import crossed_in_ink
+from morfax.tracer.program.against_ink.ink_beside import PALE, darkness_at, pieces_beside
 from morfax.tracer.program.against_ink.own_ink import DOUBT, OwnInk
-from morfax.tracer.program.against_ink.pointed import points_of
 from morfax.tracer.program.against_ink.redrawn import most_astray
 from morfax.tracer.program.setup import Setup
-from morfax.tracer.sensing.photocell import darkness_along, without_aperture
 
-# darkness: on a coarse scan a line's middle is darker; of 135 right paths on lines of 1 to 2 pixels 3 come
-# below it, in blurred corners, and all of 10 wrong ones; by trial
-PALE = 0.6
 CUT_MM = 0.1  # ten times a corner's error
 BESIDE = 2.0  # times as far apart as both are off: it is the same tip
 # darkness by which a way that is redrawn differs from the scan, on lines that look as wide as 1.5 pixels or
 # less: of 166 right paths on lines of 1 pixel 7 came above it, 0.33 to 0.46 mm off, and all of 14 wrong ones
 ASTRAY = 0.2
-# widths: ink further from all ways was missed, by a tip whose round end is as far but for half a width. Of 48
-# right plates none comes above 0.72, of 13 right outlines with spikes none above 0.78; where pixels were made
-# finer, ink looks broader at corners
-MISSED, MISSED_COARSE = 1.25, 2.0
-
-AHEAD = np.radians(np.linspace(-80.0, 80.0, 17))  # of a line's end: where its ink would go on
 
 Kind = Literal["ink", "tip", "aside", "bare", "beside", "crossed", "broad", "pale", "off"]
 
@@ -72,7 +60,7 @@ class Unexplained(NamedTuple):
     bare      a way over bare paper: for how long; aside: one beside the edge of a filled shape
     beside    a way beside its own pen's ink: for how long
     crossed   a closed way that crosses itself within its ink (see `crossed_ink`): how far it goes round there
-    broad     strokes within ink that is as broad as two lines: for how long
+    broad     a way within ink that is as broad as two lines or more: for how long
     off       strokes of all the ink off it, where lines meet (see `strokes_off_ink`): for how long
     pale      on a coarse scan a way over ink that is pale: for how long; and `wants_dpi`, the resolution that
         would show what is there
@@ -137,72 +125,20 @@ def is_about(place: Unexplained, others: Sequence[Unexplained], lines: Sequence[
     return any(math.dist(place.place_mm, other.place_mm) < about_mm for other in others)
 
 
-def _accountable(sheet: Sheet, lines: Sequence[Line]) -> list[Line]:
-    """Those of some lines that must account for all their ink: that came round, or ended and are alone, or
-    where it goes on.
-    """
-    is_alone = len(lines) == 1
-    return [
-        line
-        for line in lines
-        if line.ending in ("closed", "joined")
-        or (line.ending == "ended" and (is_alone or _ends_in_ink(sheet, line)))
-    ]
-
-
-def _ends_in_ink(sheet: Sheet, line: Line) -> bool:
-    """Whether ink goes on from an end of an open line as one line does, farther than the round end of a pen;
-    where it goes on to both sides, another line passes.
-    """
-    places, reach_mm = line.places_mm, MISSED * line.width_mm
-    for way in (places, places[::-1]):
-        end, before = at_lengths(way, np.array([0.0, line.width_mm]))
-        headings = heading_of(end - before) + AHEAD
-        ahead_mm = end + reach_mm * np.column_stack([np.cos(headings), np.sin(headings)])
-        is_ink = _darkness(sheet, ahead_mm) > PALE
-        is_ink &= nearest_mm(ahead_mm, places) > reach_mm - WITHIN_MM  # no other part's
-        if np.sum(np.diff(is_ink, prepend=False) & is_ink) == 1:
-            return True
-    return False
-
-
 def ink_beside(sheet: Sheet, lines: Sequence[Line]) -> Iterator[Unexplained]:
-    """Ink, beside all ways, of the patches of those of some lines that must account for all of theirs."""
-    patches, whole = sheet.patches, _accountable(sheet, lines)
-    if not whole:
-        return
-    # 1. the patches on which they run, and how wide the widest of them is
-    widths_mm = np.zeros(patches.count)
-    for line in whole:
-        patch = sheet.patch_at(line.loop_mm[0])
-        widths_mm[patch] = max(widths_mm[patch], line.width_mm)
-    runs = np.flatnonzero((widths_mm > 0)[patches.patch] & ~sheet.are_solid[patches.patch])
-    if not len(runs):
-        return
-    # 2. how far both ends of their runs are from the ways
-    tips = [side for line in whole if line.ending == "closed" for side in points_of(line)]
-    ways = np.vstack([*(line.places_mm for line in lines), *tips])
-    ends = np.vstack([sheet.run_begins_mm(runs), sheet.run_ends_mm(runs)])
-    away_mm = nearest_mm(ends, ways).reshape(2, -1)
-    far_mm = MISSED * widths_mm
-    if _is_coarse(sheet):
-        far_mm = MISSED_COARSE * (widths_mm - _pixel_mm(sheet))
-    far = away_mm.max(axis=0) > far_mm[patches.patch[runs]]
-    # 3. those that lie together, where each reaches furthest
-    runs, away_mm, ends = runs[far], away_mm[:, far], ends.reshape(2, -1, 2)[:, far]
-    group, count = joined(patches.row[runs], patches.begin[runs], patches.end[runs], True)
-    for number in range(count):
-        mine = np.flatnonzero(group == number)
-        furthest = np.unravel_index(np.argmax(away_mm[:, mine]), (2, len(mine)))
-        x, y = ends[:, mine][furthest]
-        yield Unexplained((float(x), float(y)), float(away_mm[:, mine].max()), "ink")
+    """Ink beside all ways of those of some lines that must account for all of theirs, and ink that is far
+    broader than these.
+    """
+    for piece in pieces_beside(sheet, lines):
+        kind: Kind = "broad" if piece.is_broad else "ink"
+        yield Unexplained(piece.place_mm, piece.length_mm, kind)
 
 
 def bare_ways(sheet: Sheet, closed: Sequence[Line], gap_mm: float) -> Iterator[Unexplained]:
     """Stretches of closed lines over bare paper, longer than a gap that the head may cross."""
     for line in closed:
         places = line.loop_mm
-        come_mm, dark = lengths_mm(places), _darkness(sheet, places)
+        come_mm, dark = lengths_mm(places), darkness_at(sheet, places)
         bare = list(_stretches(dark < PAPER, come_mm, gap_mm + CLEAR_WIDTHS * line.width_mm))
         for middle, long_mm in bare:
             x, y = places[middle]
@@ -291,9 +227,3 @@ def _is_coarse(sheet: Sheet) -> bool:
 def _pixel_mm(sheet: Sheet) -> float:
     """The pitch of the picture's own pixels."""
     return sheet.drawing.pitch_mm * sheet.drawing.finer
-
-
-def _darkness(sheet: Sheet, places_mm: Array) -> Array:
-    """Darkness of the drawing at places (n, 2) mm, under a cell as small as a point."""
-    cells = without_aperture(sheet.drawing, PAPER)
-    return np.asarray(darkness_along(cells, places_mm))

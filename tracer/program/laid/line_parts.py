@@ -82,11 +82,14 @@ def is_beside(own: Array, line: Line, lines: BoxedLines) -> bool:
 
 def part_of(line: Line, first: int, last: int) -> Line:
     """The part of a closed line from one of its thinned places to another, perhaps over its beginning."""
-    count = len(line.xy_mm)
-    begin, end = first * THINNED, last * THINNED
-    at = np.arange(begin, end + 1 + count * (end < begin)) % count
-    at = at[: len(at) // THINNED * THINNED]  # whole steps of the thinned places
-    return replace(line, xy_mm=line.xy_mm[at], led=Led.along(line.led.of(count)[at]))
+    begin, end = first * THINNED, last * THINNED + 1
+    led, xy_mm = line.led.of(len(line.xy_mm)), line.xy_mm
+    if begin < end:
+        led, xy_mm = led[begin:end], xy_mm[begin:end]
+    else:
+        led, xy_mm = np.r_[led[begin:], led[:end]], np.vstack([xy_mm[begin:], xy_mm[:end]])
+    whole = len(led) // THINNED * THINNED  # steps of the thinned places
+    return replace(line, xy_mm=xy_mm[:whole], led=Led.along(led[:whole]))
 
 
 def back_along(line: Line) -> Line:
