@@ -164,8 +164,8 @@ class OwnRims:
     ) -> bool:
         """Whether some ways within the rims, so far from the ink's places (n,), that explain it where they
         were laid, do so better than the lines that were found: these miss some ink, or turn and leave more.
-        One that crosses itself counts as one with an end, if it leaves much more, or beside its lobes; else
-        it need not turn more.
+        One that crosses itself counts as open, if it leaves much more, and as one with an end beside its
+        lobes; else it need not turn more.
         """
         own_mm, ink, own_rad = self.own_mm, self.ink, self._own_rad
         if (most := ink.worst(own_mm)) > MISSED:
@@ -177,7 +177,7 @@ class OwnRims:
         less_rad = -SAME_RAD if worst < BETTER * own_worst and own_worst > OFF else LESS_RAD
         if any(map(self._crosses_itself, self.lines)):
             leave_less = left < BETTER * own_left and worst < BETTER * own_worst
-            less_rad = LESS_RAD - END_RAD if leave_less else -SAME_RAD
+            less_rad = LESS_RAD - 2 * END_RAD if leave_less else -SAME_RAD
         if any(way is lobe for way in ways for lobe in self._lobes):
             less_rad = -END_RAD
         turned_rad = sum(way.turned_rad for way in ways)
