@@ -85,12 +85,20 @@ def test_the_last_result_comes_back_with_its_words_and_nonsense_is_none(tmp_path
     assert again.result is None
 
 
+def shown(page: TestClient, bench: Bench) -> None:
+    """Wait until the picture is there, which is read beside the answers, and has its number."""
+    late_s = time.monotonic() + 60
+    while bench.picture is None and time.monotonic() < late_s:
+        page.get("/state")
+
+
 def test_the_numbers_of_the_lines_that_were_seen_are_there_as_tiles(
     page: TestClient, bench: Bench
 ) -> None:
     numbers = np.zeros((4, 5), np.uint16)
     numbers[2] = 300
     seen = {"numbers": numbers, "picture": None, "figures": {"drawing": "cam.png"}}
+    shown(page, bench)
     bench.look()
     at = f"/tile/{bench.picture_id}/lines/0/0/0"
     assert page.get(at).status_code == 204
@@ -113,9 +121,7 @@ def test_what_is_gone_by_the_time_it_is_asked_for_is_answered_without_content(
     assert page.get("/result").status_code == 204
     bench.kept.result = {"program": None}
     assert page.get("/result").json() == {"program": None}
-    late_s = time.monotonic() + 60
-    while bench.picture is None and time.monotonic() < late_s:
-        page.get("/state")  # the drawing is read beside the answers
+    shown(page, bench)
     now = bench.picture_id
     assert page.get(f"/tile/{now}/sheet/0/0/0").status_code == 200
     assert page.get(f"/tile/{now - 1}/sheet/0/0/0").status_code == 204

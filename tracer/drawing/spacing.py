@@ -43,11 +43,23 @@ def finer(edges: list[Edge], shape: tuple[int, ...], pitch_mm: float) -> int:
     """By how much finer the line has to be drawn for edges that are near one another."""
     # of lines nearer than three of their widths the head would see two
     clear_mm = max(3 * EDGE_MM, DETAIL_PX * pitch_mm)
-    comes_back = Pairs.of(edges, clear_mm / pitch_mm, BACK)
-    apart_mm = comes_back.some(~_legs_of_corners(edges, comes_back)).nearest_px * pitch_mm
+    apart_mm = nearest_px(edges, clear_mm / pitch_mm) * pitch_mm
     times = FINEST if apart_mm * FINEST < clear_mm else max(1, math.ceil(clear_mm / apart_mm))
     _make_room(apart_mm, times, shape)
     return times
+
+
+def nearest_px(edges: list[Edge], within_px: float) -> float:
+    """How near an edge comes to itself or another, if nearer than so much; the legs of a corner do not count.
+
+    Looked for within an eighth of that first: millions of pairs may be within all of it.
+    """
+    for part in (0.125, 0.25, 0.5, 1.0):
+        comes_back = Pairs.of(edges, part * within_px, BACK)
+        nearest = comes_back.some(~_legs_of_corners(edges, comes_back)).nearest_px
+        if nearest < math.inf:
+            break
+    return nearest
 
 
 def too_near(edges: list[Edge], softness_px: float) -> Pairs:

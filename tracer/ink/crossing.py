@@ -78,21 +78,16 @@ class Crossing:
     drawn: WaysOn | None = None  # where it is told by the ink
     _covers: dict[int, bool] = field(default_factory=dict)
     _drawn: dict[Hashable, Crossing] = field(default_factory=dict)  # as its lines may go on
+    # where legs end, by what passes there
+    _ended: dict[Hashable, list[float | None]] = field(default_factory=dict)
 
     @property
     def key(self) -> Hashable:
         """What decides how lines go on here."""
-        legs = [
-            (
-                *leg.end_mm.tolist(),
-                leg.heading_rad,
-                leg.bend_per_mm,
-                leg.width_mm,
-                view.width_mm,
-            )
-            for leg, view in zip(self.legs, self.views, strict=True)
-        ]
-        return tuple(legs), tuple(inner.stretch for inner in self.inked)
+        both = zip(self.legs, self.views, strict=True)
+        widths_mm = [(leg.width_mm, view.width_mm) for leg, view in both]
+        legs = [(*leg.end_mm.tolist(), leg.heading_rad, leg.bend_per_mm) for leg in self.legs]
+        return tuple(legs), tuple(widths_mm), tuple(inner.stretch for inner in self.inked)
 
     @property
     def pairs(self) -> list[Pair]:
@@ -124,6 +119,7 @@ class Crossing:
         """The same as it is drawn: its ways and ends were made when they were held against its ink."""
         solved = self.as_drawn(self.solution)
         self._drawn.clear()
+        self._ended.clear()
         return solved
 
     @cached_property
@@ -240,7 +236,10 @@ class Crossing:
         loose = [Loose(self.views[k], self.legs[k], self.near[k]) for k in alone]
         passing = (self.near[k] for k in range(len(self.legs)) if k not in alone)
         lines_mm = np.vstack([self.passing_mm, *passing])
-        found = zip(alone, ends_in_ink_mm(loose, lines_mm), strict=True)
+        key = tuple(alone), lines_mm.tobytes()
+        if key not in self._ended:
+            self._ended[key] = ends_in_ink_mm(loose, lines_mm)
+        found = zip(alone, self._ended[key], strict=True)
         return {k: end_mm for k, end_mm in found if end_mm is not None}
 
     def end_mm(self, k: int) -> float:

@@ -48,6 +48,9 @@ from morfax.tracer.sensing.view import View, leg_mm
 LEAST_MM, LARGEST_MM = CROSS_MM
 MOST_PX = 50_000_000  # of a patch that is searched for holes: a tenth of a second
 BESIDE = np.arange(SPOKES) - 1  # of each spoke, the one before it
+TWO = (
+    1.5  # widths: what is as broad, square to the lead line, is nearer to two lines than to one
+)
 BEYOND = np.array([1.5, 1.9, 2.3])  # widths beyond the arms, at which the lead line is sought
 
 Kind = Literal["cross", "ring", "symbol"]
@@ -207,8 +210,10 @@ def _reference(view: View, centre: Array, reach_mm: float, kind: Kind) -> Refere
     """A reference point that reaches so far from its centre, with its lead line."""
     place_mm = float(centre[0]), float(centre[1])
     leads = _leads(view, centre, reach_mm)
+    if kind == "ring":  # a line that touches it comes by
+        leads = (each for each in leads if _leaves(view, centre, reach_mm, each))
     lead = next(leads, None)
-    is_forked = kind == "ring" and any(_leaves(view, centre, reach_mm, each) for each in leads)
+    is_forked = kind == "ring" and next(leads, None) is not None
     return Reference(place_mm, kind, lead, is_forked)
 
 
@@ -234,6 +239,9 @@ def _leads(view: View, centre: Array, reach_mm: float) -> Iterator[Leg]:
             if _widens(view, seen):
                 break
             leg = leg_of(seen, False, view.leg_mm)
+            across_mm = radius_mm * float(np.ptp(arc)) * math.cos(leg.heading_rad - heading)
+            if across_mm > TWO * view.width_mm:  # two that part only further on
+                break
             back = view.feel(leg.end_mm, leg.heading_rad + math.pi, reach_mm + view.width_mm)
             last = max(1, len(back) - round(view.width_mm / view.step_mm))
             clear = back[1:last]  # of the other arms

@@ -18,6 +18,7 @@ from morfax.motion.plane import NOTHING_MM2
 
 NOWHERE_MM = 1e3  # from all that is drawn
 LONG, BOXED = 300, 64  # pieces of a long way, and those of it that have one box; by trial
+GROUPED = 16  # boxes that have one about them: of a way of 12 000 pieces a place meets a twelfth of all boxes
 
 
 @njit(cache=True, fastmath=True)
@@ -70,6 +71,17 @@ def boxes_of(lines):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def groups_of(boxes):  # type: ignore[no-untyped-def]
+    """The boxes about some boxes (n, 4), so many in each."""
+    groups = np.empty(((len(boxes) + GROUPED - 1) // GROUPED, 4))
+    for g in range(len(groups)):
+        some = boxes[g * GROUPED : (g + 1) * GROUPED]
+        groups[g, 0], groups[g, 1] = some[:, 0].min(), some[:, 1].min()
+        groups[g, 2], groups[g, 3] = some[:, 2].max(), some[:, 3].max()
+    return groups
+
+
+@njit(cache=True)
 def to_box2(boxes, b, x, y):  # type: ignore[no-untyped-def]
     """The square of the distance of a place from a box."""
     dx = max(boxes[b, 0] - x, x - boxes[b, 2], 0.0)
@@ -85,21 +97,25 @@ def _away_by_boxes(places, lines, out):  # type: ignore[no-untyped-def]
     vx, vy = lines[2] - x0, lines[3] - y0
     per = 1.0 / (vx * vx + vy * vy + NOTHING_MM2)
     boxes = boxes_of(lines)
+    groups = groups_of(boxes)
     # the box in which the place before was nearest comes first
     newest = 0
     for k in range(len(places)):
         best = out[k] * out[k]
         x, y = places[k, 0], places[k, 1]
-        for n in range(-1, len(boxes)):
-            b = newest if n < 0 else n
-            if to_box2(boxes, b, x, y) >= best:
+        for g in range(-1, len(groups)):
+            if g >= 0 and to_box2(groups, g, x, y) >= best:
                 continue
-            before = best
-            for i in range(b * BOXED, min((b + 1) * BOXED, count)):
-                wx, wy = x - x0[i], y - y0[i]
-                t = min(max((wx * vx[i] + wy * vy[i]) * per[i], 0.0), 1.0)
-                wx, wy = wx - t * vx[i], wy - t * vy[i]
-                best = min(best, wx * wx + wy * wy)
-            if best < before:
-                newest = b
+            first = newest if g < 0 else g * GROUPED
+            for b in range(first, first + 1 if g < 0 else min(first + GROUPED, len(boxes))):
+                if to_box2(boxes, b, x, y) >= best:
+                    continue
+                before = best
+                for i in range(b * BOXED, min((b + 1) * BOXED, count)):
+                    wx, wy = x - x0[i], y - y0[i]
+                    t = min(max((wx * vx[i] + wy * vy[i]) * per[i], 0.0), 1.0)
+                    wx, wy = wx - t * vx[i], wy - t * vy[i]
+                    best = min(best, wx * wx + wy * wy)
+                if best < before:
+                    newest = b
         out[k] = math.sqrt(best)

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
-from morfax.motion.polyline import area_mm2, evenly, length_mm
+from morfax.motion.polyline import area_mm2, evenly, length_mm, nearest_mm
 from morfax.tracer.sensing.leg import TURNS_BACK
 from morfax.tracer.sensing.view import STEP_WIDTHS
 from morfax.tracer.tangles import bent_rule, beside_itself, distances
@@ -55,6 +55,7 @@ FEWEST = 20  # places that a bar of ink has, at the least
 APART = 0.8  # widths: the sides of a bay begin, at the least
 DEEP = 1.2  # widths: a bay is so deep at the least; a flatter one is hidden in the line
 WITHIN = 0.4  # of mouth times depth lies within a bay: half in one that comes to a point
+OF_TIP = 3  # corners: a tip, and where it begins on either side
 FURTHEST = 4.0  # times as far as a bar is long, from its tip, the line is looked for
 
 
@@ -121,6 +122,25 @@ def along(way: Array, half_mm: float) -> Iterator[Rule]:
             kept.append(way)
     for each in reversed(kept):
         yield from _of_corners(each[0], each[-1], each[1:-1], half_mm)
+
+
+def by_tip(way: Array, tip_mm: Array | None, half_mm: float) -> Iterator[Rule]:
+    """Sharp rules along a way (n, 2) mm, and, with a tip (x, y) mm beside it, those that turn there in place
+    of the piece that is nearest to it or of the next: of no more corners than a tip has.
+    """
+    for count in range(2, min(OF_TIP + 2, len(way)) + 1):
+        kept = _reduced(way, count)
+        if count > 2:
+            yield sharp(kept[0], kept[-1], kept[1:-1], half_mm)
+        if tip_mm is None or count > OF_TIP + 1:
+            continue
+        pieces = [kept[k : k + 2] for k in range(len(kept) - 1)]
+        away_mm = [
+            nearest_mm(tip_mm[None], evenly(piece, 0.1 * half_mm))[0] for piece in pieces
+        ]
+        for k in np.argsort(away_mm)[:2].tolist():
+            corners_mm = np.vstack([kept[1 : k + 1], tip_mm[None], kept[k + 1 : -1]])
+            yield sharp(kept[0], kept[-1], corners_mm, half_mm)
 
 
 def sharp(first_mm: Array, last_mm: Array, corners_mm: Array, half_mm: float) -> Rule:

@@ -120,10 +120,14 @@ def test_a_corner_deep_in_others_ink_lies_where_its_legs_lead(crowd: str, seed: 
     assert max(each_by_a_stroke([one, other + shift], seed)) < OFF_MM
 
 
+ENDED = {"one": ([ACROSS, polyline((14, 4), (20, 20))], 1), "side": (CROWDS["side"], 21)}
+
+
+@pytest.mark.parametrize("ended", ENDED)
 def test_where_lines_end_in_ink_is_asked_once_of_each_way_to_go_on(
-    monkeypatch: pytest.MonkeyPatch,
+    ended: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A third of all that was asked on a page of gears had been asked before."""
+    """A third of all that was asked on a page of gears had been asked before; of the side 6 of 27."""
     asked, ends_in_ink_mm = list[bytes](), crossing.ends_in_ink_mm
 
     def counted(loose: list[Loose], lines_mm: Points, **rest: bool) -> list[float | None]:
@@ -132,9 +136,10 @@ def test_where_lines_end_in_ink_is_asked_once_of_each_way_to_go_on(
         return ends_in_ink_mm(loose, lines_mm, **rest)
 
     monkeypatch.setattr(crossing, "ends_in_ink_mm", counted)
-    _strokes([ACROSS, polyline((14, 4), (20, 20))], 1)
+    lines, count = ENDED[ended]
+    _strokes(lines, 1)
     counts = len(asked), len(set(asked))
-    assert counts == (1, 1)
+    assert counts == (count, count)
 
 
 def test_two_corners_across_each_other_are_told_though_no_line_passes() -> None:

@@ -176,6 +176,16 @@ def test_a_hole_at_the_cusp_of_an_outline_is_no_reference_point(
     assert line.ending == "closed" and line.reference_mm is None
 
 
+@pytest.mark.parametrize("seed", [3, 9])
+def test_a_circle_that_others_touch_is_no_reference_point(seed: int) -> None:
+    """Both sides of the line that touches it are near to it, and neither leaves it."""
+    first, second = arc((8.4, 8.4), 4.39, 0, 360), arc((12.91, 16.52), 4.41, 0, 360)
+    third = arc((19.8, 22.6), 4.8, 0, 360)
+    drawing = inked(first, second, third, width_mm=0.53, dpi=200, seed=seed)
+    line = trace(drawing, operator=Operator()).lines[0]
+    assert line.ending == "closed" and line.reference_mm is None
+
+
 @pytest.mark.parametrize("across_mm", [7.0, 8.5])
 def test_a_cross_in_a_circle_is_a_symbol_unless_a_program_is_drawn(across_mm: float) -> None:
     """A symbol whose arm points to the contour, and a line from there: a lead line only if that is said."""

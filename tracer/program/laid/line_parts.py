@@ -7,18 +7,31 @@ Source: our own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from morfax.motion.arrays import Array
-from morfax.motion.polyline import area_mm2, length_mm, lengths_mm, nearest_mm
+from morfax.motion.motion import MOTION_RATE_HZ
+from morfax.motion.polyline import (
+    area_mm2,
+    between_corners,
+    closed_up,
+    length_mm,
+    lengths_mm,
+    nearest_mm,
+)
 from morfax.motion.usual import THINNED
 from morfax.tracer.drawing.drawing import Drawing
 from morfax.tracer.following.line import Line
-from morfax.tracer.head.leaders import Led
+from morfax.tracer.head.carriage import Carriage
+from morfax.tracer.head.leaders import REDRAWN, Led
+from morfax.tracer.head.stance import Stance
+from morfax.tracer.limits import ABOUT_WIDTHS
 from morfax.tracer.program.against_ink.boxed_lines import BoxedLines
+from morfax.tracer.program.against_ink.window import view_about
 from morfax.tracer.program.laid.bay_run import Bay, laid
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.setup import Setup
@@ -127,6 +140,19 @@ def _one_after_the_other(parts: Sequence[Line]) -> Line:
             dict.fromkeys(place for line in parts for place in line.junctions_mm)
         ),
     )
+
+
+def run_anew(setup: Setup, line: Line, way: Array, width_mm: float) -> Line:
+    """A line as the head runs along a closed way (n, 2) mm, not closed up, from memory."""
+    sheet, settings = setup.sheet, setup.settings
+    stretches = between_corners(closed_up(way))
+    ahead = stretches[0][1] - stretches[0][0]
+    view = view_about(sheet, settings.aperture_mm, width_mm, way, ABOUT_WIDTHS * width_mm)
+    stance = Stance(way[0], math.atan2(ahead[1], ahead[0]), view)
+    carriage = Carriage(stance, settings, MOTION_RATE_HZ)
+    carriage.run(stretches, leader=REDRAWN)
+    xy_mm = carriage.positions_mm
+    return closed_anew(line, xy_mm, carriage.led, width_mm, length_mm(xy_mm))
 
 
 def closed_anew(line: Line, xy_mm: Array, led: Led, width_mm: float, long_mm: float) -> Line:

@@ -37,6 +37,7 @@ from morfax.tracer.program.against_ink.unexplained import (
 )
 from morfax.tracer.program.laid.bay_run import Bay
 from morfax.tracer.program.laid.cut_corners import with_corners
+from morfax.tracer.program.laid.cut_tips import with_tips
 from morfax.tracer.program.laid.grain_corners import with_grain_corners
 from morfax.tracer.program.laid.laid_way import LaidWay
 from morfax.tracer.program.laid.line_parts import (
@@ -113,9 +114,18 @@ def _mended(
     uncut = with_grain_corners(setup, with_corners(setup, own))
     if uncut is not own:
         own, left = uncut, left_by(setup, uncut)
-    is_read = setup.operator.reads_marks(own.lines)
+    told = _told(setup, own, left)
+    with_tips_laid = with_tips(setup, own, told)
+    if with_tips_laid is not own:
+        own = with_tips_laid
+        told = _told(setup, own, left_by(setup, own))
+    return list(own.lines), told
+
+
+def _told(setup: Setup, own: OwnInk, left: Sequence[Unexplained]) -> tuple[Unexplained, ...]:
+    """What is told of some places that lines leave unexplained, and of what a box shows."""
     sure = tuple(place for place in left if place.is_sure)
-    return list(own.lines), sure if is_read else with_boxes(own, sure)
+    return sure if setup.operator.reads_marks(own.lines) else with_boxes(own, sure)
 
 
 def _once_mended(

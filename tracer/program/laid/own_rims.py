@@ -5,8 +5,9 @@
     ╰────────╯╰───╯      line comes by: the paper within it, or that about all of them
 
 The cells feel the rim of a patch towards each area of paper; the way of the pen lies half a width within it.
-Where it runs along a line that was found it is that (see `kept_parts`). Of all sets of such ways that explain
-the ink of the patch one turns least: its ways are the lines, if those that were found leave ink, or cross.
+Where it runs along a line that was found it is that (see `kept_parts`). Of all sets of such ways, and lobes
+(see `lobes`), that explain the ink of the patch one turns least: its ways are the lines, if those that were
+found leave ink, or cross.
 
 Signals: the set-up, a patch of ink and the lines that were found on it in; the lines out.
 
@@ -26,9 +27,7 @@ from numpy.typing import NDArray
 
 from morfax.motion.arrays import Array
 from morfax.motion.crossings import crossings_of
-from morfax.motion.motion import MOTION_RATE_HZ
 from morfax.motion.polyline import (
-    between_corners,
     closed_up,
     evenly,
     length_mm,
@@ -39,15 +38,13 @@ from morfax.motion.polyline import (
 from morfax.tracer.drawing.components import INK
 from morfax.tracer.drawing.lettering import lettering
 from morfax.tracer.following.line import Line
-from morfax.tracer.head.carriage import Carriage
-from morfax.tracer.head.leaders import REDRAWN
-from morfax.tracer.head.stance import Stance
 from morfax.tracer.ink.crossing_on_ink import OFF
 from morfax.tracer.ink.rim import Rim, felt_rim
 from morfax.tracer.limits import ABOUT_WIDTHS, AS_WIDE, CLEAR_WIDTHS, LONGER_WIDTHS
 from morfax.tracer.program.against_ink.window import view_about
 from morfax.tracer.program.laid.kept_parts import KeptWay
-from morfax.tracer.program.laid.line_parts import closed_anew, is_bare, is_clear
+from morfax.tracer.program.laid.line_parts import is_bare, is_clear, run_anew
+from morfax.tracer.program.laid.lobes import lobes
 from morfax.tracer.program.laid.patch_ink import PatchInk
 from morfax.tracer.program.laid.rim_loops import DISTINCT, felt_pen_mm, outlines_of
 from morfax.tracer.program.laid.rim_way import RimWay, kinks_of
@@ -167,7 +164,8 @@ class OwnRims:
     ) -> bool:
         """Whether some ways within the rims, so far from the ink's places (n,), that explain it where they
         were laid, do so better than the lines that were found: these miss some ink, or turn and leave more.
-        One that crosses itself counts as one with an end, if it leaves much more; else it need not turn more.
+        One that crosses itself counts as one with an end, if it leaves much more, or beside its lobes; else
+        it need not turn more.
         """
         own_mm, ink, own_rad = self.own_mm, self.ink, self._own_rad
         if (most := ink.worst(own_mm)) > MISSED:
@@ -180,6 +178,8 @@ class OwnRims:
         if any(map(self._crosses_itself, self.lines)):
             leave_less = left < BETTER * own_left and worst < BETTER * own_worst
             less_rad = LESS_RAD - END_RAD if leave_less else -SAME_RAD
+        if any(way is lobe for way in ways for lobe in self._lobes):
+            less_rad = -END_RAD
         turned_rad = sum(way.turned_rad for way in ways)
         return turned_rad + LEFT_RAD * left < own_rad + LEFT_RAD * own_left - less_rad
 
@@ -210,7 +210,7 @@ class OwnRims:
         No way has a kink where it lies on another: there lines end, or cross.
         """
         near_mm, beyond = ON * self.pen_mm, round(LONGER_WIDTHS / STEP_WIDTHS)
-        ways = list(self.within(round_bars=False))
+        ways = [*self.within(round_bars=False), *self._lobes]
         are_kinked = np.array(
             [[one.has_kink_on(other, near_mm, beyond) for other in ways] for one in ways]
         )
@@ -234,6 +234,10 @@ class OwnRims:
         seen = self.ink.seen
         return (seen.darkness > INK) & (away_mm > (0.5 + AS_WIDE) * seen.width_mm)
 
+    def run(self, way: Array) -> Line:
+        """The head's run along a closed way from memory."""
+        return run_anew(self.setup, self.lines[0], way, self.pen_mm)
+
     def within(self, *, round_bars: bool) -> Iterator[RimWay]:
         """The ways within the rims, those that go round bars of ink too if they are wanted."""
         for outline in self.outlines:
@@ -242,17 +246,29 @@ class OwnRims:
                 continue
             corners = rim.corners(0.5 * self.pen_mm)
             way = corners.likest(self.ink.places_mm, self._left, CLEAR_WIDTHS * self.pen_mm)
-            way = way[_are_apart(way, DISTINCT * STEP_WIDTHS * self.pen_mm)]
-            kept = KeptWay.of(way, self.lines, self.pen_mm)
-            way = kept.places_mm if kept.kept else way
-            polygon = plain(closed_up(way), ON * self.pen_mm)
-            even = evenly(closed_up(way), STEP_WIDTHS * self.pen_mm)
-            if not round_bars and self._goes_round_a_bar(even):
-                continue
-            away_mm = self.ink.away_mm(closed_up(way))
-            yield RimWay(
-                way, kept, even, away_mm, turned_rad(polygon, is_closed=True), kinks_of(even)
-            )
+            rim_way = self._rim_way(way[_are_apart(way, DISTINCT * STEP_WIDTHS * self.pen_mm)])
+            if round_bars or not self._goes_round_a_bar(rim_way.even):
+                yield rim_way
+
+    @cached_property
+    def _lobes(self) -> list[RimWay]:
+        """The lobes of lines that turn where they cross themselves; their tips may lie on other lines."""
+        ways = [(lobe[:1], self._rim_way(lobe)) for lobe in lobes(self.lines, self.pen_mm)]
+        about_mm = CLEAR_WIDTHS * self.pen_mm
+        return [
+            way.without_kinks(nearest_mm(way.even[way.kinks], tip) < about_mm)
+            for tip, way in ways
+        ]
+
+    def _rim_way(self, way: Array) -> RimWay:
+        """A closed way as it is compared with others, with the parts of lines along which it runs."""
+        kept = KeptWay.of(way, self.lines, self.pen_mm)
+        way = kept.places_mm if kept.kept else way
+        polygon = plain(closed_up(way), ON * self.pen_mm)
+        even = evenly(closed_up(way), STEP_WIDTHS * self.pen_mm)
+        away_mm = self.ink.away_mm(closed_up(way))
+        turns_rad = turned_rad(polygon, is_closed=True)
+        return RimWay(way, kept, even, away_mm, turns_rad, kinks_of(even))
 
     def _goes_round_a_bar(self, even: Array) -> bool:
         """Whether a closed way (n, 2), a step from place to place, comes beside itself where no line does."""
@@ -272,18 +288,6 @@ class OwnRims:
         sheet, aperture_mm = self.setup.sheet, self.setup.settings.aperture_mm
         reach_mm = ABOUT_WIDTHS * self.pen_mm
         return felt_rim(view_about(sheet, aperture_mm, self.pen_mm, outline, reach_mm), outline)
-
-    def run(self, way: Array) -> Line:
-        """The head's run along a closed way from memory."""
-        sheet, settings, width_mm = self.setup.sheet, self.setup.settings, self.pen_mm
-        stretches = between_corners(closed_up(way))
-        ahead = stretches[0][1] - stretches[0][0]
-        view = view_about(sheet, settings.aperture_mm, width_mm, way, ABOUT_WIDTHS * width_mm)
-        stance = Stance(way[0], math.atan2(ahead[1], ahead[0]), view)
-        carriage = Carriage(stance, settings, MOTION_RATE_HZ)
-        carriage.run(stretches, leader=REDRAWN)
-        xy_mm = carriage.positions_mm
-        return closed_anew(self.lines[0], xy_mm, carriage.led, width_mm, length_mm(xy_mm))
 
 
 def way_of(line: Line) -> Array:

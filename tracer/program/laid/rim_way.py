@@ -46,6 +46,10 @@ class RimWay(NamedTuple):
                 return True
         return False
 
+    def without_kinks(self, gone: NDArray[np.bool_]) -> RimWay:
+        """It without some of its kinks."""
+        return self._replace(kinks=self.kinks[~gone])
+
 
 def kinks_of(even: Array) -> NDArray[np.int64]:
     """The places of a closed way (n, 2) at which it turns more than about them."""

@@ -167,13 +167,13 @@ class WayInk:
         line = laid(self.setup, self.line, bays, self.round_mm)
         return Relaid(line, np.vstack(places_mm))
 
-    def explained(self, ink: SeenInk, rules: list[Rule]) -> Rule | None:
-        """The rule that explains an ink best. A bay is looked at again when another was mended; the same
-        rules are fitted to the same ink once.
+    def explained(self, ink: SeenInk, rules: list[Rule], of_bay: bool = True) -> Rule | None:
+        """The rule that explains an ink best, that of a bay or any. A bay is looked at again when another
+        was mended; the same rules are fitted to the same ink once.
         """
-        kept, key = self.setup.rules, sha1(pickle.dumps((ink, rules))).digest()
+        kept, key = self.setup.rules, sha1(pickle.dumps((ink, rules, of_bay))).digest()
         if key not in kept:
-            kept[key] = folding_rule.explained(ink, rules)
+            kept[key] = folding_rule.explained(ink, rules, of_bay)
         return kept[key]
 
     def _ink(self, about: Array, first: int, last: int) -> SeenInk:

@@ -105,10 +105,12 @@ def test_the_same_rules_are_fitted_to_the_same_ink_once(
 ) -> None:
     fitted, explained = list[SeenInk](), folding_rule.explained
 
-    def counted(ink: SeenInk, rules: list[folding_rule.Rule]) -> folding_rule.Rule | None:
+    def counted(
+        ink: SeenInk, rules: list[folding_rule.Rule], of_bay: bool
+    ) -> folding_rule.Rule | None:
         fitted.append(ink)
         assert len(folding_rule.not_far(ink, rules)) == len(rules)  # no others are fitted
-        return explained(ink, rules)
+        return explained(ink, rules, of_bay)
 
     monkeypatch.setattr(folding_rule, "explained", counted)
     setup = Setup(inked(with_bay(1.1 * WIDTH_MM, DEEP_MM), width_mm=WIDTH_MM, seed=1).sheet)

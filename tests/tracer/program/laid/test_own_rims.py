@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
+from morfax.motion.crossings import crossings_of
 from morfax.motion.polyline import evenly, nearest_mm, with_places
 from morfax.tracer.following.line import Line
 from morfax.tracer.program.laid.own_rims import within_own_rims
@@ -125,6 +126,36 @@ def test_kinks_are_where_a_way_turns_more_than_about_them() -> None:
     assert nearest_mm(corners, even[kinks]).max() < 0.1
     assert nearest_mm(even[kinks], corners).max() < 1.0
     assert not len(kinks_of(evenly(arc((0, 0), 2.0), 0.05)))
+
+
+def crescent(x: float, y: float, radius_mm: float, from_deg: float) -> Points:
+    """A crescent about a place whose horns are 30 degrees sharp, the lower one so far up from the right."""
+    outer = arc((0, 0), radius_mm, from_deg, 360 - from_deg)
+    horn, heading = outer[0], math.radians(from_deg + 90 + 30)
+    inner_mm = horn[1] / math.sin(heading + math.pi / 2)
+    middle = horn[0] + abs(inner_mm) * math.cos(heading + math.pi / 2)
+    to_deg = math.degrees(math.atan2(horn[1], horn[0] - middle)) % 360
+    inner = arc((middle, 0), abs(inner_mm), 360 - to_deg, to_deg)
+    return np.vstack([outer, inner, outer[:1]]) + np.array([x, y])
+
+
+@pytest.mark.parametrize(("apart", "seed"), [(0.3, 4), (0.6, 1), (0.6, 3)])
+def test_a_horn_that_touches_a_ring_is_no_way_into_it(apart: float, seed: int) -> None:
+    """Given the way from a leg of the horn round the ring to its other leg, both are told, not that."""
+    moon = crescent(10, 10, 5.0, 40.0)
+    heading = math.radians(40 + 90 + 180 + 15)  # of the upper horn, between its two sides
+    ahead = np.array([math.cos(heading), math.sin(heading)])
+    x, y = moon[0] + (apart * WIDTH_MM + 2.0) * ahead
+    back = math.degrees(heading) + 180
+    ring = arc((float(x), float(y)), 2.0, back, back + 360)
+    into = arc((float(x), float(y)), 2.0, back + 3, back + 357)
+    ways = [np.vstack([moon[4:-4], each, moon[4:5]]) for each in (into, into[::-1])]
+    way = max(ways, key=lambda each: len(crossings_of(each, np.arange(len(each) - 1))))
+    setup = Setup(inked(moon, ring, width_mm=WIDTH_MM, seed=seed).sheet)
+    lines = within_own_rims(setup, setup.sheet.patch_at(moon[0]), [run_along(way)])
+    assert len(lines) == 2
+    for each in (moon, ring):
+        assert min(off_mm(line, each) for line in lines) < 60 * UM
 
 
 def beam(left_mm: float, low_mm: float = 5) -> Points:
