@@ -43,7 +43,7 @@ def test_lines_of_a_second_pen_that_swell_a_little_are_one_line_each() -> None:
     """
     along = list(itertools.pairwise(np.linspace(5, 55, 201).tolist()))
     broad = [
-        (polyline((a, y), (b, y)), (1.4 + 0.035 * math.sin(a / 3)) * WIDTH_MM)
+        (polyline((a, y), (b, y)), (1.4 + 0.04 * math.sin(a)) * WIDTH_MM)
         for y in (10, 26)
         for a, b in along
     ]
