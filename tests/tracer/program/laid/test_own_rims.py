@@ -158,6 +158,20 @@ def test_a_horn_that_touches_a_ring_is_no_way_into_it(apart: float, seed: int) -
         assert min(off_mm(line, each) for line in lines) < 60 * UM
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_an_inner_corner_that_touches_a_circle_is_no_way_into_it(seed: int) -> None:
+    """A star's: with the circle it became one closed line that left some ink, and nothing was told."""
+    angles = np.arange(11) * math.pi / 5 + math.pi / 2
+    reach = np.where(np.arange(11) % 2, 4.0, 8.0)
+    star = 12 + np.column_stack([reach * np.cos(angles), reach * np.sin(angles)])
+    middle = star[1] - (star[1] - 12) / 4.0 * 1.95
+    circle = arc((float(middle[0]), float(middle[1])), 1.8, 0, 360)
+    trace = trace_lines(inked(star, circle, width_mm=0.5, seed=seed), "contours")
+    assert [line.ending for line in trace.lines] == ["closed", "closed"]
+    for each in (star, circle):
+        assert min(off_mm(line, each) for line in trace.lines) < 60 * UM
+
+
 def beam(left_mm: float, low_mm: float = 5) -> Points:
     """The outline of a beam of 12 mm whose flanges are 8 mm long and 1 mm high, from a place up."""
     half = [(-4, 0), (4, 0), (4, 1), (1.5, 2), (1.5, 10), (4, 11), (4, 12), (-4, 12)]
