@@ -15,7 +15,7 @@ as wide as the slit is long.
 
 What a slit some pixels wide sees is smooth: it looks at a picture reduced by as much, and what that and the
 way back soften is taken off its width. The direction of a finer one, and what paper looks like, is told by a
-picture whose lines have as few pixels as the head wants; about ink the slit looks at the picture itself.
+picture of as few pixels as tell it; about ink the slit looks at the picture itself.
 
 Source: our own; filters matched to a direction are the textbook's way (S. Chaudhuri and others, 1989, blood
 vessels in fundus images). Questions: ends of lines stay where they are (half of the slit is on paper there),
@@ -32,7 +32,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from morfax.motion.compiled import njit
-from morfax.tracer.drawing import coarse
 from morfax.tracer.drawing.discs import disc
 from morfax.tracer.effort import FEW_PX
 from morfax.tracer.limits import PAPER
@@ -51,6 +50,9 @@ FINEST_PX = 0.5  # across a slit, standard deviation
 REDUCED, NARROWEST_PX = (8, 4, 2), 1.0
 # px²: variance of means of pixels, 1/12, and of interpolation between them, 1/6
 SOFTENED_BY = 1 / 4
+# of a line's width tell its direction; a picture that is less than half as fine is not worth the way back,
+# and held small rings and zigzags together that the slit takes apart
+TELL_PX = 2.2
 LEAST_WEIGHT = 0.01  # of the slit's largest: what weighs less is left out, as beyond `SPREADS`
 
 
@@ -118,7 +120,9 @@ def _tile(slit: Slit, darkness: Darkness) -> Darkness:
         seen = _best(slit.reduced(by), _reduced(darkness, by)).darkness
         whole = _enlarged(seen, (len(seen) * by, seen.shape[1] * by))
         return whole[: shape[0], : shape[1]]
-    coarser = slit.width_px / coarse.FEWEST_PX
+    coarser = slit.width_px / TELL_PX
+    if coarser < 2:
+        return _best(slit, darkness).darkness
     size = round(shape[1] / coarser), round(shape[0] / coarser)
     small = np.asarray(cv2.resize(darkness, size, interpolation=cv2.INTER_AREA), np.float32)
     return _about_ink(slit, darkness, _best(slit.scaled(coarser), small, shape))
