@@ -41,12 +41,8 @@ PALE = 0.6
 # finer, ink looks broader at corners
 MISSED, MISSED_COARSE = 1.25, 2.0
 AHEAD = np.radians(np.linspace(-80.0, 80.0, 17))  # of a line's end: where its ink would go on
-ACROSS = (
-    -1.0,
-    -0.5,
-    0.5,
-    1.0,
-)  # of the way to where ink beside a line ends: it is dark all that way
+# of the way from a line to where ink beside it ends, and to the other side: it is dark all that way
+ACROSS = -1.0, -0.5, 0.5, 1.0
 
 
 class MissedInk(NamedTuple):
@@ -104,6 +100,15 @@ class _Runs(NamedTuple):
         far = away_mm.max(axis=0) > far_mm
         return cls(own[far], ends[:, far], away_mm[:, far], wide_mm[far], far_mm[far])
 
+    def places(self) -> tuple[NDArray[np.int64], Array]:
+        """Places along the runs, no further than a width apart: of which run each is (m,), and (m, 2) mm."""
+        first, last = self.ends_mm
+        counts = 2 + (np.hypot(*(last - first).T) / self.width_mm).astype(int)
+        run = np.repeat(np.arange(len(first)), counts)
+        nth = np.arange(len(run)) - np.repeat(np.cumsum(counts) - counts, counts)
+        share = nth / (counts - 1)[run]
+        return run, first[run] + share[:, None] * (last - first)[run]
+
     def pieces(self, sheet: Sheet, which: NDArray[np.bool_]) -> Iterator[MissedInk]:
         """Those of some that lie together, where each reaches furthest."""
         patches, own = sheet.patches, self.numbers[which]
@@ -130,30 +135,25 @@ class _BroadInk(NamedTuple):
     @classmethod
     def of(cls, sheet: Sheet, runs: _Runs, ways: Array) -> _BroadInk:
         """Places of the runs, no further than a width apart."""
-        first, last = runs.ends_mm
-        counts = 2 + (np.hypot(*(last - first).T) / runs.width_mm).astype(int)
-        run = np.repeat(np.arange(len(first)), counts)
-        nth = np.arange(len(run)) - np.repeat(np.cumsum(counts) - counts, counts)
-        places = first[run] + (nth / (counts - 1)[run])[:, None] * (last - first)[run]
+        run, places = runs.places()
         away_mm, nearest = Neighbours(ways).nearest(places)
         far = away_mm > runs.far_mm[run]
-        run, on_way = run[far], ways[nearest[far]]
-        aside, wide_mm = places[far] - on_way, runs.width_mm[run][:, None]
-        # to where the round of a pen would still be dark
-        out = aside - 0.5 * wide_mm * unit(aside)
-        along = CLEAR_WIDTHS * wide_mm * left_of(unit(aside))
+        run, away_mm, places, on_way = run[far], away_mm[far], places[far], ways[nearest[far]]
+        wide_mm, outward = runs.width_mm[run], unit(places - on_way)
+        # 1. to where the round of a pen would still be dark, and as far along as no line crosses
+        out = (away_mm - 0.5 * wide_mm)[:, None] * outward
+        along = (CLEAR_WIDTHS * wide_mm)[:, None] * left_of(outward)
         asked = [on_way + side * out + step * along for side in ACROSS for step in (-1, 0, 1)]
         is_so = np.min([darkness_at(sheet, some) for some in asked], axis=0) > PALE
-        # where it ends there is none further along
-        is_so |= nearest_mm(on_way, on_way[is_so]) < CLEAR_WIDTHS * runs.width_mm[run]
-        return cls(run, on_way, is_so, away_mm[far] > MISSED * runs.width_mm[run])
+        # 2. where it ends there is none further along
+        is_so |= nearest_mm(on_way, on_way[is_so]) < CLEAR_WIDTHS * wide_mm
+        return cls(run, on_way, is_so, away_mm > MISSED * wide_mm)
 
     def are_broad(self, count: int) -> NDArray[np.bool_]:
         """Whether most places of each of the runs are so."""
-        so_many, of = (
-            np.bincount(self.run[some], minlength=count) for some in (self.is_so, ...)
-        )
-        return np.asarray((of > 0) & (2 * so_many >= of))
+        every = np.bincount(self.run, minlength=count)
+        so_many = np.bincount(self.run[self.is_so], minlength=count)
+        return np.asarray((every > 0) & (2 * so_many >= every))
 
     def stretches(self, which: NDArray[np.bool_], width_mm: float) -> Iterator[MissedInk]:
         """The stretches of the ways beside which some of the runs lie."""
