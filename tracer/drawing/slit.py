@@ -25,6 +25,7 @@ and a corner is rounded by some 0.1 mm, which `program.laid.grain_corners` mends
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import cv2
@@ -183,6 +184,9 @@ def _heading(k: int) -> float:
     return math.pi * k / DIRECTIONS
 
 
+@lru_cache(
+    maxsize=2 * DIRECTIONS
+)  # of the slit and of its coarser one; all tiles take the same
 def _kernel(slit: Slit, direction: float) -> NDArray[np.float32]:
     """Weights of the slit in a direction (rad from the columns, downwards); their sum is 1."""
     half = slit.half_px
@@ -193,6 +197,7 @@ def _kernel(slit: Slit, direction: float) -> NDArray[np.float32]:
     return np.asarray(weights / weights.sum(), np.float32)
 
 
+@lru_cache(maxsize=1)
 def _weights(slit: Slit) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
     """The weights of each direction that count, (directions, m), and where they are in its kernel: down and
     to the right; the last ones of a direction with fewer weigh nothing.
